@@ -1,0 +1,1 @@
+//! An emulated bench with physics and imperfections of its own.

@@ -1,0 +1,1 @@
+//! The press protocol: which indenter, where, how deep, how fast.

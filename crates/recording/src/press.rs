@@ -1,0 +1,54 @@
+//! Presses and recordings in memory.
+
+use serde::{Deserialize, Serialize};
+use twintac_shape::Pose;
+
+use crate::Provenance;
+
+/// Presses of one sensor with one origin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Name of the sensor description that the presses belong to.
+    pub sensor: String,
+    /// Where the numbers come from.
+    pub provenance: Provenance,
+    /// Taxel names, in the order of every row of readings; the order of the sensor description.
+    pub taxels: Vec<String>,
+    /// The presses, in the order in which they happened.
+    pub presses: Vec<Press>,
+}
+
+/// What drove the indenter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Control {
+    /// The pose was prescribed and is known.
+    Pose,
+    /// The force was prescribed and is known; the pose's z is not, and stands where the tip touches the gel.
+    Force,
+}
+
+/// One press. All per-frame vectors have the same length, `n_frames`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Press {
+    /// Unique in its recording: `<file stem>#<number>`.
+    pub name: String,
+    /// Name of the file that it was read from, without folders.
+    pub file: String,
+    /// Name of the indenter in the sensor description.
+    pub indenter: String,
+    /// What drove the indenter.
+    pub control: Control,
+    /// Time stamps, s, strictly increasing; `[n_frames]`.
+    pub time_s: Vec<f64>,
+    /// Pose of the indenter in the gel's frame; `[n_frames]`.
+    pub gel_from_indenter: Vec<Pose>,
+    /// Force of the indenter on the gel along -z, N; `[n_frames]`, if it was measured or prescribed.
+    pub force_n: Option<Vec<f64>>,
+    /// Readings above the unloaded baseline, kPa; `[n_frames][n_taxels]`.
+    pub taxels_kpa: Vec<Vec<f64>>,
+    /// Readings as the source gives them, in its own unit; `[n_frames][n_taxels]`.
+    pub taxels_raw: Vec<Vec<f64>>,
+    /// Whether the reading can be used (not clipped, not missing); `[n_frames][n_taxels]`.
+    pub valid: Vec<Vec<bool>>,
+}

@@ -1,0 +1,1 @@
+//! Pressure maps, plots and the HTML report.

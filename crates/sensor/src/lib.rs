@@ -1,0 +1,1 @@
+//! The sensor description: gel, shell, taxels, read-out, indenters.

@@ -1,0 +1,42 @@
+//! Where a rigid body stands.
+
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// A rigid transform, named `a_from_b` where it takes points given in frame `b` to frame `a`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Origin of the inner frame in the outer frame, mm.
+    pub position_mm: DVec3,
+    /// Rotation from the inner to the outer frame, a unit quaternion.
+    pub rotation: DQuat,
+}
+
+impl Pose {
+    /// The transform that changes nothing.
+    pub const IDENTITY: Self = Self {
+        position_mm: DVec3::ZERO,
+        rotation: DQuat::IDENTITY,
+    };
+
+    /// A pose without rotation.
+    #[must_use]
+    pub fn from_position(position_mm: DVec3) -> Self {
+        Self {
+            position_mm,
+            rotation: DQuat::IDENTITY,
+        }
+    }
+
+    /// Takes a point from the inner to the outer frame, mm.
+    #[must_use]
+    pub fn transform_point(&self, point_mm: DVec3) -> DVec3 {
+        self.rotation * point_mm + self.position_mm
+    }
+
+    /// Takes a point from the outer to the inner frame, mm.
+    #[must_use]
+    pub fn inverse_transform_point(&self, point_mm: DVec3) -> DVec3 {
+        self.rotation.inverse() * (point_mm - self.position_mm)
+    }
+}

@@ -1,0 +1,1 @@
+//! Finite-strain FEM of a soft body pressed by rigid shapes.
