@@ -27,6 +27,8 @@ pub struct Honesty {
 /// The gel at one depth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepFrame {
+    /// Time, s; zero throughout a table over depth.
+    pub time_s: f64,
     /// Depth below first touch, mm.
     pub depth_mm: f64,
     /// Force of the indenter on the gel along -z, N.
@@ -47,6 +49,10 @@ pub struct Sweep {
     pub indenter: String,
     /// The indenter at first touch.
     pub gel_from_indenter_at_touch: Pose,
-    /// Frames at increasing depth.
+    /// Nodes of the mesh.
+    pub n_nodes: usize,
+    /// Frames at increasing depth, or in time for a press that follows a trajectory.
     pub frames: Vec<SweepFrame>,
+    /// Why the frames end before they should; `None` if they do not.
+    pub failure: Option<String>,
 }

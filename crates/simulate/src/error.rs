@@ -1,0 +1,32 @@
+//! What can go wrong in a simulated press.
+
+/// A press that could not be set up. A press that starts and does not converge is no error: its table ends at the last good depth, and
+/// says why.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulateError {
+    /// The gel could not be meshed.
+    #[error("the gel can't be meshed: {0}")]
+    Mesh(#[from] twintac_mesh::MeshError),
+    /// The finite-element model could not be built.
+    #[error("the gel's model can't be built: {0}")]
+    SoftBody(#[from] twintac_softbody::SoftBodyError),
+    /// The indenter is not a possible shape.
+    #[error("the indenter can't be built: {0}")]
+    Shape(#[from] twintac_shape::ShapeError),
+    /// The indenter would come down beside the gel.
+    #[error("the indenter at x = {x_mm:.2} mm, y = {y_mm:.2} mm does not touch the gel")]
+    NoTouch {
+        /// Place of the press, mm.
+        x_mm: f64,
+        /// Place of the press, mm.
+        y_mm: f64,
+    },
+    /// A taxel's port lies outside the mesh.
+    #[error("the port of taxel `{taxel}` lies {distance_mm:.2} mm outside the mesh")]
+    PortOutside {
+        /// The taxel's name.
+        taxel: String,
+        /// How far out, mm.
+        distance_mm: f64,
+    },
+}

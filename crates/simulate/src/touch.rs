@@ -1,0 +1,81 @@
+//! Where an indenter first touches the undeformed gel, and how wide it will press.
+
+use glam::{DVec2, DVec3};
+use twintac_shape::{Pose, SignedDistance};
+
+/// Samples along each axis of the search; the second search refines about the first one's best.
+const SAMPLES: i32 = 40;
+
+/// The pose at which an indenter, coming straight down above `(x_mm, y_mm)`, touches the gel, together with the touched point.
+/// `top_height_mm` gives the gel's top, `None` beside it. `None` if the indenter misses the gel.
+pub(crate) fn first_touch(
+    indenter: &dyn SignedDistance,
+    at_origin: &Pose,
+    top_height_mm: &dyn Fn(f64, f64) -> Option<f64>,
+) -> Option<(Pose, DVec3)> {
+    let place = at_origin.position_mm.truncate();
+    let (low, high) = indenter.bounds_mm();
+    let reach_mm = low.abs().max(high.abs()).length();
+    let mut centre = place;
+    let mut best: Option<(f64, DVec3)> = None;
+    for half_width_mm in [reach_mm, reach_mm / f64::from(SAMPLES), reach_mm / f64::from(SAMPLES * SAMPLES)] {
+        for i in -SAMPLES..=SAMPLES {
+            for j in -SAMPLES..=SAMPLES {
+                let offset = DVec2::new(f64::from(i), f64::from(j)) * (half_width_mm / f64::from(SAMPLES));
+                let point = centre + offset;
+                let Some(height_mm) = top_height_mm(point.x, point.y) else { continue };
+                let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm) else { continue };
+                let z_mm = height_mm - lowest_mm;
+                if best.is_none_or(|(best_mm, _)| z_mm > best_mm + 1e-12) {
+                    best = Some((z_mm, point.extend(height_mm)));
+                }
+            }
+        }
+        centre = best?.1.truncate();
+    }
+    best.map(|(z_mm, touched)| {
+        let pose = Pose { position_mm: place.extend(z_mm), rotation: at_origin.rotation };
+        (pose, touched)
+    })
+}
+
+/// Height of the indenter's underside above its origin at a place in the gel's plane, mm; `None` beside the indenter.
+fn underside_mm(indenter: &dyn SignedDistance, pose: &Pose, place: DVec2, reach_mm: f64) -> Option<f64> {
+    let flat = Pose { position_mm: pose.position_mm.truncate().extend(0.0), rotation: pose.rotation };
+    let mut z_mm = -1.5 * reach_mm;
+    for _ in 0..200 {
+        let distance_mm = indenter.signed_distance(flat.inverse_transform_point(place.extend(z_mm))).distance_mm;
+        if distance_mm < 1e-9 {
+            return Some(z_mm);
+        }
+        z_mm += distance_mm;
+        if z_mm > 1.5 * reach_mm {
+            return None;
+        }
+    }
+    // Rays that graze the side creep; what is not hit by now touches later than its neighbours.
+    None
+}
+
+/// Radius in the gel's plane, about the touched point, of the indenter's part that a press of this depth brings below the surface, mm.
+pub(crate) fn contact_radius_mm(
+    indenter: &dyn SignedDistance,
+    gel_from_indenter_at_touch: &Pose,
+    touched: DVec3,
+    depth_mm: f64,
+) -> f64 {
+    let (low, high) = indenter.bounds_mm();
+    let reach_mm = low.abs().max(high.abs()).length();
+    let mut radius_mm: f64 = 0.0;
+    for i in -SAMPLES..=SAMPLES {
+        for j in -SAMPLES..=SAMPLES {
+            let offset = DVec2::new(f64::from(i), f64::from(j)) * (reach_mm / f64::from(SAMPLES));
+            let point = touched + (offset).extend(depth_mm);
+            let inside = gel_from_indenter_at_touch.inverse_transform_point(point);
+            if indenter.signed_distance(inside).distance_mm <= 0.0 {
+                radius_mm = radius_mm.max(offset.length());
+            }
+        }
+    }
+    radius_mm.max(reach_mm / f64::from(SAMPLES))
+}
