@@ -1,1 +1,13 @@
 //! An emulated bench with physics and imperfections of its own.
+//!
+//! The lab stands in for a sensor, a robot and a force sensor that nobody has at hand. It knows nothing of the digital twin that is judged
+//! against it, and differs from it on purpose: a finer mesh, another material law with a memory, taxels that sit and amplify a little
+//! differently from the drawing, noise, quantization, late and jittery clocks, a robot that misses its place. All of that is in a
+//! [`Reality`], read from a TOML file. What it records is marked `emulated`.
+
+mod bench;
+mod imperfect;
+mod reality;
+
+pub use bench::{Bench, LabError};
+pub use reality::{GelReality, ReadoutReality, Reality, RobotReality};

@@ -10,6 +10,7 @@
 mod error;
 mod gel;
 mod lattice;
+mod pchip;
 mod readout;
 mod settings;
 mod sweep;
@@ -18,5 +19,6 @@ mod touch;
 pub use error::SimulateError;
 pub use gel::{Gel, GelMesh, Keyframe, PressPlace, sweeps};
 pub use lattice::Lattice;
+pub use pchip::Pchip;
 pub use settings::SimulateSettings;
 pub use sweep::{Honesty, Sweep, SweepFrame};

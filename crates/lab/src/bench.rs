@@ -1,0 +1,304 @@
+//! The bench that presses an imperfect sensor with an imperfect robot.
+
+use std::sync::Arc;
+
+use twintac_protocol::PressPlan;
+use twintac_recording::{Control, Press, Provenance, Recording};
+use twintac_sensor::Sensor;
+use twintac_shape::Pose;
+use twintac_simulate::{Gel, Keyframe, Pchip, PressPlace, SimulateError, SimulateSettings, Sweep, SweepFrame};
+use twintac_softbody::{Isochoric, Material, PronyTerm};
+
+use crate::Reality;
+use crate::imperfect::Chance;
+
+/// Pressure of the air, kPa.
+const ATMOSPHERE_KPA: f64 = 101.325;
+
+/// Moments computed in a hold, as fractions of it: most happens early.
+const HOLD_FRACTIONS: [f64; 4] = [0.05, 0.2, 0.5, 1.0];
+
+/// What can go wrong on the emulated bench.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// The press could not be set up.
+    #[error("press `{press}`: {source}")]
+    Simulate {
+        /// The press's name.
+        press: String,
+        /// Why.
+        source: SimulateError,
+    },
+    /// The gel's own solver gave up before the press was over.
+    #[error("press `{press}`: the emulated gel did not converge {why}")]
+    NotConverged {
+        /// The press's name.
+        press: String,
+        /// Where and why.
+        why: String,
+    },
+    /// The plan asks for an indenter that the sensor's description lacks.
+    #[error("press `{press}`: there is no indenter `{indenter}` in the sensor's description")]
+    NoIndenter {
+        /// The press's name.
+        press: String,
+        /// The indenter's name.
+        indenter: String,
+    },
+}
+
+/// One cast of a sensor on one bench.
+pub struct Bench {
+    drawing: Arc<Sensor>,
+    gel: Gel,
+    gains: Vec<f64>,
+    offsets_kpa: Vec<f64>,
+    reality: Reality,
+}
+
+impl Bench {
+    /// Casts a sensor: draws the gains, offsets and places of its taxels.
+    #[must_use]
+    pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Self {
+        let mut chance = Chance::new(reality.seed, "cast");
+        let mut cast = (*drawing).clone();
+        for taxel in &mut cast.taxels {
+            taxel.position_mm.x += chance.normal(reality.readout.position_deviation_mm);
+            taxel.position_mm.y += chance.normal(reality.readout.position_deviation_mm);
+        }
+        let gains = drawing.taxels.iter().map(|_| 1.0 + chance.normal(reality.readout.gain_deviation)).collect();
+        let offsets_kpa =
+            drawing.taxels.iter().map(|_| chance.normal(reality.readout.offset_deviation_kpa)).collect();
+        let settings = SimulateSettings {
+            edge_mm: reality.gel.edge_mm,
+            edges_per_contact_radius: reality.gel.edges_per_contact_radius,
+            ..SimulateSettings::default()
+        };
+        let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));
+        Self { drawing, gel, gains, offsets_kpa, reality }
+    }
+
+    /// Performs one press and records it.
+    pub fn press(&self, plan: &PressPlan) -> Result<Press, LabError> {
+        let mut chance = Chance::new(self.reality.seed, &plan.name);
+        let (robot, readout) = (&self.reality.robot, &self.reality.readout);
+        let place = self.true_place(plan, &mut chance)?;
+        let deeper_mm = robot.depth_offset_mm + chance.normal(robot.depth_deviation_mm);
+
+        let schedule = plan.trajectory(self.drawing.readout.rate_hz);
+        let keyframes = keyframes(&schedule, deeper_mm, self.reality.gel.depth_step_mm);
+        let sweep = self
+            .gel
+            .press(&place, &keyframes)
+            .map_err(|source| LabError::Simulate { press: plan.name.clone(), source })?;
+        if let Some(why) = &sweep.failure {
+            return Err(LabError::NotConverged { press: plan.name.clone(), why: why.clone() });
+        }
+
+        let history = History::new(&sweep, &keyframes);
+        let mut walk_kpa: Vec<f64> = vec![0.0; self.gains.len()];
+        let mut previous_s = 0.0;
+        let mut frames = Frames::default();
+        for &(scheduled_s, depth_mm) in &schedule {
+            let time_s = scheduled_s + chance.normal(readout.jitter_s).clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
+            let step_s = (time_s - previous_s).max(0.0);
+            previous_s = time_s;
+            let raw_kpa: Vec<f64> = (0..self.gains.len())
+                .map(|taxel| {
+                    let late_s = readout.lag_s + taxel as f64 * readout.lag_per_taxel_s;
+                    walk_kpa[taxel] += chance.normal(readout.drift_kpa_per_sqrt_s * step_s.sqrt());
+                    let pressure_kpa = self.gains[taxel] * history.pressure_kpa(taxel, time_s + late_s);
+                    let clean_kpa = ATMOSPHERE_KPA + self.offsets_kpa[taxel] + walk_kpa[taxel] + pressure_kpa;
+                    self.quantize(clean_kpa + chance.normal(readout.noise_kpa))
+                })
+                .collect();
+            let commanded = Pose {
+                position_mm: sweep.gel_from_indenter_at_touch.position_mm.with_x(plan.x_mm).with_y(plan.y_mm)
+                    - glam::DVec3::Z * depth_mm,
+                rotation: plan.rotation,
+            };
+            frames.push(Moment {
+                time_s,
+                commanded,
+                depth_mm,
+                force_n: history.force_n(time_s - robot.force_lag_s) + chance.normal(robot.force_noise_n),
+                raw_kpa,
+            });
+        }
+        Ok(frames.into_press(plan, &self.drawing))
+    }
+
+    /// A recording of presses that this bench performed.
+    #[must_use]
+    pub fn recording(&self, presses: Vec<Press>) -> Recording {
+        Recording {
+            sensor: self.drawing.name.clone(),
+            provenance: Provenance::Emulated,
+            taxels: self.drawing.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+            presses,
+        }
+    }
+
+    fn true_place(&self, plan: &PressPlan, chance: &mut Chance) -> Result<PressPlace, LabError> {
+        let indenter = self.drawing.indenters.iter().find(|indenter| indenter.name == plan.indenter).ok_or_else(|| {
+            LabError::NoIndenter { press: plan.name.clone(), indenter: plan.indenter.clone() }
+        })?;
+        let robot = &self.reality.robot;
+        Ok(PressPlace {
+            indenter: plan.indenter.clone(),
+            shape: indenter.shape.clone(),
+            x_mm: plan.x_mm + chance.normal(robot.place_deviation_mm),
+            y_mm: plan.y_mm + chance.normal(robot.place_deviation_mm),
+            rotation: plan.rotation,
+            depth_mm: plan.depth_mm,
+        })
+    }
+
+    fn quantize(&self, kpa: f64) -> f64 {
+        let step_kpa = self.drawing.readout.resolution_kpa;
+        (kpa / step_kpa).round() * step_kpa
+    }
+}
+
+fn material(reality: &Reality) -> Material {
+    let [c10_kpa, c20_kpa, c30_kpa] = reality.gel.yeoh_kpa;
+    Material {
+        isochoric: Isochoric::Yeoh { c10_kpa, c20_kpa, c30_kpa },
+        bulk_modulus_kpa: reality.gel.bulk_modulus_kpa,
+        prony: reality
+            .gel
+            .relaxation
+            .iter()
+            .map(|term| PronyTerm { weight: term.weight, time_s: term.time_s })
+            .collect(),
+    }
+}
+
+/// The moments to compute: where the depth has changed by a step, and some along a hold. All but the first gap is left out while the
+/// indenter is well above the gel.
+fn keyframes(schedule: &[(f64, f64)], deeper_mm: f64, step_mm: f64) -> Vec<Keyframe> {
+    let mut chosen: Vec<Keyframe> = Vec::new();
+    let mut at = 0;
+    while at < schedule.len() {
+        let (time_s, depth_mm) = schedule[at];
+        let true_mm = depth_mm + deeper_mm;
+        chosen.push(Keyframe { time_s, depth_mm: true_mm });
+        let hold_end = schedule[at..].iter().take_while(|(_, depth)| (depth - depth_mm).abs() < 1e-9).count() + at - 1;
+        if hold_end > at + 1 && true_mm > 0.0 {
+            let hold = (hold_end - at) as f64;
+            let mut last = at;
+            for fraction in HOLD_FRACTIONS {
+                let index = at + (fraction * hold).round() as usize;
+                if index > last {
+                    chosen.push(Keyframe { time_s: schedule[index].0, depth_mm: true_mm });
+                    last = index;
+                }
+            }
+            at = hold_end;
+        }
+        let from_mm = schedule[at].1;
+        let next = schedule[at + 1..]
+            .iter()
+            .position(|(_, depth)| (depth - from_mm).abs() >= step_mm - 1e-9 || is_turn(schedule, *depth))
+            .map(|offset| at + 1 + offset);
+        match next {
+            Some(index) => at = index,
+            None if at + 1 < schedule.len() => at = schedule.len() - 1,
+            None => break,
+        }
+    }
+    chosen
+}
+
+/// Whether a depth is the deepest of the schedule, where the motion turns or holds.
+fn is_turn(schedule: &[(f64, f64)], depth_mm: f64) -> bool {
+    schedule.iter().all(|(_, other)| *other <= depth_mm + 1e-9)
+}
+
+/// The gel's answer over time, between the computed moments.
+struct History {
+    pressure_kpa: Vec<Pchip>,
+    force_n: Option<Pchip>,
+}
+
+impl History {
+    fn new(sweep: &Sweep, keyframes: &[Keyframe]) -> Self {
+        let time_s: Vec<f64> = keyframes.iter().map(|keyframe| keyframe.time_s).collect();
+        let curve = |value: &dyn Fn(&SweepFrame) -> f64| {
+            Pchip::new(time_s.clone(), sweep.frames.iter().map(value).collect())
+        };
+        let n_taxels = sweep.frames.first().map_or(0, |frame| frame.port_pressure_kpa.len());
+        Self {
+            pressure_kpa: (0..n_taxels).filter_map(|k| curve(&|frame| frame.port_pressure_kpa[k])).collect(),
+            force_n: curve(&|frame| frame.force_n),
+        }
+    }
+
+    fn pressure_kpa(&self, taxel: usize, time_s: f64) -> f64 {
+        self.pressure_kpa.get(taxel).map_or(0.0, |curve| curve.at(time_s))
+    }
+
+    fn force_n(&self, time_s: f64) -> f64 {
+        self.force_n.as_ref().map_or(0.0, |curve| curve.at(time_s))
+    }
+}
+
+struct Moment {
+    time_s: f64,
+    commanded: Pose,
+    depth_mm: f64,
+    force_n: f64,
+    raw_kpa: Vec<f64>,
+}
+
+#[derive(Default)]
+struct Frames(Vec<Moment>);
+
+impl Frames {
+    fn push(&mut self, moment: Moment) {
+        self.0.push(moment);
+    }
+
+    /// Zeroes each taxel on the frames above the gel, as a recorder does before each press.
+    fn into_press(self, plan: &PressPlan, sensor: &Sensor) -> Press {
+        let n_before = self.0.iter().take_while(|moment| moment.depth_mm < -0.1).count().max(1);
+        let baseline_kpa: Vec<f64> = (0..sensor.taxels.len())
+            .map(|taxel| self.0[..n_before].iter().map(|m| m.raw_kpa[taxel]).sum::<f64>() / n_before as f64)
+            .collect();
+        let range = sensor.readout.min_kpa..=sensor.readout.max_kpa;
+        Press {
+            name: plan.name.clone(),
+            file: "lab".into(),
+            indenter: plan.indenter.clone(),
+            control: Control::Pose,
+            time_s: self.0.iter().map(|m| m.time_s).collect(),
+            gel_from_indenter: self.0.iter().map(|m| m.commanded).collect(),
+            force_n: Some(self.0.iter().map(|m| m.force_n).collect()),
+            taxels_kpa: self
+                .0
+                .iter()
+                .map(|m| m.raw_kpa.iter().zip(&baseline_kpa).map(|(raw, zero)| raw - zero).collect())
+                .collect(),
+            valid: self.0.iter().map(|m| m.raw_kpa.iter().map(|raw| range.contains(raw)).collect()).collect(),
+            taxels_raw: self.0.into_iter().map(|m| m.raw_kpa).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keyframes_keep_turns_and_ends() {
+        let mut schedule: Vec<(f64, f64)> = (0..=60).map(|i| (f64::from(i) * 0.02, -0.2 + f64::from(i) * 0.02)).collect();
+        schedule.extend((1..=50).map(|i| (1.2 + f64::from(i) * 0.02, 1.0)));
+        schedule.extend((1..=60).map(|i| (2.2 + f64::from(i) * 0.02, 1.0 - f64::from(i) * 0.02)));
+        let chosen = keyframes(&schedule, 0.05, 0.25);
+        assert!(chosen.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
+        assert!(chosen.len() < 25, "{}", chosen.len());
+        let deepest = chosen.iter().filter(|k| (k.depth_mm - 1.05).abs() < 1e-9).count();
+        assert!(deepest >= 5, "start, inside and end of the hold: {deepest}");
+        assert!((chosen.last().unwrap().time_s - schedule.last().unwrap().0).abs() < 1e-12);
+    }
+}
