@@ -1,0 +1,15 @@
+//! Progress on standard error: a bar with an estimate on a terminal, silence elsewhere.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar for `n_steps` steps of one stage. It draws nothing where standard error is not a terminal.
+pub(crate) fn bar(stage: &str, n_steps: u64) -> ProgressBar {
+    let template = "{prefix:>10} [{bar:30}] {pos}/{len} {msg} {elapsed}, {eta} left";
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::new(n_steps).with_style(style.progress_chars("=> "));
+    bar.set_prefix(stage.to_owned());
+    bar.enable_steady_tick(Duration::from_millis(500));
+    bar
+}
