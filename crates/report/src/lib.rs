@@ -1,1 +1,19 @@
 //! Pressure maps, plots and the HTML report.
+
+mod axis;
+mod color;
+mod error;
+mod file;
+mod font;
+pub mod plot;
+mod pressure_map;
+mod raster;
+mod scene;
+mod svg;
+
+pub use color::{Ink, PALETTE, viridis};
+pub use error::ReportError;
+pub use pressure_map::{MapSettings, PressureMap, Rectangle, Weights, pitch_mm, pressure_map};
+pub use raster::png;
+pub use scene::{Anchor, Mark, Scene};
+pub use svg::svg;

@@ -1,0 +1,265 @@
+//! Axes: round tick values, linear and logarithmic scales, numbers as text.
+
+use crate::color::Ink;
+use crate::scene::{Anchor, SMALL, Scene};
+
+/// A quantity's range mapped onto a range of pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis {
+    range: [f64; 2],
+    pixels: [f64; 2],
+    logarithmic: bool,
+}
+
+impl Axis {
+    /// Maps `range` onto `pixels`; a range without extent is widened, so that every axis can be drawn.
+    pub(crate) fn linear(range: [f64; 2], pixels: [f64; 2]) -> Self {
+        Axis {
+            range: widen(range),
+            pixels,
+            logarithmic: false,
+        }
+    }
+
+    /// As [`Axis::linear`], by the logarithm; only positive numbers have a place.
+    pub(crate) fn logarithmic(range: [f64; 2], pixels: [f64; 2]) -> Self {
+        let [low, high] = range;
+        let range = if low > 0.0 && high.is_finite() {
+            if high > low {
+                [low, high]
+            } else {
+                [low / 2.0, low * 2.0]
+            }
+        } else {
+            [0.1, 10.0]
+        };
+        Axis {
+            range,
+            pixels,
+            logarithmic: true,
+        }
+    }
+
+    /// The pixel of a value; not a number where the value has no place.
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let [low, high] = self.range;
+        let fraction = if self.logarithmic {
+            (value / low).ln() / (high / low).ln()
+        } else {
+            (value - low) / (high - low)
+        };
+        self.pixels[0] + fraction * (self.pixels[1] - self.pixels[0])
+    }
+
+    /// Round values inside the range with their texts, no closer than `gap_px` on average.
+    pub(crate) fn ticks(&self, gap_px: f64) -> Vec<(f64, String)> {
+        let length = (self.pixels[1] - self.pixels[0]).abs();
+        let most = (length / gap_px).max(2.0);
+        if self.logarithmic {
+            decades(self.range, most)
+        } else {
+            round_values(self.range, most)
+        }
+    }
+
+    /// Horizontal grid lines and tick texts on the left of the box `[left, right]`.
+    pub(crate) fn draw_left(&self, scene: &mut Scene, left: f64, right: f64) {
+        for (value, text) in self.ticks(30.0) {
+            let y = self.place(value);
+            scene.line([[left, y], [right, y]], Ink::Grid, 1.0);
+            scene.small([left - 6.0, y + 0.35 * SMALL], text, Ink::Muted, Anchor::End);
+        }
+    }
+
+    /// Tick texts below `bottom`, with grid lines up to `top`.
+    pub(crate) fn draw_below(&self, scene: &mut Scene, top: f64, bottom: f64) {
+        for (value, text) in self.ticks(64.0) {
+            let x = self.place(value);
+            scene.line([[x, top], [x, bottom]], Ink::Grid, 1.0);
+            scene.small([x, bottom + 5.0 + SMALL], text, Ink::Muted, Anchor::Middle);
+        }
+    }
+}
+
+/// The smallest range that holds all finite values; `None` if there are none.
+pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(None, |range, value| {
+            let [low, high] = range.unwrap_or([value, value]);
+            Some([low.min(value), high.max(value)])
+        })
+}
+
+/// The range with a margin of `fraction` of its length at either end.
+pub(crate) fn padded([low, high]: [f64; 2], fraction: f64) -> [f64; 2] {
+    let margin = fraction * (high - low);
+    [low - margin, high + margin]
+}
+
+fn widen([low, high]: [f64; 2]) -> [f64; 2] {
+    if !(low.is_finite() && high.is_finite()) {
+        [0.0, 1.0]
+    } else if high - low > 1e-12 * low.abs().max(high.abs()).max(1e-290) {
+        [low, high]
+    } else {
+        let half = if low == 0.0 { 0.5 } else { 0.1 * low.abs() };
+        [low - half, high + half]
+    }
+}
+
+fn round_values([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {
+    let rough = (high - low) / most;
+    let power = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|head| head * power)
+        .find(|&step| step >= rough * 0.999);
+    let step = step.unwrap_or(10.0 * power);
+    let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
+    let (first, last) = ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());
+    let count = (last - first).clamp(0.0, 1000.0) as usize;
+    (0..=count)
+        .map(|index| (first + index as f64) * step)
+        .filter(|value| *value <= high + 1e-6 * step)
+        .map(|value| (value, fixed(value, decimals)))
+        .collect()
+}
+
+fn decades([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {
+    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+    let powers = (high / low).log10();
+    let heads: &[f64] = if powers < 1.2 && most >= 4.0 {
+        &[1.0, 2.0, 3.0, 5.0, 7.0]
+    } else {
+        &[1.0]
+    };
+    let heads = if powers < 2.2 && heads.len() == 1 {
+        &[1.0, 3.0][..]
+    } else {
+        heads
+    };
+    let skip = ((powers / most).ceil() as i32).max(1);
+    (first..=last)
+        .filter(|power| power.rem_euclid(skip) == 0)
+        .flat_map(|power| heads.iter().map(move |head| head * 10f64.powi(power)))
+        .filter(|value| *value >= low * 0.999 && *value <= high * 1.001)
+        .map(|value| (value, short(value)))
+        .collect()
+}
+
+/// A number with `decimals`, a true minus sign and no negative zero; a dash for what is not a number.
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest)
+            if rest
+                .chars()
+                .any(|letter| letter.is_ascii_digit() && letter != '0') =>
+        {
+            format!("−{rest}")
+        }
+        Some(rest) => rest.into(),
+        None => text,
+    }
+}
+
+/// A number with about three digits, with a power of ten where it is very large or small.
+pub(crate) fn short(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let power = value.abs().log10().floor();
+    if !(-3.0..6.0).contains(&power) {
+        let head = value / 10f64.powf(power);
+        return format!("{}·10{}", trimmed(&fixed(head, 1)), superscript(power as i32));
+    }
+    trimmed(&fixed(value, (2.0 - power).max(0.0) as usize)).to_owned()
+}
+
+fn trimmed(text: &str) -> &str {
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text
+    }
+}
+
+/// Raised digits. The embedded font has them all.
+fn superscript(power: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let digits = power
+        .abs()
+        .to_string()
+        .bytes()
+        .map(|digit| DIGITS[usize::from(digit - b'0')])
+        .collect::<String>();
+    if power < 0 { format!("⁻{digits}") } else { digits }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn texts(axis: Axis, gap_px: f64) -> Vec<String> {
+        axis.ticks(gap_px).into_iter().map(|(_, text)| text).collect()
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(
+            texts(Axis::linear([0.0, 1.0], [0.0, 300.0]), 60.0),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(texts(Axis::linear([-3.0, 9.0], [0.0, 150.0]), 50.0), ["0", "5"]);
+        assert_eq!(
+            texts(Axis::logarithmic([0.01, 100.0], [0.0, 400.0]), 60.0),
+            ["0.01", "0.1", "1", "10", "100"]
+        );
+    }
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(fixed(-0.001, 2), "0.00");
+        assert_eq!(fixed(-2.5, 1), "−2.5");
+        assert_eq!(fixed(f64::NAN, 1), "–");
+        assert_eq!(short(36000.0), "36000");
+        assert_eq!(short(0.0075), "0.0075");
+        assert_eq!(short(1.3e-9), "1.3·10⁻⁹");
+        assert_eq!(short(0.0), "0");
+    }
+
+    proptest! {
+        #[test]
+        fn any_range_has_a_few_ticks_inside(low in -1e6..1e6f64, length in 0.0..1e6f64) {
+            let axis = Axis::linear([low, low + length], [0.0, 200.0]);
+            let ticks = axis.ticks(40.0);
+            prop_assert!((1..=7).contains(&ticks.len()), "{} ticks", ticks.len());
+            prop_assert!(ticks.iter().all(|(value, _)| (-0.5..=200.5).contains(&axis.place(*value))));
+        }
+    }
+
+    #[test]
+    fn a_range_without_numbers_can_still_be_drawn() {
+        for range in [
+            [f64::NAN, f64::NAN],
+            [f64::INFINITY, f64::NEG_INFINITY],
+            [0.0, 0.0],
+            [3.0, 3.0],
+        ] {
+            assert!(!Axis::linear(range, [0.0, 100.0]).ticks(30.0).is_empty());
+            assert!(!Axis::logarithmic(range, [0.0, 100.0]).ticks(30.0).is_empty());
+        }
+        assert_eq!(extent([f64::NAN, 2.0, -1.0]), Some([-1.0, 2.0]));
+        assert_eq!(extent([f64::NAN]), None);
+    }
+}

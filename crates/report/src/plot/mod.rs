@@ -1,0 +1,23 @@
+//! Charts. Each is a plain struct whose `scene` is a pure function of it; what is not a number is left out.
+
+mod bars;
+mod density;
+mod heat;
+mod lines;
+mod places;
+
+pub use bars::{Bar, Bars};
+pub use density::Density;
+pub use heat::{HeatMap, HeatMaps};
+pub use lines::{Panel, Panels, Series};
+pub use places::Places;
+
+/// Width of a chart that stands alone or beside others, px.
+pub const WIDTH_PX: f64 = 460.0;
+
+/// Pixels left of a chart's box, for tick texts and the axis label.
+pub(crate) const LEFT: f64 = 56.0;
+/// Pixels below a chart's box, for tick texts and the axis label.
+pub(crate) const BELOW: f64 = 40.0;
+/// Pixels right of a chart's box.
+pub(crate) const RIGHT: f64 = 12.0;
