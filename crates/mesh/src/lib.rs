@@ -1,5 +1,20 @@
 //! Tetrahedral meshes: generated from a solid, imported from Gmsh, exported to VTK and STL. Lengths in mm.
 
+mod axis;
+mod boundary;
+mod error;
+mod footprint;
+mod generate;
+mod grid;
+mod lattice;
+mod locate;
+mod quality;
+mod settings;
+mod size;
 mod tet_mesh;
 
+pub use error::MeshError;
+pub use generate::{generate, generate_with_node_count};
+pub use quality::{Quality, Spread};
+pub use settings::{Cuboid, Focus, MeshSettings};
 pub use tet_mesh::{NodeSets, TetMesh};

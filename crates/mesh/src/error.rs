@@ -1,0 +1,90 @@
+//! What can go wrong.
+
+use glam::DVec3;
+
+/// A mesh that can't be made or read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A setting that makes no sense.
+    #[error("`{field}` is {found}, expected {expected}")]
+    Setting {
+        /// The offending field.
+        field: String,
+        /// What was expected.
+        expected: String,
+        /// What was found.
+        found: String,
+    },
+    /// An inclusion that is not a box inside the solid.
+    #[error("inclusion {index} {found}, expected {expected}")]
+    Inclusion {
+        /// Position in the list of inclusions, from 0.
+        index: usize,
+        /// What was expected.
+        expected: String,
+        /// What was found.
+        found: String,
+    },
+    /// The solid names a surface that was not handed over.
+    #[error("the surface `{path}` is not among those loaded")]
+    SurfaceMissing {
+        /// Its path, as the solid names it.
+        path: String,
+    },
+    /// The mesh would be larger than the generator is willing to make.
+    #[error("the mesh would have {found} lattice points, at most {most} are made; increase `edge_mm`")]
+    TooFine {
+        /// Lattice points of the wanted mesh.
+        found: usize,
+        /// The limit.
+        most: usize,
+    },
+    /// No edge length gives the wanted number of nodes.
+    #[error("no mesh with {target} nodes ± 10 %, the nearest has {nearest}")]
+    NodeCount {
+        /// Wanted number of nodes.
+        target: usize,
+        /// Nearest number of nodes that was found.
+        nearest: usize,
+    },
+    /// A tetrahedron without volume, or too flat to compute with.
+    #[error(
+        "tetrahedron {tet} at {center_mm} has a volume of {volume_mm3:.3e} mm³, expected at least {least_mm3:.3e}"
+    )]
+    Degenerate {
+        /// Its index.
+        tet: usize,
+        /// Its centre, mm.
+        center_mm: DVec3,
+        /// Its volume, mm³.
+        volume_mm3: f64,
+        /// The least volume accepted for its size, mm³.
+        least_mm3: f64,
+    },
+    /// Nothing of the solid is left to mesh.
+    #[error("the mesh is empty: {reason}")]
+    Empty {
+        /// Why.
+        reason: String,
+    },
+    /// A mesh file that can't be understood.
+    #[error("mesh file, {place}: expected {expected}, found {found}")]
+    File {
+        /// Where: a line (text) or a byte offset (binary).
+        place: String,
+        /// What was expected.
+        expected: String,
+        /// What was found.
+        found: String,
+    },
+    /// A field to write that does not fit the mesh.
+    #[error("the field `{name}` has {found} values, the mesh needs {expected}")]
+    Field {
+        /// Name of the field.
+        name: String,
+        /// Values needed.
+        expected: usize,
+        /// Values given.
+        found: usize,
+    },
+}

@@ -1,0 +1,96 @@
+//! How fine a mesh is, and where.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::MeshError;
+
+/// Settings of the generator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MeshSettings {
+    /// Edge length away from everything special, mm. Default 1.
+    pub edge_mm: f64,
+    /// Edge length along z at the pressed surface over `edge_mm`, in (0, 1]. Default 1: no grading of its own.
+    pub top_edge_ratio: f64,
+    /// Largest ratio of the lengths of neighbouring edges where the mesh coarsens, in [1.05, 2]. Default 1.25.
+    pub growth: f64,
+    /// Places that need a finer mesh. The lines of the mesh are laid outwards from the centre of the **first** one, the place of
+    /// contact: within its radius the surface pattern depends on its radius and edge length only, not on where it stands, so that
+    /// moving a press does not change its discretisation.
+    pub focuses: Vec<Focus>,
+}
+
+/// A disc, parallel to the board, at which edges are short. They grow by [`MeshSettings::growth`] away from it, along z too.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Focus {
+    /// Centre, mm.
+    pub center_mm: DVec3,
+    /// Radius, mm.
+    pub radius_mm: f64,
+    /// Edge length on the disc, mm.
+    pub edge_mm: f64,
+}
+
+/// A box of something rigid inside the gel, its faces parallel to the axes. What lies outside the solid is ignored.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cuboid {
+    /// Corner with the smallest coordinates, mm.
+    pub min_mm: DVec3,
+    /// Corner with the largest coordinates, mm.
+    pub max_mm: DVec3,
+}
+
+impl Default for MeshSettings {
+    fn default() -> Self {
+        Self {
+            edge_mm: 1.0,
+            top_edge_ratio: 1.0,
+            growth: 1.25,
+            focuses: Vec::new(),
+        }
+    }
+}
+
+impl MeshSettings {
+    /// The same distribution of edge lengths, all of them multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.edge_mm *= factor;
+        for focus in &mut scaled.focuses {
+            focus.edge_mm *= factor;
+        }
+        scaled
+    }
+
+    pub(crate) fn check(&self) -> Result<(), MeshError> {
+        within("edge_mm", self.edge_mm, 1e-4, 1e4)?;
+        within("top_edge_ratio", self.top_edge_ratio, 1e-3, 1.0)?;
+        within("growth", self.growth, 1.05, 2.0)?;
+        for (index, focus) in self.focuses.iter().enumerate() {
+            let name = |field: &str| format!("focuses[{index}].{field}");
+            within(&name("edge_mm"), focus.edge_mm, 1e-4, 1e4)?;
+            within(&name("radius_mm"), focus.radius_mm, 0.0, 1e4)?;
+            within(&name("center_mm"), focus.center_mm.abs().max_element(), 0.0, 1e4)?;
+            if focus.center_mm.is_nan() {
+                return within(&name("center_mm"), f64::NAN, 0.0, 1e4);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Checks that a number lies in a range; NaN does not.
+pub(crate) fn within(field: &str, value: f64, least: f64, most: f64) -> Result<(), MeshError> {
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(MeshError::Setting {
+        field: field.to_owned(),
+        expected: format!("a number from {least} to {most}"),
+        found: value.to_string(),
+    })
+}
