@@ -2,8 +2,13 @@
 //!
 //! A press is the unit of work: a named indenter, a time-stamped pose, and what was measured or simulated meanwhile.
 
+mod check;
+mod error;
+mod import;
 mod press;
 mod provenance;
 
+pub use error::RecordingError;
+pub use import::{FileSummary, Import, ImportSummary};
 pub use press::{Control, Press, Recording};
 pub use provenance::Provenance;

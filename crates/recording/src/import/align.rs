@@ -1,0 +1,45 @@
+//! Brings readings that lag behind onto the clock of the poses.
+
+use super::description::Description;
+use super::track::Track;
+
+/// Reads every taxel at the time of the row plus the taxel's lag, by linear interpolation; drops rows at the ends that have
+/// no reading on both sides of that time. A reading is usable where both its neighbours are.
+pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track {
+    let lags_s: Vec<f64> = description.taxels.iter().map(|taxel| taxel.lag_s).collect();
+    if lags_s.iter().all(|&lag_s| lag_s == 0.0) {
+        return track;
+    }
+    let (Some(&first_s), Some(&last_s)) = (track.time_s.first(), track.time_s.last()) else {
+        return track;
+    };
+    let covered = |&row: &usize| lags_s.iter().all(|lag_s| (first_s..=last_s).contains(&(track.time_s[row] + lag_s)));
+    let rows: Vec<usize> = (0..track.time_s.len()).filter(covered).collect();
+    let mut raw = vec![Vec::with_capacity(lags_s.len()); rows.len()];
+    let mut usable = vec![Vec::with_capacity(lags_s.len()); rows.len()];
+    for (taxel, lag_s) in lags_s.iter().enumerate() {
+        for (to, &row) in rows.iter().enumerate() {
+            let at_s = track.time_s[row] + lag_s;
+            let after = track.time_s.partition_point(|&time_s| time_s < at_s);
+            let before = if track.time_s[after] > at_s { after - 1 } else { after };
+            let span_s = track.time_s[after] - track.time_s[before];
+            let share = if span_s > 0.0 { (at_s - track.time_s[before]) / span_s } else { 0.0 };
+            let (low, high) = (track.raw[before][taxel], track.raw[after][taxel]);
+            raw[to].push(low + share * (high - low));
+            usable[to].push(track.usable[before][taxel] && track.usable[after][taxel]);
+        }
+    }
+    let pick = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
+    Track {
+        lines: rows.iter().map(|&row| track.lines[row]).collect(),
+        time_s: pick(&track.time_s),
+        x_mm: pick(&track.x_mm),
+        y_mm: pick(&track.y_mm),
+        z_mm: pick(&track.z_mm),
+        height_mm: pick(&track.height_mm),
+        force_n: pick(&track.force_n),
+        press: if track.press.is_empty() { Vec::new() } else { pick(&track.press) },
+        raw,
+        usable,
+    }
+}

@@ -1,0 +1,167 @@
+//! What an import description says, field by field.
+
+use serde::Deserialize;
+
+use super::unit::{Force, Length, Pressure, Time, Unit};
+use crate::Provenance;
+
+/// One import description, after the overrides for a file were merged in. [`Import`](super::Import) documents it for users.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Description {
+    pub(crate) sensor: String,
+    pub(crate) provenance: Provenance,
+    pub(crate) indenter: String,
+    #[serde(default = "comma")]
+    pub(crate) delimiter: char,
+    /// Names of the columns of a file without a header line.
+    pub(crate) columns: Option<Vec<String>>,
+    #[serde(default)]
+    pub(crate) drop_rows: usize,
+    #[serde(default)]
+    pub(crate) drop_buffered: bool,
+    pub(crate) gel_top_mm: f64,
+    pub(crate) time: Option<Column<Time>>,
+    #[serde(default)]
+    pub(crate) x: Column<Length>,
+    #[serde(default)]
+    pub(crate) y: Column<Length>,
+    pub(crate) z: Option<Column<Length>>,
+    #[serde(default)]
+    pub(crate) contact: Contact,
+    pub(crate) force: Option<Column<Force>>,
+    /// Weight of a dead weight that rests on the gel, N.
+    pub(crate) weight_n: Option<f64>,
+    pub(crate) readings: Readings,
+    pub(crate) taxels: Vec<Taxel>,
+    pub(crate) presses: Split,
+    pub(crate) zero: Option<Zero>,
+    pub(crate) outliers: Option<Outliers>,
+    /// Kept as tables: they may hold any of the fields above.
+    #[serde(default, rename = "override")]
+    pub(crate) overrides: Vec<toml::Table>,
+}
+
+fn comma() -> char {
+    ','
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A column and the line from its numbers to the project's unit: number × scale / divide_by × unit + offset.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, bound(deserialize = "U: Unit + Deserialize<'de>"))]
+pub(crate) struct Column<U> {
+    /// Without a column the value is the offset, everywhere.
+    pub(crate) column: Option<String>,
+    #[serde(default)]
+    pub(crate) unit: U,
+    #[serde(default = "one")]
+    pub(crate) scale: f64,
+    #[serde(default = "one")]
+    pub(crate) divide_by: f64,
+    /// In the project's unit.
+    #[serde(default)]
+    pub(crate) offset: f64,
+}
+
+impl<U: Unit> Default for Column<U> {
+    fn default() -> Self {
+        Self { column: None, unit: U::default(), scale: 1.0, divide_by: 1.0, offset: 0.0 }
+    }
+}
+
+impl<U: Unit> Column<U> {
+    pub(crate) fn convert(&self, number: f64) -> f64 {
+        number * self.scale / self.divide_by * self.unit.factor() + self.offset
+    }
+}
+
+/// Where the z column's scale meets the gel.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Contact {
+    /// The z at which the tip touches the gel, on the z column's own scale, mm.
+    pub(crate) z_mm: f64,
+    #[serde(default)]
+    pub(crate) z_points: Direction,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Direction {
+    #[default]
+    Up,
+    Down,
+}
+
+/// What holds for the readings of all taxels.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Readings {
+    pub(crate) unit: Pressure,
+    /// Readings outside, in the file's own numbers, cannot be used.
+    #[serde(default = "everything")]
+    pub(crate) usable: [f64; 2],
+}
+
+fn everything() -> [f64; 2] {
+    [f64::NEG_INFINITY, f64::INFINITY]
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Taxel {
+    pub(crate) name: String,
+    pub(crate) column: String,
+    #[serde(default = "one")]
+    pub(crate) scale: f64,
+    #[serde(default)]
+    pub(crate) offset_kpa: f64,
+    /// How much later than the pose of the same row the taxel is to be read.
+    #[serde(default)]
+    pub(crate) lag_s: f64,
+}
+
+/// How presses are told apart.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "split", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Split {
+    /// The tip leaves its rest, at `rest_mm` of the z column's scale, and returns to it.
+    ReturnToRest {
+        #[serde(default)]
+        rest_mm: f64,
+        #[serde(default = "tolerance_mm")]
+        tolerance_mm: f64,
+        /// Most time at rest, in the same place, that is kept before and after.
+        #[serde(default = "one")]
+        keep_rest_s: f64,
+    },
+    /// A column has another number for each press.
+    Column { column: String },
+    /// Every row is a press of its own, static.
+    Row,
+}
+
+fn tolerance_mm() -> f64 {
+    0.005
+}
+
+/// Which frames before the contact are the zero of each press: the last `window_s` before the tip comes closer to the gel
+/// than `above_contact_mm`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Zero {
+    pub(crate) above_contact_mm: f64,
+    pub(crate) window_s: f64,
+}
+
+/// Which static readings are outliers: farther from the median of the neighbours than `jump` of the taxel's largest reading.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Outliers {
+    pub(crate) within_mm: f64,
+    pub(crate) jump: f64,
+}

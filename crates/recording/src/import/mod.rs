@@ -1,0 +1,176 @@
+//! Reads the CSV files of any bench through a description of what their columns mean.
+
+mod align;
+mod buffered;
+mod describe;
+mod description;
+mod outliers;
+mod split;
+mod summary;
+mod table;
+mod track;
+mod unit;
+mod zero;
+
+use std::path::Path;
+
+use description::Description;
+pub use summary::{FileSummary, ImportSummary};
+
+use crate::{Control, Press, Recording, RecordingError};
+use track::Track;
+
+/// How to read the CSV files of one bench: which column means what, in which unit, and how presses are told apart.
+///
+/// ```
+/// let text = r#"
+/// sensor = "my-sensor"            # name of the sensor description
+/// provenance = "real"
+/// indenter = "tip"                # name of the indenter in the sensor description
+/// delimiter = ","                 # the default
+/// # columns = ["t", "z", "p"]     # names the columns of files without a header line
+/// drop_rows = 0                   # rows to leave out at the start of each file, a number ...
+/// drop_buffered = true            # ... and those that come at less than half the usual time step, read from a buffer
+/// gel_top_mm = 6.0                # height of the unloaded gel in its own frame
+///
+/// # A column's number becomes mm, N or s as number * scale / divide_by * unit + offset; without `column`, the offset alone.
+/// time = { column = "t", unit = "ms" }
+/// x = { column = "x", unit = "um", offset = -14.25 }
+/// y = { offset = 0.0 }
+/// z = { column = "z", unit = "mm", divide_by = 480.0 }
+/// contact = { z_mm = 2.08, z_points = "down" }    # the tip touches the gel here, on the z column's scale
+/// # force = { column = "f", unit = "N" }          # measured, or `weight_n = 0.98` for a dead weight
+///
+/// readings = { unit = "Pa", usable = [0.0, 140500.0] }    # numbers outside are marked as not valid
+/// taxels = [
+///     { name = "S0", column = "p", lag_s = 0.112 },       # p(t + lag) belongs to z(t); also scale, offset_kpa
+/// ]
+///
+/// # "return-to-rest": the tip leaves and returns to rest; "column" (with `column = "..."`): a column's number changes;
+/// # "row": each row is a static press.
+/// presses = { split = "return-to-rest", rest_mm = 0.0, tolerance_mm = 0.005, keep_rest_s = 1.0 }
+/// zero = { above_contact_mm = 0.5, window_s = 1.0 }       # zeroes each taxel before each press
+/// # outliers = { within_mm = 0.8, jump = 0.15 }           # static presses: marks what leaps out of its neighbours
+///
+/// [[override]]                    # any of the above, for files whose names match
+/// files = "gelA_*"
+/// contact = { z_mm = 3.5 }
+/// "#;
+/// twintac_recording::Import::parse("my-bench.toml", text)?;
+/// # Ok::<(), twintac_recording::RecordingError>(())
+/// ```
+///
+/// With `return-to-rest`, a press lasts from the tip's leaving its rest to its return, with up to `keep_rest_s` more on both
+/// sides while the tip stands at the same place. A press that is in the gel when its file starts or ends is dropped, and the
+/// summary says so; one that has left the gel when the file ends is kept. A press without a frame to take the zero from is
+/// dropped likewise.
+///
+/// A lagging taxel's readings are interpolated linearly onto the clock of the poses; a reading is valid if both neighbours
+/// are. Rows at the ends of a file that have no such neighbours are dropped.
+#[derive(Clone, Debug)]
+pub struct Import {
+    base: Description,
+    overrides: Vec<describe::Override>,
+    table: toml::Table,
+}
+
+impl Import {
+    /// Reads one CSV file.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, a column is missing, a cell is no finite number, times do not increase, or no presses are found:
+    /// with file, line and column.
+    pub fn read_csv(&self, path: &Path) -> Result<(Recording, ImportSummary), RecordingError> {
+        self.read_all(std::slice::from_ref(&path))
+    }
+
+    /// Reads CSV files of one sensor into one recording, in the order of their paths whatever the order given.
+    ///
+    /// # Errors
+    ///
+    /// As [`read_csv`](Self::read_csv); or the files belong to different sensors, or share a name.
+    pub fn read_all<P: AsRef<Path>>(&self, paths: &[P]) -> Result<(Recording, ImportSummary), RecordingError> {
+        let mut paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
+        paths.sort_unstable();
+        let mut summary = ImportSummary::default();
+        let mut recording: Option<Recording> = None;
+        for path in paths {
+            let description = self.for_file(path)?;
+            let (presses, found) = read_file(path, &description)?;
+            summary.files.push(found);
+            let recording = recording.get_or_insert_with(|| Recording {
+                sensor: description.sensor.clone(),
+                provenance: description.provenance,
+                taxels: description.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+                presses: Vec::new(),
+            });
+            if recording.sensor != description.sensor {
+                return Err(RecordingError::MixedSensors {
+                    file: path.display().to_string(),
+                    expected: recording.sensor.clone(),
+                    found: description.sensor,
+                });
+            }
+            recording.presses.extend(presses);
+        }
+        let recording = recording.ok_or_else(|| RecordingError::Inconsistent {
+            place: "import".to_owned(),
+            problem: "expected at least one file, found none".to_owned(),
+        })?;
+        recording.check()?;
+        Ok((recording, summary))
+    }
+}
+
+fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, FileSummary), RecordingError> {
+    let table = table::Table::read(path, description, &description.column_names())?;
+    let mut summary = FileSummary::new(file_name(path), table.rows());
+    let dropped = buffered::leading_rows(&table, description)?;
+    let track = Track::new(&table, description, dropped)?;
+    summary.rows_dropped = dropped;
+    summary.clipped_readings = track.usable.iter().flatten().filter(|&&usable| !usable).count();
+    let track = align::onto_pose_clock(track, description);
+    summary.rows_dropped = table.rows() - track.time_s.len();
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let mut presses = Vec::new();
+    for (index, span) in split::presses(&track, &description.presses, &mut summary).into_iter().enumerate() {
+        let number = index + 1;
+        let Some(zero_kpa) = zero::before_press(&track, span.clone(), description) else {
+            summary.drop_press(format!("press {number}, from line {}: no frame before the contact to take the zero from", track.lines[span.start]));
+            continue;
+        };
+        let mut press = Press {
+            name: format!("{stem}#{number}"),
+            file: file_name(path),
+            indenter: description.indenter.clone(),
+            control: if description.weight_n.is_some() { Control::Force } else { Control::Pose },
+            time_s: Vec::new(),
+            gel_from_indenter: Vec::new(),
+            force_n: (description.weight_n.is_some() || description.force.is_some()).then(Vec::new),
+            taxels_kpa: Vec::new(),
+            taxels_raw: Vec::new(),
+            valid: Vec::new(),
+        };
+        for frame in span {
+            track.push_frame(frame, &zero_kpa, description, &mut press);
+        }
+        presses.push(press);
+    }
+    if let Some(outliers) = description.outliers {
+        summary.outliers = outliers::mark(&mut presses, outliers);
+    }
+    summary.presses = presses.len();
+    if presses.is_empty() {
+        return Err(RecordingError::NoPresses {
+            file: table.file,
+            rows: summary.rows_read,
+            why: split::explain(&description.presses, &summary),
+        });
+    }
+    Ok((presses, summary))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}

@@ -1,0 +1,97 @@
+//! Units that foreign files may use, and what they are in mm, N, s and kPa.
+
+use serde::Deserialize;
+
+/// A unit of one kind of quantity.
+pub(crate) trait Unit: Copy + Default {
+    /// One of this unit in the project's own unit.
+    fn factor(self) -> f64;
+}
+
+/// Unit of a position.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Length {
+    #[default]
+    Mm,
+    Um,
+    M,
+}
+
+impl Unit for Length {
+    fn factor(self) -> f64 {
+        match self {
+            Self::Mm => 1.0,
+            Self::Um => 1e-3,
+            Self::M => 1e3,
+        }
+    }
+}
+
+/// Unit of a time.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Time {
+    #[default]
+    S,
+    Ms,
+    Us,
+}
+
+impl Unit for Time {
+    fn factor(self) -> f64 {
+        match self {
+            Self::S => 1.0,
+            Self::Ms => 1e-3,
+            Self::Us => 1e-6,
+        }
+    }
+}
+
+/// Unit of a force.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub(crate) enum Force {
+    #[default]
+    N,
+    #[serde(rename = "mN")]
+    Mn,
+    #[serde(rename = "kgf")]
+    Kgf,
+}
+
+impl Unit for Force {
+    fn factor(self) -> f64 {
+        match self {
+            Self::N => 1.0,
+            Self::Mn => 1e-3,
+            Self::Kgf => 9.806_65,
+        }
+    }
+}
+
+/// Unit of a reading.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub(crate) enum Pressure {
+    #[default]
+    #[serde(rename = "kPa")]
+    Kpa,
+    Pa,
+    #[serde(rename = "hPa")]
+    Hpa,
+    #[serde(rename = "bar")]
+    Bar,
+    #[serde(rename = "psi")]
+    Psi,
+}
+
+impl Unit for Pressure {
+    fn factor(self) -> f64 {
+        match self {
+            Self::Kpa => 1.0,
+            Self::Pa => 1e-3,
+            Self::Hpa => 0.1,
+            Self::Bar => 100.0,
+            Self::Psi => 6.894_757_293_168,
+        }
+    }
+}
