@@ -179,7 +179,7 @@ pub(crate) fn short(value: f64) -> String {
     let power = value.abs().log10().floor();
     if !(-3.0..6.0).contains(&power) {
         let head = value / 10f64.powf(power);
-        return format!("{}·10{}", trimmed(&fixed(head, 1)), superscript(power as i32));
+        return format!("{}e{}", trimmed(&fixed(head, 1)), fixed(power, 0));
     }
     trimmed(&fixed(value, (2.0 - power).max(0.0) as usize)).to_owned()
 }
@@ -190,18 +190,6 @@ fn trimmed(text: &str) -> &str {
     } else {
         text
     }
-}
-
-/// Raised digits. The embedded font has them all.
-fn superscript(power: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let digits = power
-        .abs()
-        .to_string()
-        .bytes()
-        .map(|digit| DIGITS[usize::from(digit - b'0')])
-        .collect::<String>();
-    if power < 0 { format!("⁻{digits}") } else { digits }
 }
 
 #[cfg(test)]
@@ -234,7 +222,7 @@ mod tests {
         assert_eq!(fixed(f64::NAN, 1), "–");
         assert_eq!(short(36000.0), "36000");
         assert_eq!(short(0.0075), "0.0075");
-        assert_eq!(short(1.3e-9), "1.3·10⁻⁹");
+        assert_eq!(short(1.3e-9), "1.3e−9");
         assert_eq!(short(0.0), "0");
     }
 

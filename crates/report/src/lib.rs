@@ -2,6 +2,7 @@
 
 mod axis;
 mod color;
+pub mod data;
 mod error;
 mod file;
 mod font;
@@ -9,11 +10,14 @@ pub mod plot;
 mod pressure_map;
 mod raster;
 mod scene;
+pub mod sensor_drawing;
 mod svg;
 
 pub use color::{Ink, PALETTE, viridis};
+pub use data::{Provenance, ReportData};
 pub use error::ReportError;
 pub use pressure_map::{MapSettings, PressureMap, Rectangle, Weights, pitch_mm, pressure_map};
 pub use raster::png;
 pub use scene::{Anchor, Mark, Scene};
+pub use sensor_drawing::SensorDrawing;
 pub use svg::svg;
