@@ -11,7 +11,12 @@
 //! assert_eq!(error.to_string(), "gel.toml:2: `height_mm` is -1 mm; give a height above zero");
 //! ```
 
+mod place;
+
+use std::path::Path;
+
 use serde::de::DeserializeOwned;
+use toml::de::DeTable;
 
 /// A parsed file together with its text, so that later findings can name the line.
 #[derive(Clone, Debug)]
@@ -25,13 +30,14 @@ pub struct Document<T> {
 
 /// One thing wrong in one file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}:{line}: `{field}` {problem}; {hint}")]
+#[error("{}: {}{problem}; {hint}", self.place(), self.subject())]
 pub struct ConfigError {
     /// The file as the user named it.
     pub file: String,
-    /// Line, from 1.
+    /// Line, from 1; 0 if the file as a whole could not be read.
     pub line: usize,
-    /// Dotted path of the field, with array indices from 0: `taxels[3].x_mm`.
+    /// Dotted path of the field, with array indices from 0: `taxels[3].x_mm`. Text that is not TOML stands for itself; empty if the
+    /// file as a whole could not be read.
     pub field: String,
     /// What is wrong, read after the field's name.
     pub problem: String,
@@ -39,16 +45,104 @@ pub struct ConfigError {
     pub hint: String,
 }
 
-/// Parses a TOML text. Unknown fields, wrong types and missing fields come back with their line.
+impl ConfigError {
+    fn place(&self) -> String {
+        if self.line == 0 {
+            self.file.clone()
+        } else {
+            format!("{}:{}", self.file, self.line)
+        }
+    }
+
+    fn subject(&self) -> String {
+        if self.field.is_empty() {
+            String::new()
+        } else {
+            format!("`{}` ", self.field)
+        }
+    }
+}
+
+/// Parses a TOML text that `file` names in errors.
+///
+/// # Errors
+/// Text that is not TOML, unknown and missing fields, wrong types, and numbers that are not finite (`nan`, `inf`, `1e999`).
 pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<Document<T>, ConfigError> {
-    let _ = (file, text);
-    unimplemented!("written by the owner of this crate")
+    let error = |line: usize, field: String, problem: String, hint: &str| ConfigError {
+        file: file.to_owned(),
+        line,
+        field,
+        problem,
+        hint: hint.to_owned(),
+    };
+    let table = DeTable::parse(text).map_err(|found| {
+        let start = found.span().map_or(0, |span| span.start);
+        let line = place::line_of(text, start);
+        let source = text.lines().nth(line - 1).unwrap_or_default().trim().to_owned();
+        error(
+            line,
+            source,
+            format!("is not TOML: {}", found.message()),
+            "correct the line",
+        )
+    })?;
+    if let Some((span, field, number)) = place::not_finite(table.get_ref()) {
+        let line = place::line_of(text, span.start);
+        return Err(error(line, field, format!("is {number}"), "give a finite number"));
+    }
+    let value = toml::from_str::<T>(text).map_err(|found| {
+        let (line, field) = place::of_serde_error(text, table.get_ref(), &found);
+        error(
+            line,
+            field,
+            format!("does not fit: {}", found.message()),
+            "correct the name or the value",
+        )
+    })?;
+    Ok(Document {
+        value,
+        file: file.to_owned(),
+        text: text.to_owned(),
+    })
+}
+
+/// Reads and parses a TOML file; errors name it by its path.
+///
+/// # Errors
+/// Those of [`parse`], and a file that cannot be read or is not UTF-8 (with line 0).
+pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<Document<T>, ConfigError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    match std::fs::read_to_string(path) {
+        Ok(text) => parse(&file, &text),
+        Err(found) => Err(ConfigError {
+            file,
+            line: 0,
+            field: String::new(),
+            problem: format!("cannot be read: {found}"),
+            hint: "give the path of a readable TOML file".to_owned(),
+        }),
+    }
 }
 
 impl<T> Document<T> {
     /// Reports a problem with a field at the field's own line (or its nearest existing parent's).
     pub fn error(&self, field: &str, problem: impl Into<String>, hint: impl Into<String>) -> ConfigError {
-        let _ = (field, problem.into(), hint.into(), &self.text);
-        unimplemented!("written by the owner of this crate")
+        let start = DeTable::parse(&self.text)
+            .ok()
+            .and_then(|table| place::of_field(table.get_ref(), field).0);
+        ConfigError {
+            file: self.file.clone(),
+            line: place::line_of(&self.text, start.unwrap_or(0)),
+            field: field.to_owned(),
+            problem: problem.into(),
+            hint: hint.into(),
+        }
+    }
+
+    /// Whether the file itself has this field, as opposed to leaving it to a default.
+    #[must_use]
+    pub fn has(&self, field: &str) -> bool {
+        DeTable::parse(&self.text).is_ok_and(|table| place::of_field(table.get_ref(), field).1)
     }
 }
