@@ -1,0 +1,90 @@
+//! The result in plain words, at the top of the page.
+
+use std::fmt::Write as _;
+
+use super::elements::percent;
+use crate::data::{Headline, PAPER_ERROR_PERCENT, Provenance, ReferenceKind, ReportData};
+use crate::svg::escape;
+
+/// One or two paragraphs and the warnings.
+pub(super) fn paragraphs(data: &ReportData) -> String {
+    let mut out = String::new();
+    if let Some(headline) = &data.headline {
+        let _ = writeln!(out, "<p class=\"lead\">{}</p>", escape(&result(headline, data.provenance)));
+        let _ = writeln!(out, "<p>{}</p>", escape(&comparison(headline)));
+    }
+    if !data.warnings.is_empty() {
+        out.push_str("<aside class=\"warnings\" role=\"note\"><b>Before you trust a number</b><ul>\n");
+        for warning in &data.warnings {
+            let _ = writeln!(out, "<li>{}</li>", escape(warning));
+        }
+        out.push_str("</ul></aside>\n");
+    }
+    out
+}
+
+fn result(headline: &Headline, provenance: Provenance) -> String {
+    let presses = match headline.presses {
+        1 => "1 press that it never saw".to_owned(),
+        count => format!("{count} presses that it never saw"),
+    };
+    let source = match provenance {
+        Provenance::Real => "real data",
+        Provenance::Emulated => "emulated data, which says nothing about a physical sensor",
+        Provenance::Simulated => "simulated data, which says nothing about a physical sensor",
+    };
+    if !headline.nearest_in_contact_percent.is_finite() {
+        return format!("No error could be computed for the {presses} ({source}).");
+    }
+    let error = percent(headline.nearest_in_contact_percent);
+    format!("The twin predicts the nearest taxel’s reading on {presses} with {error} error ({source}).")
+}
+
+fn comparison(headline: &Headline) -> String {
+    let mut sentences = Vec::new();
+    if headline.all_percent.is_finite() {
+        sentences.push(format!(
+            "Over all taxels and all frames the error is {}.",
+            percent(headline.all_percent)
+        ));
+    }
+    let known = |kind: ReferenceKind| {
+        headline.references.iter().filter(move |reference| {
+            reference.kind == kind && reference.nearest_in_contact_percent.is_finite()
+        })
+    };
+    let baselines: Vec<String> = known(ReferenceKind::Baseline)
+        .map(|reference| format!("{} {}", reference.name, percent(reference.nearest_in_contact_percent)))
+        .collect();
+    if !baselines.is_empty() {
+        sentences.push(format!("Simpler predictors of the same readings: {}.", baselines.join(", ")));
+    }
+    for floor in known(ReferenceKind::Floor) {
+        sentences.push(format!(
+            "The sensor repeats itself to within {}, and no twin can be closer than that.",
+            percent(floor.nearest_in_contact_percent)
+        ));
+    }
+    sentences.push(format!(
+        "The paper reports {} for its own sensor and protocol, so the two are neighbours, not rivals.",
+        percent(PAPER_ERROR_PERCENT)
+    ));
+    sentences.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lead_says_who_how_many_and_how_well() {
+        let headline = Headline { presses: 12, nearest_in_contact_percent: 1.3, ..Headline::default() };
+        assert_eq!(
+            result(&headline, Provenance::Real),
+            "The twin predicts the nearest taxel’s reading on 12 presses that it never saw with 1.30 % error (real data)."
+        );
+        assert!(result(&headline, Provenance::Emulated).contains("nothing about a physical sensor"));
+        let unknown = Headline { nearest_in_contact_percent: f64::NAN, ..headline };
+        assert!(result(&unknown, Provenance::Real).starts_with("No error could be computed"));
+    }
+}
