@@ -78,13 +78,13 @@ pub enum MeshError {
         found: String,
     },
     /// A field to write that does not fit the mesh.
-    #[error("the field `{name}` has {found} values, the mesh needs {expected}")]
+    #[error("the field `{name}` has {found} values, expected {expected} finite ones")]
     Field {
         /// Name of the field.
         name: String,
         /// Values needed.
         expected: usize,
         /// Values given.
-        found: usize,
+        found: String,
     },
 }

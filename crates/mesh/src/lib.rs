@@ -5,13 +5,16 @@ mod boundary;
 mod error;
 mod footprint;
 mod generate;
+pub mod gmsh;
 mod grid;
 mod lattice;
 mod locate;
 mod quality;
 mod settings;
 mod size;
+pub mod stl;
 mod tet_mesh;
+pub mod vtk;
 
 pub use error::MeshError;
 pub use generate::{generate, generate_with_node_count};

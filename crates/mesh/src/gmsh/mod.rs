@@ -1,0 +1,16 @@
+//! Gmsh's `.msh` files, as Gmsh and fTetWild write them.
+//!
+//! Read are versions 2.2 and 4.1, text and binary of either byte order. Kept are tetrahedra (of those with ten nodes the corners)
+//! and the nodes that they use. Formats: Gmsh reference manual, section "MSH file format" (4.1) and "Legacy formats" (2.2).
+
+mod assemble;
+mod elements;
+mod input;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::write;
+
+/// Name of the node data that tells bonded nodes (1) from others (0).
+const BONDED: &str = "bonded";
