@@ -4,12 +4,23 @@
 //! indenter that touches a flat gel first, and z pointing up, away from the gel: the untilted sphere of radius `r` has its
 //! centre at `(0, 0, r)`.
 
+mod block;
+mod bvh;
+mod cavity;
+mod dome;
 mod pose;
+mod prism;
+mod profile;
 mod shape;
 mod signed_distance;
 mod solid;
+mod stl;
+mod surface;
 
+pub use cavity::Cavity;
+pub use dome::Dome;
 pub use pose::Pose;
 pub use shape::{Shape, ShapeError};
 pub use signed_distance::{Distance, SignedDistance};
-pub use solid::{Dome, Solid};
+pub use solid::Solid;
+pub use surface::{SurfaceError, Surfaces, TriangleSurface};

@@ -1,9 +1,17 @@
 //! The rigid shapes that press.
 
+use std::f64::consts::{FRAC_PI_4, PI};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A rigid indenter. `edge_radius_mm` rounds every convex edge without changing the outer size.
-/// Prismatic shapes have their profile in the xy plane and stand on z = 0, `height_mm` tall.
+use crate::prism::{Placement, Prism, Union};
+use crate::profile::Profile;
+use crate::{Distance, SignedDistance, Surfaces, TriangleSurface};
+
+/// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp shape is made smaller by the radius and
+/// then grown by it in all directions. Prismatic shapes have their profile in the xy plane and stand on z = 0, `height_mm` tall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Shape {
@@ -87,4 +95,290 @@ pub struct ShapeError {
     pub found: String,
     /// What was expected.
     pub expected: String,
+}
+
+impl ShapeError {
+    pub(crate) fn new(field: &str, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self {
+            field: field.to_owned(),
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+}
+
+/// A length that has to be there.
+pub(crate) fn above_zero(field: &str, found: f64) -> Result<(), ShapeError> {
+    if found > 0.0 && found.is_finite() {
+        return Ok(());
+    }
+    Err(ShapeError::new(field, found.to_string(), "a number above 0"))
+}
+
+/// A number within limits, which are allowed.
+pub(crate) fn between(field: &str, found: f64, least: f64, most: f64) -> Result<(), ShapeError> {
+    if (least..=most).contains(&found) {
+        return Ok(());
+    }
+    Err(ShapeError::new(
+        field,
+        found.to_string(),
+        format!("{least} to {most}"),
+    ))
+}
+
+/// A rounding that leaves something of each of these half widths.
+fn rounding(found: f64, half_widths_mm: &[f64]) -> Result<(), ShapeError> {
+    let most = half_widths_mm.iter().copied().fold(f64::INFINITY, f64::min);
+    if found >= 0.0 && found < most {
+        return Ok(());
+    }
+    Err(ShapeError::new(
+        "edge_radius_mm",
+        found.to_string(),
+        format!("at least 0 and less than {most}"),
+    ))
+}
+
+impl Shape {
+    /// Whether there can be such a shape.
+    ///
+    /// # Errors
+    /// The first field whose value is out of range.
+    pub fn validate(&self) -> Result<(), ShapeError> {
+        match *self {
+            Self::Sphere { radius_mm } => above_zero("radius_mm", radius_mm),
+            Self::Cylinder {
+                radius_mm,
+                height_mm,
+                edge_radius_mm,
+            } => {
+                above_zero("radius_mm", radius_mm)?;
+                above_zero("height_mm", height_mm)?;
+                rounding(edge_radius_mm, &[radius_mm, 0.5 * height_mm])
+            }
+            Self::Box {
+                size_mm,
+                edge_radius_mm,
+            } => {
+                for (axis, size) in size_mm.iter().enumerate() {
+                    above_zero(&format!("size_mm[{axis}]"), *size)?;
+                }
+                rounding(edge_radius_mm, &size_mm.map(|size| 0.5 * size))
+            }
+            Self::X {
+                length_mm,
+                width_mm,
+                height_mm,
+                edge_radius_mm,
+            } => {
+                above_zero("width_mm", width_mm)?;
+                above_zero("height_mm", height_mm)?;
+                if length_mm <= width_mm || !length_mm.is_finite() {
+                    let expected = format!("more than the width of {width_mm}");
+                    return Err(ShapeError::new("length_mm", length_mm.to_string(), expected));
+                }
+                rounding(edge_radius_mm, &[0.5 * width_mm, 0.5 * height_mm])
+            }
+            Self::Ring {
+                outer_radius_mm,
+                inner_radius_mm,
+                height_mm,
+                edge_radius_mm,
+            } => {
+                above_zero("inner_radius_mm", inner_radius_mm)?;
+                above_zero("height_mm", height_mm)?;
+                if outer_radius_mm <= inner_radius_mm || !outer_radius_mm.is_finite() {
+                    let expected = format!("more than the inner radius of {inner_radius_mm}");
+                    return Err(ShapeError::new(
+                        "outer_radius_mm",
+                        outer_radius_mm.to_string(),
+                        expected,
+                    ));
+                }
+                rounding(
+                    edge_radius_mm,
+                    &[0.5 * (outer_radius_mm - inner_radius_mm), 0.5 * height_mm],
+                )
+            }
+            Self::Triangle {
+                side_mm,
+                height_mm,
+                edge_radius_mm,
+            } => {
+                above_zero("side_mm", side_mm)?;
+                above_zero("height_mm", height_mm)?;
+                rounding(edge_radius_mm, &[side_mm / INRADIUS_TO_SIDE, 0.5 * height_mm])
+            }
+            Self::Wedge {
+                angle_rad,
+                length_mm,
+                height_mm,
+                edge_radius_mm,
+            } => {
+                if !(angle_rad > 0.0 && angle_rad < PI) {
+                    return Err(ShapeError::new(
+                        "angle_rad",
+                        angle_rad.to_string(),
+                        "more than 0 and less than π",
+                    ));
+                }
+                above_zero("length_mm", length_mm)?;
+                above_zero("height_mm", height_mm)?;
+                rounding(edge_radius_mm, &[0.5 * length_mm, 0.5 * height_mm])
+            }
+            Self::Stl { ref path } if path.is_empty() => {
+                Err(ShapeError::new("path", "empty", "the path of an STL file"))
+            }
+            Self::Stl { .. } => Ok(()),
+        }
+    }
+
+    /// The shape as a signed distance, exact everywhere but inside the crossing of an X, with its origin at the point of first touch
+    /// (for triangle surfaces: at the height of their lowest point).
+    ///
+    /// # Errors
+    /// Those of [`Shape::validate`], and an STL file that is not among the surfaces.
+    pub fn signed_distance_field(&self, surfaces: &Surfaces) -> Result<Box<dyn SignedDistance>, ShapeError> {
+        self.validate()?;
+        let upright = |profile: Profile, height_mm: f64, radius_mm: f64| Prism {
+            profile,
+            half_length_mm: 0.5 * height_mm - radius_mm,
+            radius_mm,
+            placement: Placement::Upright { turn_rad: 0.0 },
+        };
+        Ok(match *self {
+            Self::Sphere { radius_mm } => Box::new(Ball { radius_mm }),
+            Self::Cylinder {
+                radius_mm,
+                height_mm,
+                edge_radius_mm: edge,
+            } => Box::new(upright(
+                Profile::Disc {
+                    radius_mm: radius_mm - edge,
+                },
+                height_mm,
+                edge,
+            )),
+            Self::Box {
+                size_mm: [x, y, z],
+                edge_radius_mm: edge,
+            } => {
+                let half = DVec2::new(0.5 * x - edge, 0.5 * y - edge);
+                Box::new(upright(Profile::rectangle(half), z, edge))
+            }
+            Self::X {
+                length_mm,
+                width_mm,
+                height_mm,
+                edge_radius_mm: edge,
+            } => {
+                let half = DVec2::new(0.5 * length_mm - edge, 0.5 * width_mm - edge);
+                let bar = |turn_rad: f64| Prism {
+                    placement: Placement::Upright { turn_rad },
+                    ..upright(Profile::rectangle(half), height_mm, edge)
+                };
+                Box::new(Union(vec![bar(FRAC_PI_4), bar(-FRAC_PI_4)]))
+            }
+            Self::Ring {
+                outer_radius_mm,
+                inner_radius_mm,
+                height_mm,
+                edge_radius_mm: edge,
+            } => {
+                let profile = Profile::Annulus {
+                    inner_radius_mm: inner_radius_mm + edge,
+                    outer_radius_mm: outer_radius_mm - edge,
+                };
+                Box::new(upright(profile, height_mm, edge))
+            }
+            Self::Triangle {
+                side_mm,
+                height_mm,
+                edge_radius_mm: edge,
+            } => {
+                let corner_mm = 2.0 * (side_mm / INRADIUS_TO_SIDE - edge);
+                let corner = |third: f64| corner_mm * DVec2::from_angle(third * 2.0 * PI / 3.0);
+                let corners_mm = [0.0, 1.0, 2.0].map(corner).to_vec();
+                Box::new(upright(Profile::Convex { corners_mm }, height_mm, edge))
+            }
+            Self::Wedge {
+                angle_rad,
+                length_mm,
+                height_mm,
+                edge_radius_mm: edge,
+            } => {
+                let top_mm = height_mm - edge;
+                let half_mm = (top_mm - edge) * (0.5 * angle_rad).tan();
+                let corners_mm = vec![
+                    DVec2::new(0.0, edge),
+                    DVec2::new(half_mm, top_mm),
+                    DVec2::new(-half_mm, top_mm),
+                ];
+                Box::new(Prism {
+                    profile: Profile::Convex { corners_mm },
+                    half_length_mm: 0.5 * length_mm - edge,
+                    radius_mm: edge,
+                    placement: Placement::Lying,
+                })
+            }
+            Self::Stl { ref path } => {
+                let surface = surfaces.get(path).ok_or_else(|| {
+                    ShapeError::new(
+                        "path",
+                        format!("`{path}`, which is not loaded"),
+                        "an STL file of this description",
+                    )
+                })?;
+                Box::new(Lowered {
+                    surface: Arc::clone(surface),
+                })
+            }
+        })
+    }
+}
+
+/// Side of an equilateral triangle over the radius of its inner circle, `2 √3`.
+const INRADIUS_TO_SIDE: f64 = 3.464_101_615_137_754_6;
+
+struct Ball {
+    radius_mm: f64,
+}
+
+impl SignedDistance for Ball {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        let from_center = point_mm - DVec3::Z * self.radius_mm;
+        let length_mm = from_center.length();
+        let gradient = if length_mm > f64::MIN_POSITIVE {
+            from_center / length_mm
+        } else {
+            -DVec3::Z
+        };
+        Distance {
+            distance_mm: length_mm - self.radius_mm,
+            gradient,
+        }
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        let half = DVec3::splat(self.radius_mm);
+        (-half.with_z(0.0), half.with_z(2.0 * self.radius_mm))
+    }
+}
+
+/// A triangle surface moved along z until its lowest point is at 0.
+struct Lowered {
+    surface: Arc<TriangleSurface>,
+}
+
+impl SignedDistance for Lowered {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        let lowest_mm = self.surface.bounds_mm().0.z;
+        self.surface.signed_distance(point_mm + DVec3::Z * lowest_mm)
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        let (low, high) = self.surface.bounds_mm();
+        (low.with_z(0.0), high.with_z(high.z - low.z))
+    }
 }

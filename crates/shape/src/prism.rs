@@ -1,0 +1,155 @@
+//! Profiles with a thickness and rounded edges.
+
+use glam::{DVec2, DVec3};
+
+use crate::profile::{PlaneDistance, Profile};
+use crate::{Distance, SignedDistance};
+
+/// A profile, extruded to both sides of its plane and then grown by a radius in all directions. What is wanted round is made
+/// smaller by the radius first.
+#[derive(Clone, Debug)]
+pub(crate) struct Prism {
+    pub(crate) profile: Profile,
+    pub(crate) half_length_mm: f64,
+    pub(crate) radius_mm: f64,
+    pub(crate) placement: Placement,
+}
+
+/// How a prism lies in its shape's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Placement {
+    /// The profile lies in the xy plane, turned about z by an angle; the prism stands on z = 0.
+    Upright { turn_rad: f64 },
+    /// The profile's plane is xz; the prism is centred on y = 0.
+    Lying,
+}
+
+impl Prism {
+    fn center_z_mm(&self) -> f64 {
+        self.half_length_mm + self.radius_mm
+    }
+}
+
+impl SignedDistance for Prism {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        match self.placement {
+            Placement::Upright { turn_rad } => {
+                let turn = DVec2::from_angle(turn_rad);
+                let inner = DVec2::new(turn.x, -turn.y).rotate(point_mm.truncate());
+                let height_mm = point_mm.z - self.center_z_mm();
+                let found = extrude(
+                    self.profile.signed_distance(inner),
+                    slab(height_mm, self.half_length_mm),
+                );
+                let gradient = turn.rotate(found.gradient.truncate()).extend(found.gradient.z);
+                Distance {
+                    distance_mm: found.distance_mm - self.radius_mm,
+                    gradient,
+                }
+            }
+            Placement::Lying => {
+                let inner = DVec2::new(point_mm.x, point_mm.z);
+                let found = extrude(
+                    self.profile.signed_distance(inner),
+                    slab(point_mm.y, self.half_length_mm),
+                );
+                let DVec3 { x, y, z } = found.gradient;
+                Distance {
+                    distance_mm: found.distance_mm - self.radius_mm,
+                    gradient: DVec3::new(x, z, y),
+                }
+            }
+        }
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        let (low, high) = self.profile.bounds_mm();
+        let reach_mm = self.half_length_mm + self.radius_mm;
+        let (low, high) = match self.placement {
+            Placement::Upright { turn_rad } => {
+                let turn = DVec2::from_angle(turn_rad);
+                let half = 0.5 * (high - low);
+                let middle = turn.rotate(0.5 * (low + high));
+                let turned = DVec2::new(
+                    (turn.x * half.x).abs() + (turn.y * half.y).abs(),
+                    (turn.y * half.x).abs() + (turn.x * half.y).abs(),
+                ) + DVec2::splat(self.radius_mm);
+                (
+                    (middle - turned).extend(0.0),
+                    (middle + turned).extend(2.0 * reach_mm),
+                )
+            }
+            Placement::Lying => {
+                let (low, high) = (low - self.radius_mm, high + self.radius_mm);
+                (
+                    DVec3::new(low.x, -reach_mm, low.y),
+                    DVec3::new(high.x, reach_mm, high.y),
+                )
+            }
+        };
+        (low, high)
+    }
+}
+
+/// Distance to a slab of the given half thickness about 0 and the sign of its gradient.
+fn slab(height_mm: f64, half_mm: f64) -> (f64, f64) {
+    (
+        height_mm.abs() - half_mm,
+        if height_mm > 0.0 { 1.0 } else { -1.0 },
+    )
+}
+
+/// Distance to the common part of a cylinder set (any profile, extruded along z without end) and a set between levels. Exact, as the
+/// two are orthogonal.
+pub(crate) fn extrude(profile: PlaneDistance, (level_mm, level_sign): (f64, f64)) -> Distance {
+    let aside = profile.gradient.extend(0.0);
+    let along = DVec3::Z * level_sign;
+    if profile.distance_mm > 0.0 && level_mm > 0.0 {
+        let distance_mm = profile.distance_mm.hypot(level_mm);
+        let gradient =
+            (aside * (profile.distance_mm / distance_mm) + along * (level_mm / distance_mm)).normalize();
+        Distance {
+            distance_mm,
+            gradient,
+        }
+    } else if profile.distance_mm > level_mm {
+        Distance {
+            distance_mm: profile.distance_mm,
+            gradient: aside,
+        }
+    } else {
+        Distance {
+            distance_mm: level_mm,
+            gradient: along,
+        }
+    }
+}
+
+/// Several shapes as one: exact outside; inside, where they overlap, it is the larger depth of theirs, never more than the true one.
+pub(crate) struct Union(pub(crate) Vec<Prism>);
+
+impl SignedDistance for Union {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        let nothing = Distance {
+            distance_mm: f64::INFINITY,
+            gradient: DVec3::Z,
+        };
+        self.0
+            .iter()
+            .map(|part| part.signed_distance(point_mm))
+            .fold(nothing, |closest, next| {
+                if next.distance_mm < closest.distance_mm {
+                    next
+                } else {
+                    closest
+                }
+            })
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        self.0.iter().map(SignedDistance::bounds_mm).fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), (part_low, part_high)| (low.min(part_low), high.max(part_high)),
+        )
+    }
+}
