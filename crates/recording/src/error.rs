@@ -70,7 +70,9 @@ pub enum RecordingError {
         why: String,
     },
     /// Files that were to become one recording do not belong together.
-    #[error("{file} belongs to sensor `{found}`, the files before it to `{expected}`; import each sensor on its own")]
+    #[error(
+        "{file} belongs to sensor `{found}`, the files before it to `{expected}`; import each sensor on its own"
+    )]
     MixedSensors {
         /// The file as the user named it.
         file: String,
@@ -99,10 +101,16 @@ pub enum RecordingError {
 
 impl RecordingError {
     pub(crate) fn read(file: &Path, source: std::io::Error) -> Self {
-        Self::Read { file: file.display().to_string(), source }
+        Self::Read {
+            file: file.display().to_string(),
+            source,
+        }
     }
 
     pub(crate) fn write(file: &Path, source: std::io::Error) -> Self {
-        Self::Write { file: file.display().to_string(), source }
+        Self::Write {
+            file: file.display().to_string(),
+            source,
+        }
     }
 }

@@ -7,6 +7,7 @@ mod error;
 mod import;
 mod press;
 mod provenance;
+mod store;
 
 pub use error::RecordingError;
 pub use import::{FileSummary, Import, ImportSummary};

@@ -28,10 +28,19 @@ pub enum Control {
     Force,
 }
 
+impl std::fmt::Display for Control {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Pose => "pose",
+            Self::Force => "force",
+        })
+    }
+}
+
 /// One press. All per-frame vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Press {
-    /// Unique in its recording: `<file stem>#<number>`.
+    /// Unique in its recording: `<file stem>#<number>`, the number from 1.
     pub name: String,
     /// Name of the file that it was read from, without folders.
     pub file: String,

@@ -13,7 +13,11 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
     let (Some(&first_s), Some(&last_s)) = (track.time_s.first(), track.time_s.last()) else {
         return track;
     };
-    let covered = |&row: &usize| lags_s.iter().all(|lag_s| (first_s..=last_s).contains(&(track.time_s[row] + lag_s)));
+    let covered = |&row: &usize| {
+        lags_s
+            .iter()
+            .all(|lag_s| (first_s..=last_s).contains(&(track.time_s[row] + lag_s)))
+    };
     let rows: Vec<usize> = (0..track.time_s.len()).filter(covered).collect();
     let mut raw = vec![Vec::with_capacity(lags_s.len()); rows.len()];
     let mut usable = vec![Vec::with_capacity(lags_s.len()); rows.len()];
@@ -21,9 +25,17 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
         for (to, &row) in rows.iter().enumerate() {
             let at_s = track.time_s[row] + lag_s;
             let after = track.time_s.partition_point(|&time_s| time_s < at_s);
-            let before = if track.time_s[after] > at_s { after - 1 } else { after };
+            let before = if track.time_s[after] > at_s {
+                after - 1
+            } else {
+                after
+            };
             let span_s = track.time_s[after] - track.time_s[before];
-            let share = if span_s > 0.0 { (at_s - track.time_s[before]) / span_s } else { 0.0 };
+            let share = if span_s > 0.0 {
+                (at_s - track.time_s[before]) / span_s
+            } else {
+                0.0
+            };
             let (low, high) = (track.raw[before][taxel], track.raw[after][taxel]);
             raw[to].push(low + share * (high - low));
             usable[to].push(track.usable[before][taxel] && track.usable[after][taxel]);
@@ -38,7 +50,11 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
         z_mm: pick(&track.z_mm),
         height_mm: pick(&track.height_mm),
         force_n: pick(&track.force_n),
-        press: if track.press.is_empty() { Vec::new() } else { pick(&track.press) },
+        press: if track.press.is_empty() {
+            Vec::new()
+        } else {
+            pick(&track.press)
+        },
         raw,
         usable,
     }

@@ -27,7 +27,10 @@ pub(crate) fn leading_rows(table: &Table, description: &Description) -> Result<u
     };
     let is_usual = |&step: &f64| step >= 0.5 * median;
     let window = SETTLED_STEPS.min(steps.len());
-    match steps.windows(window).position(|window| window.iter().all(is_usual)) {
+    match steps
+        .windows(window)
+        .position(|window| window.iter().all(is_usual))
+    {
         Some(0) => Ok(dropped),
         Some(buffered) => Ok(dropped + buffered + 1),
         None => Err(RecordingError::NoPresses {
@@ -62,7 +65,10 @@ mod tests {
         let rows: String = times.iter().map(|time| format!("{time}\n")).collect();
         std::fs::write(&path, format!("t\n{rows}")).unwrap();
         let description = import.for_file(&path).unwrap();
-        leading_rows(&Table::read(&path, &description, &description.column_names()).unwrap(), &description)
+        leading_rows(
+            &Table::read(&path, &description, &description.column_names()).unwrap(),
+            &description,
+        )
     }
 
     fn times(steps: impl IntoIterator<Item = f64>) -> Vec<f64> {
@@ -87,7 +93,10 @@ mod tests {
 
     #[test]
     fn keeps_hasty_rows_later_on() {
-        assert_eq!(dropped(&times([[0.06; 100].as_slice(), &[0.01], &[0.06; 100]].concat())).unwrap(), 0);
+        assert_eq!(
+            dropped(&times([[0.06; 100].as_slice(), &[0.01], &[0.06; 100]].concat())).unwrap(),
+            0
+        );
     }
 
     #[test]

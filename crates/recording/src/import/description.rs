@@ -69,7 +69,13 @@ pub(crate) struct Column<U> {
 
 impl<U: Unit> Default for Column<U> {
     fn default() -> Self {
-        Self { column: None, unit: U::default(), scale: 1.0, divide_by: 1.0, offset: 0.0 }
+        Self {
+            column: None,
+            unit: U::default(),
+            scale: 1.0,
+            divide_by: 1.0,
+            offset: 0.0,
+        }
     }
 }
 

@@ -28,18 +28,18 @@ use track::Track;
 /// provenance = "real"
 /// indenter = "tip"                # name of the indenter in the sensor description
 /// delimiter = ","                 # the default
-/// # columns = ["t", "z", "p"]     # names the columns of files without a header line
+/// ## columns = ["t", "z", "p"]     # names the columns of files without a header line
 /// drop_rows = 0                   # rows to leave out at the start of each file, a number ...
 /// drop_buffered = true            # ... and those that come at less than half the usual time step, read from a buffer
 /// gel_top_mm = 6.0                # height of the unloaded gel in its own frame
 ///
-/// # A column's number becomes mm, N or s as number * scale / divide_by * unit + offset; without `column`, the offset alone.
+/// ## A column's number becomes mm, N or s as number * scale / divide_by * unit + offset; without `column`, the offset alone.
 /// time = { column = "t", unit = "ms" }
 /// x = { column = "x", unit = "um", offset = -14.25 }
 /// y = { offset = 0.0 }
 /// z = { column = "z", unit = "mm", divide_by = 480.0 }
 /// contact = { z_mm = 2.08, z_points = "down" }    # the tip touches the gel here, on the z column's scale
-/// # force = { column = "f", unit = "N" }          # measured, or `weight_n = 0.98` for a dead weight
+/// ## force = { column = "f", unit = "N" }          # measured, or `weight_n = 0.98` for a dead weight
 ///
 /// readings = { unit = "Pa", usable = [0.0, 140500.0] }    # numbers outside are marked as not valid
 /// taxels = [
@@ -50,7 +50,7 @@ use track::Track;
 /// # "row": each row is a static press.
 /// presses = { split = "return-to-rest", rest_mm = 0.0, tolerance_mm = 0.005, keep_rest_s = 1.0 }
 /// zero = { above_contact_mm = 0.5, window_s = 1.0 }       # zeroes each taxel before each press
-/// # outliers = { within_mm = 0.8, jump = 0.15 }           # static presses: marks what leaps out of its neighbours
+/// ## outliers = { within_mm = 0.8, jump = 0.15 }           # static presses: marks what leaps out of its neighbours
 ///
 /// [[override]]                    # any of the above, for files whose names match
 /// files = "gelA_*"
@@ -90,7 +90,10 @@ impl Import {
     /// # Errors
     ///
     /// As [`read_csv`](Self::read_csv); or the files belong to different sensors, or share a name.
-    pub fn read_all<P: AsRef<Path>>(&self, paths: &[P]) -> Result<(Recording, ImportSummary), RecordingError> {
+    pub fn read_all<P: AsRef<Path>>(
+        &self,
+        paths: &[P],
+    ) -> Result<(Recording, ImportSummary), RecordingError> {
         let mut paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
         paths.sort_unstable();
         let mut summary = ImportSummary::default();
@@ -102,7 +105,11 @@ impl Import {
             let recording = recording.get_or_insert_with(|| Recording {
                 sensor: description.sensor.clone(),
                 provenance: description.provenance,
-                taxels: description.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+                taxels: description
+                    .taxels
+                    .iter()
+                    .map(|taxel| taxel.name.clone())
+                    .collect(),
                 presses: Vec::new(),
             });
             if recording.sensor != description.sensor {
@@ -132,19 +139,31 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
     summary.clipped_readings = track.usable.iter().flatten().filter(|&&usable| !usable).count();
     let track = align::onto_pose_clock(track, description);
     summary.rows_dropped = table.rows() - track.time_s.len();
-    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let stem = path
+        .file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let mut presses = Vec::new();
-    for (index, span) in split::presses(&track, &description.presses, &mut summary).into_iter().enumerate() {
+    for (index, span) in split::presses(&track, &description.presses, &mut summary)
+        .into_iter()
+        .enumerate()
+    {
         let number = index + 1;
         let Some(zero_kpa) = zero::before_press(&track, span.clone(), description) else {
-            summary.drop_press(format!("press {number}, from line {}: no frame before the contact to take the zero from", track.lines[span.start]));
+            summary.drop_press(format!(
+                "press {number}, from line {}: no frame before the contact to take the zero from",
+                track.lines[span.start]
+            ));
             continue;
         };
         let mut press = Press {
             name: format!("{stem}#{number}"),
             file: file_name(path),
             indenter: description.indenter.clone(),
-            control: if description.weight_n.is_some() { Control::Force } else { Control::Pose },
+            control: if description.weight_n.is_some() {
+                Control::Force
+            } else {
+                Control::Pose
+            },
             time_s: Vec::new(),
             gel_from_indenter: Vec::new(),
             force_n: (description.weight_n.is_some() || description.force.is_some()).then(Vec::new),
@@ -172,5 +191,6 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
 }
 
 fn file_name(path: &Path) -> String {
-    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }

@@ -15,18 +15,26 @@ pub(crate) fn presses(track: &Track, split: &Split, summary: &mut FileSummary) -
     match split {
         Split::Row => (0..rows).map(|row| row..row + 1).collect(),
         Split::Column { .. } => runs(rows, |row| track.press[row] == track.press[row - 1], |_| true),
-        Split::ReturnToRest { rest_mm, tolerance_mm, keep_rest_s } => {
+        Split::ReturnToRest {
+            rest_mm,
+            tolerance_mm,
+            keep_rest_s,
+        } => {
             let is_away = |row: usize| (track.z_mm[row] - rest_mm).abs() > *tolerance_mm;
             let excursions = runs(rows, |row| is_away(row) == is_away(row - 1), is_away);
             let mut presses = Vec::new();
             for (index, away) in excursions.iter().enumerate() {
                 let line = track.lines[away.start];
                 if away.start == 0 && track.height_mm[0] <= 0.0 {
-                    summary.drop_press(format!("from line {line}: the tip is in the gel when the file starts"));
+                    summary.drop_press(format!(
+                        "from line {line}: the tip is in the gel when the file starts"
+                    ));
                     continue;
                 }
                 if away.end == rows && track.height_mm[rows - 1] <= 0.0 {
-                    summary.drop_press(format!("from line {line}: the tip is in the gel when the file ends"));
+                    summary.drop_press(format!(
+                        "from line {line}: the tip is in the gel when the file ends"
+                    ));
                     continue;
                 }
                 if away.end == rows {
@@ -49,7 +57,10 @@ fn with_rest(track: &Track, away: &Range<usize>, limits: Range<usize>, keep_rest
     };
     let (first, last) = (away.start, away.end - 1);
     let mut start = first;
-    while start > limits.start && same_place(start - 1, first) && track.time_s[first] - track.time_s[start - 1] <= keep_rest_s {
+    while start > limits.start
+        && same_place(start - 1, first)
+        && track.time_s[first] - track.time_s[start - 1] <= keep_rest_s
+    {
         start -= 1;
     }
     let mut end = away.end;
@@ -79,9 +90,17 @@ pub(crate) fn explain(split: &Split, summary: &FileSummary) -> String {
     let looked_for = match split {
         Split::Row => "each row is a press".to_owned(),
         Split::Column { column } => format!("a press lasts while `{column}` stays the same"),
-        Split::ReturnToRest { rest_mm, tolerance_mm, .. } => {
+        Split::ReturnToRest {
+            rest_mm,
+            tolerance_mm,
+            ..
+        } => {
             format!("a press lasts while z is more than {tolerance_mm} mm from its rest at {rest_mm} mm")
         }
     };
-    [looked_for].into_iter().chain(summary.warnings.iter().cloned()).collect::<Vec<_>>().join("; ")
+    [looked_for]
+        .into_iter()
+        .chain(summary.warnings.iter().cloned())
+        .collect::<Vec<_>>()
+        .join("; ")
 }

@@ -30,7 +30,11 @@ pub struct FileSummary {
 
 impl FileSummary {
     pub(crate) fn new(file: String, rows_read: usize) -> Self {
-        Self { file, rows_read, ..Self::default() }
+        Self {
+            file,
+            rows_read,
+            ..Self::default()
+        }
     }
 
     pub(crate) fn warn(&mut self, warning: String) {
@@ -45,9 +49,22 @@ impl FileSummary {
 
 impl std::fmt::Display for FileSummary {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { file, rows_read, rows_dropped, clipped_readings, outliers, presses, .. } = self;
-        write!(f, "{file}: {presses} presses from {rows_read} rows, {rows_dropped} rows dropped")?;
+        let Self {
+            file,
+            rows_read,
+            rows_dropped,
+            clipped_readings,
+            outliers,
+            presses,
+            ..
+        } = self;
+        write!(
+            f,
+            "{file}: {presses} presses from {rows_read} rows, {rows_dropped} rows dropped"
+        )?;
         write!(f, ", {clipped_readings} readings clipped, {outliers} outliers")?;
-        self.warnings.iter().try_for_each(|warning| write!(f, "\n  {warning}"))
+        self.warnings
+            .iter()
+            .try_for_each(|warning| write!(f, "\n  {warning}"))
     }
 }

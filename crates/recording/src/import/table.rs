@@ -17,7 +17,11 @@ pub(crate) struct Table {
 
 impl Table {
     /// Reads the columns in `names` from a file; every cell must hold a finite number.
-    pub(crate) fn read(path: &Path, description: &Description, names: &BTreeSet<&str>) -> Result<Self, RecordingError> {
+    pub(crate) fn read(
+        path: &Path,
+        description: &Description,
+        names: &BTreeSet<&str>,
+    ) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|source| RecordingError::read(path, source))?;
         let mut reader = csv::ReaderBuilder::new()
@@ -29,17 +33,29 @@ impl Table {
         let header: Vec<String> = match &description.columns {
             Some(columns) => columns.clone(),
             None => match records.next() {
-                Some(record) => record.map_err(|e| line_error(&file, &e))?.iter().map(str::to_owned).collect(),
+                Some(record) => record
+                    .map_err(|e| line_error(&file, &e))?
+                    .iter()
+                    .map(str::to_owned)
+                    .collect(),
                 None => Vec::new(),
             },
         };
         let mut places = Vec::new();
         for &name in names {
-            let place = header.iter().position(|h| h == name).ok_or_else(|| RecordingError::MissingColumn {
-                file: file.clone(),
-                column: name.to_owned(),
-                found: if header.is_empty() { "nothing".to_owned() } else { header.join(", ") },
-            })?;
+            let place =
+                header
+                    .iter()
+                    .position(|h| h == name)
+                    .ok_or_else(|| RecordingError::MissingColumn {
+                        file: file.clone(),
+                        column: name.to_owned(),
+                        found: if header.is_empty() {
+                            "nothing".to_owned()
+                        } else {
+                            header.join(", ")
+                        },
+                    })?;
             places.push(place);
         }
         let mut table = Self {
@@ -54,7 +70,11 @@ impl Table {
             if record.len() != header.len() {
                 let (expected, found) = (header.len(), record.len());
                 let problem = format!("expected {expected} cells, found {found}");
-                return Err(RecordingError::Line { file: table.file, line, problem });
+                return Err(RecordingError::Line {
+                    file: table.file,
+                    line,
+                    problem,
+                });
             }
             table.lines.push(line);
             for (column, &place) in places.iter().enumerate() {
@@ -70,7 +90,10 @@ impl Table {
 
     /// The column of that name, which must be one of those asked for; `[n_rows]`.
     pub(crate) fn column(&self, name: &str) -> &[f64] {
-        self.names.iter().position(|n| n == name).map_or(&[], |place| &self.columns[place])
+        self.names
+            .iter()
+            .position(|n| n == name)
+            .map_or(&[], |place| &self.columns[place])
     }
 
     pub(crate) fn rows(&self) -> usize {
@@ -85,7 +108,10 @@ impl Table {
             problem: if text.is_empty() {
                 "is empty, expected a number".to_owned()
             } else {
-                format!("is `{}`, expected a finite number", text.chars().take(40).collect::<String>())
+                format!(
+                    "is `{}`, expected a finite number",
+                    text.chars().take(40).collect::<String>()
+                )
             },
         }
     }
@@ -95,8 +121,14 @@ fn line_error(file: &str, error: &csv::Error) -> RecordingError {
     let line = error.position().map_or(0, csv::Position::line);
     let problem = match error.kind() {
         csv::ErrorKind::Utf8 { .. } => "is not UTF-8 text".to_owned(),
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => format!("expected {expected_len} cells, found {len}"),
+        csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => format!("expected {expected_len} cells, found {len}"),
         _ => error.to_string(),
     };
-    RecordingError::Line { file: file.to_owned(), line, problem }
+    RecordingError::Line {
+        file: file.to_owned(),
+        line,
+        problem,
+    }
 }

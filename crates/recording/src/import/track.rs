@@ -29,9 +29,16 @@ pub(crate) struct Track {
 
 impl Track {
     /// Converts the rows after the first `dropped` ones; times must increase from there on.
-    pub(crate) fn new(table: &Table, description: &Description, dropped: usize) -> Result<Self, RecordingError> {
+    pub(crate) fn new(
+        table: &Table,
+        description: &Description,
+        dropped: usize,
+    ) -> Result<Self, RecordingError> {
         let rows = dropped..table.rows();
-        let z_mm = description.z.as_ref().map_or_else(|| vec![0.0; rows.len()], |z| converted(table, z, dropped));
+        let z_mm = description
+            .z
+            .as_ref()
+            .map_or_else(|| vec![0.0; rows.len()], |z| converted(table, z, dropped));
         let contact = description.contact;
         let height_mm = match (&description.z, contact.z_points) {
             (None, _) => z_mm.clone(),
@@ -42,10 +49,20 @@ impl Track {
             (Some(force), _) => converted(table, force, dropped),
             (None, weight_n) => vec![weight_n.unwrap_or(0.0); rows.len()],
         };
-        let taxels: Vec<&[f64]> = description.taxels.iter().map(|taxel| table.column(&taxel.column)).collect();
-        let raw: Vec<Vec<f64>> = rows.clone().map(|row| taxels.iter().map(|taxel| taxel[row]).collect()).collect();
+        let taxels: Vec<&[f64]> = description
+            .taxels
+            .iter()
+            .map(|taxel| table.column(&taxel.column))
+            .collect();
+        let raw: Vec<Vec<f64>> = rows
+            .clone()
+            .map(|row| taxels.iter().map(|taxel| taxel[row]).collect())
+            .collect();
         let [lowest, highest] = description.readings.usable;
-        let usable = raw.iter().map(|row| row.iter().map(|&raw| (lowest..=highest).contains(&raw)).collect()).collect();
+        let usable = raw
+            .iter()
+            .map(|row| row.iter().map(|&raw| (lowest..=highest).contains(&raw)).collect())
+            .collect();
         let press = match &description.presses {
             Split::Column { column } => table.column(column)[rows.clone()].to_vec(),
             _ => Vec::new(),
@@ -84,18 +101,32 @@ impl Track {
     }
 
     /// Puts one row at the end of a press.
-    pub(crate) fn push_frame(&self, row: usize, zero_kpa: &[Option<f64>], description: &Description, press: &mut Press) {
+    pub(crate) fn push_frame(
+        &self,
+        row: usize,
+        zero_kpa: &[Option<f64>],
+        description: &Description,
+        press: &mut Press,
+    ) {
         let z_mm = description.gel_top_mm + self.height_mm[row];
         press.time_s.push(self.time_s[row]);
-        press.gel_from_indenter.push(Pose::from_position([self.x_mm[row], self.y_mm[row], z_mm].into()));
+        press
+            .gel_from_indenter
+            .push(Pose::from_position([self.x_mm[row], self.y_mm[row], z_mm].into()));
         if let Some(force_n) = &mut press.force_n {
             force_n.push(self.force_n[row]);
         }
         let zeros = zero_kpa.iter().enumerate();
-        let kpa = zeros.clone().map(|(k, zero)| self.kpa(row, k, description) - zero.unwrap_or(0.0));
+        let kpa = zeros
+            .clone()
+            .map(|(k, zero)| self.kpa(row, k, description) - zero.unwrap_or(0.0));
         press.taxels_kpa.push(kpa.collect());
         press.taxels_raw.push(self.raw[row].clone());
-        press.valid.push(zeros.map(|(k, zero)| zero.is_some() && self.usable[row][k]).collect());
+        press.valid.push(
+            zeros
+                .map(|(k, zero)| zero.is_some() && self.usable[row][k])
+                .collect(),
+        );
     }
 
     /// The reading of one taxel before it is zeroed, kPa.
@@ -107,7 +138,10 @@ impl Track {
 
 fn converted<U: Unit>(table: &Table, column: &Column<U>, dropped: usize) -> Vec<f64> {
     match &column.column {
-        Some(name) => table.column(name)[dropped..].iter().map(|&number| column.convert(number)).collect(),
+        Some(name) => table.column(name)[dropped..]
+            .iter()
+            .map(|&number| column.convert(number))
+            .collect(),
         None => vec![column.offset; table.rows() - dropped],
     }
 }

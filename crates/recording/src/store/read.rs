@@ -1,0 +1,208 @@
+//! Reads recordings.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use glam::{DQuat, DVec3};
+use twintac_shape::Pose;
+
+use super::column::Columns;
+use super::{schema, seal};
+use crate::{Control, Press, Provenance, Recording, RecordingError};
+
+impl Recording {
+    /// Reads a Parquet file with the columns that [`write_parquet`](Self::write_parquet) gives; `press_index` may be missing,
+    /// further columns are left alone. Rows with the same `press` belong together and must follow each other.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, is truncated or altered (files that this crate wrote carry a checksum of all bytes), lacks a
+    /// column, or is inconsistent ([`check`](Self::check)).
+    pub fn read_parquet(path: &Path) -> Result<Self, RecordingError> {
+        let damaged = |problem: String| RecordingError::Damaged {
+            file: path.display().to_string(),
+            problem,
+        };
+        let bytes = std::fs::read(path).map_err(|source| RecordingError::read(path, source))?;
+        seal::verify(&bytes).map_err(damaged)?;
+        // A file of another program has no seal, and the Parquet decoder panics on some malformed ones.
+        let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes)));
+        let recording = decoded
+            .unwrap_or_else(|_| Err("it cannot be decoded".to_owned()))
+            .map_err(damaged)?;
+        recording.check().map_err(|e| damaged(e.to_string()))?;
+        Ok(recording)
+    }
+}
+
+fn decode(bytes: Vec<u8>) -> Result<Recording, String> {
+    let columns = Columns::open(bytes)?;
+    let version = columns.metadata(schema::VERSION_KEY)?;
+    if version != schema::VERSION {
+        return Err(format!(
+            "its schema has version {version}, expected {}",
+            schema::VERSION
+        ));
+    }
+    let provenance = parse_provenance(&columns.metadata(schema::PROVENANCE_KEY)?)?;
+    let frames = Frames::read(&columns)?;
+    if let Some(other) = frames
+        .provenance
+        .iter()
+        .find(|&other| *other != provenance.to_string())
+    {
+        return Err(format!(
+            "column `provenance` says `{other}`, the metadata `{provenance}`"
+        ));
+    }
+    let presses = frames.press.chunk_by(|a, b| a == b).scan(0, |start, run| {
+        let rows = *start..*start + run.len();
+        *start = rows.end;
+        Some(frames.press(rows))
+    });
+    Ok(Recording {
+        sensor: columns.metadata(schema::SENSOR_KEY)?,
+        provenance,
+        presses: presses.collect::<Result<_, _>>()?,
+        taxels: frames.taxels.clone(),
+    })
+}
+
+/// All rows of a file, column by column.
+struct Frames {
+    taxels: Vec<String>,
+    press: Vec<String>,
+    file: Vec<String>,
+    indenter: Vec<String>,
+    control: Vec<String>,
+    provenance: Vec<String>,
+    time_s: Vec<f64>,
+    pose: Vec<Vec<f64>>,
+    force_n: Vec<Option<f64>>,
+    kpa: Vec<Vec<f64>>,
+    raw: Vec<Vec<f64>>,
+    valid: Vec<Vec<bool>>,
+}
+
+impl Frames {
+    fn read(columns: &Columns) -> Result<Self, String> {
+        let taxels: Vec<String> = columns
+            .names
+            .iter()
+            .filter_map(|name| name.strip_suffix(schema::KPA))
+            .map(str::to_owned)
+            .collect();
+        let of_taxels = |suffix: &str| -> Result<Vec<Vec<f64>>, String> {
+            taxels
+                .iter()
+                .map(|taxel| columns.doubles(&format!("{taxel}{suffix}")))
+                .collect()
+        };
+        let frames = Self {
+            press: columns.texts(schema::PRESS)?,
+            file: columns.texts(schema::FILE)?,
+            indenter: columns.texts(schema::INDENTER)?,
+            control: columns.texts(schema::CONTROL)?,
+            provenance: columns.texts(schema::PROVENANCE)?,
+            time_s: columns.doubles(schema::TIME)?,
+            pose: schema::POSE
+                .iter()
+                .map(|name| columns.doubles(name))
+                .collect::<Result<_, _>>()?,
+            force_n: columns.optional_doubles(schema::FORCE)?,
+            kpa: of_taxels(schema::KPA)?,
+            raw: of_taxels(schema::RAW)?,
+            valid: taxels
+                .iter()
+                .map(|t| columns.bools(&format!("{t}{}", schema::VALID)))
+                .collect::<Result<_, _>>()?,
+            taxels,
+        };
+        frames.check_lengths()?;
+        Ok(frames)
+    }
+
+    fn check_lengths(&self) -> Result<(), String> {
+        let rows = self.press.len();
+        let texts = [&self.file, &self.indenter, &self.control, &self.provenance].map(Vec::len);
+        let numbers = self.pose.iter().chain(&self.kpa).chain(&self.raw).map(Vec::len);
+        let others = self
+            .valid
+            .iter()
+            .map(Vec::len)
+            .chain([self.time_s.len(), self.force_n.len()]);
+        match texts
+            .into_iter()
+            .chain(numbers)
+            .chain(others)
+            .find(|&length| length != rows)
+        {
+            Some(length) => Err(format!("its columns have {rows} and {length} rows")),
+            None => Ok(()),
+        }
+    }
+
+    /// One press from its rows, of which there is at least one.
+    fn press(&self, rows: std::ops::Range<usize>) -> Result<Press, String> {
+        let first = rows.start;
+        let name = &self.press[first];
+        for (column, values) in [
+            (schema::FILE, &self.file),
+            (schema::INDENTER, &self.indenter),
+            (schema::CONTROL, &self.control),
+        ] {
+            if values[rows.clone()].iter().any(|value| *value != values[first]) {
+                return Err(format!("column `{column}` changes during press `{name}`"));
+            }
+        }
+        let forces = &self.force_n[rows.clone()];
+        let force_n: Vec<f64> = forces.iter().flatten().copied().collect();
+        if !force_n.is_empty() && force_n.len() != forces.len() {
+            return Err(format!(
+                "press `{name}` has a force in some frames and none in others"
+            ));
+        }
+        let pose = |row: usize| {
+            let [x, y, z, qx, qy, qz, qw] = std::array::from_fn(|axis| self.pose[axis][row]);
+            Pose {
+                position_mm: DVec3::new(x, y, z),
+                rotation: DQuat::from_xyzw(qx, qy, qz, qw),
+            }
+        };
+        let across = |columns: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            rows.clone()
+                .map(|row| columns.iter().map(|column| column[row]).collect())
+                .collect()
+        };
+        Ok(Press {
+            name: name.clone(),
+            file: self.file[first].clone(),
+            indenter: self.indenter[first].clone(),
+            control: parse_control(&self.control[first])?,
+            time_s: self.time_s[rows.clone()].to_vec(),
+            gel_from_indenter: rows.clone().map(pose).collect(),
+            force_n: (!force_n.is_empty()).then_some(force_n),
+            taxels_kpa: across(&self.kpa),
+            taxels_raw: across(&self.raw),
+            valid: rows
+                .clone()
+                .map(|row| self.valid.iter().map(|column| column[row]).collect())
+                .collect(),
+        })
+    }
+}
+
+fn parse_control(text: &str) -> Result<Control, String> {
+    let known = [Control::Pose, Control::Force]
+        .into_iter()
+        .find(|control| control.to_string() == text);
+    known.ok_or_else(|| format!("column `control` says `{text}`, expected `pose` or `force`"))
+}
+
+fn parse_provenance(text: &str) -> Result<Provenance, String> {
+    let known = [Provenance::Real, Provenance::Emulated, Provenance::Simulated];
+    let known = known
+        .into_iter()
+        .find(|provenance| provenance.to_string() == text);
+    known.ok_or_else(|| format!("its provenance is `{text}`, expected `real`, `emulated` or `simulated`"))
+}

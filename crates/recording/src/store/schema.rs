@@ -1,0 +1,64 @@
+//! Names and types of the columns.
+
+use std::sync::Arc;
+
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::errors::ParquetError;
+use parquet::schema::types::{Type, TypePtr};
+
+/// Version of the layout described here; readers refuse others.
+pub(super) const VERSION: &str = "1";
+/// Keys of the file's metadata.
+pub(super) const VERSION_KEY: &str = "twintac.schema";
+pub(super) const SENSOR_KEY: &str = "twintac.sensor";
+pub(super) const PROVENANCE_KEY: &str = "twintac.provenance";
+
+/// Number of the press, from 0.
+pub(super) const PRESS_INDEX: &str = "press_index";
+/// Text columns, the same in all rows of a press.
+pub(super) const PRESS: &str = "press";
+pub(super) const FILE: &str = "file";
+pub(super) const INDENTER: &str = "indenter";
+pub(super) const CONTROL: &str = "control";
+pub(super) const PROVENANCE: &str = "provenance";
+pub(super) const TEXTS: [&str; 5] = [PRESS, FILE, INDENTER, CONTROL, PROVENANCE];
+/// Time and pose.
+pub(super) const TIME: &str = "time_s";
+pub(super) const POSE: [&str; 7] = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];
+/// Null where the force is not known.
+pub(super) const FORCE: &str = "force_n";
+/// Behind a taxel's name.
+pub(super) const KPA: &str = "_kpa";
+pub(super) const RAW: &str = "_raw";
+pub(super) const VALID: &str = "_valid";
+
+/// The columns in the order of the file.
+pub(super) fn schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
+    let column = |name: &str, physical, repetition| {
+        let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
+        let text = matches!(physical, Physical::BYTE_ARRAY).then_some(LogicalType::String);
+        column.with_logical_type(text).build().map(Arc::new)
+    };
+    let required = |name: &str, physical| column(name, physical, Repetition::REQUIRED);
+    let mut columns = vec![required(PRESS_INDEX, Physical::INT32)?];
+    for name in TEXTS {
+        columns.push(required(name, Physical::BYTE_ARRAY)?);
+    }
+    for name in [TIME].into_iter().chain(POSE) {
+        columns.push(required(name, Physical::DOUBLE)?);
+    }
+    columns.push(column(FORCE, Physical::DOUBLE, Repetition::OPTIONAL)?);
+    for (suffix, physical) in [
+        (KPA, Physical::DOUBLE),
+        (RAW, Physical::DOUBLE),
+        (VALID, Physical::BOOLEAN),
+    ] {
+        for taxel in taxels {
+            columns.push(required(&format!("{taxel}{suffix}"), physical)?);
+        }
+    }
+    Type::group_type_builder("recording")
+        .with_fields(columns)
+        .build()
+        .map(Arc::new)
+}

@@ -1,0 +1,259 @@
+//! Recordings through Parquet files and back.
+
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
+use std::path::{Path, PathBuf};
+
+use glam::{DQuat, DVec3};
+use proptest::prelude::*;
+use tempfile::TempDir;
+use twintac_recording::{Control, Press, Provenance, Recording};
+use twintac_shape::Pose;
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -1e3..1e3,
+        Just(0.0),
+        Just(-0.0),
+        Just(f64::MIN_POSITIVE),
+        Just(1e300)
+    ]
+}
+
+fn press(taxels: usize) -> impl Strategy<Value = Press> {
+    let frame = (
+        1e-6..10.0,
+        [number(), number(), number()],
+        [-3.0..3.0, -3.0..3.0, -3.0..3.0],
+        number(),
+        proptest::collection::vec((number(), number(), any::<bool>()), taxels),
+    );
+    let frames = proptest::collection::vec(frame, 1..30);
+    ("\\PC{0,12}", "\\PC{1,8}", any::<bool>(), any::<bool>(), frames).prop_map(
+        |(file, indenter, is_force, has_force, frames)| {
+            let mut time_s = 0.0;
+            let times = frames.iter().map(|frame| {
+                time_s += frame.0;
+                time_s
+            });
+            let pose = |position: [f64; 3], angles: [f64; 3]| Pose {
+                position_mm: DVec3::from(position),
+                rotation: DQuat::from_scaled_axis(DVec3::from(angles)),
+            };
+            Press {
+                name: String::new(),
+                file,
+                indenter,
+                control: if is_force { Control::Force } else { Control::Pose },
+                time_s: times.collect(),
+                gel_from_indenter: frames.iter().map(|frame| pose(frame.1, frame.2)).collect(),
+                force_n: has_force.then(|| frames.iter().map(|frame| frame.3).collect()),
+                taxels_kpa: frames
+                    .iter()
+                    .map(|frame| frame.4.iter().map(|taxel| taxel.0).collect())
+                    .collect(),
+                taxels_raw: frames
+                    .iter()
+                    .map(|frame| frame.4.iter().map(|taxel| taxel.1).collect())
+                    .collect(),
+                valid: frames
+                    .iter()
+                    .map(|frame| frame.4.iter().map(|taxel| taxel.2).collect())
+                    .collect(),
+            }
+        },
+    )
+}
+
+fn recording() -> impl Strategy<Value = Recording> {
+    let provenance = prop_oneof![
+        Just(Provenance::Real),
+        Just(Provenance::Emulated),
+        Just(Provenance::Simulated)
+    ];
+    (0_usize..4).prop_flat_map(move |taxels| {
+        (
+            "\\PC{0,12}",
+            provenance.clone(),
+            proptest::collection::vec(press(taxels), 0..5),
+        )
+            .prop_map(move |(sensor, provenance, mut presses)| {
+                for (index, press) in presses.iter_mut().enumerate() {
+                    press.name = format!("press#{}", index + 1);
+                }
+                let taxels = (0..taxels).map(|taxel| format!("s{taxel}")).collect();
+                Recording {
+                    sensor,
+                    provenance,
+                    taxels,
+                    presses,
+                }
+            })
+    })
+}
+
+fn example() -> Recording {
+    let press = |name: &str, force_n: Option<Vec<f64>>| Press {
+        name: name.to_owned(),
+        file: "bench.csv".to_owned(),
+        indenter: "tip".to_owned(),
+        control: Control::Pose,
+        time_s: vec![0.0, 0.1, 0.2],
+        gel_from_indenter: vec![Pose::from_position(DVec3::new(1.0, 2.0, 6.0)); 3],
+        force_n,
+        taxels_kpa: vec![vec![0.0, 0.5], vec![1.5, 2.5], vec![-0.1, 0.0]],
+        taxels_raw: vec![vec![100.0, 200.0], vec![101.5, 202.0], vec![99.9, 199.5]],
+        valid: vec![vec![true, true], vec![true, false], vec![true, true]],
+    };
+    Recording {
+        sensor: "pair".to_owned(),
+        provenance: Provenance::Simulated,
+        taxels: vec!["S0".to_owned(), "S1".to_owned()],
+        presses: vec![
+            press("bench#1", None),
+            press("bench#2", Some(vec![0.0, 1.0, 0.5])),
+        ],
+    }
+}
+
+fn file() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("recording.parquet");
+    (folder, path)
+}
+
+fn written(recording: &Recording) -> Vec<u8> {
+    let (_folder, path) = file();
+    recording.write_parquet(&path).unwrap();
+    std::fs::read(&path).unwrap()
+}
+
+/// The error of reading a file with these bytes.
+fn error(bytes: &[u8]) -> String {
+    let (_folder, path) = file();
+    std::fs::write(&path, bytes).unwrap();
+    Recording::read_parquet(&path).unwrap_err().to_string()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn recordings_come_back_bit_for_bit(recording in recording()) {
+        let (_folder, path) = file();
+        recording.write_parquet(&path).unwrap();
+        let back = Recording::read_parquet(&path).unwrap();
+        // Debug text tells 0 from -0, which are equal.
+        prop_assert_eq!(format!("{:?}", back), format!("{:?}", recording));
+    }
+
+    #[test]
+    fn random_bytes_are_an_error(mut bytes in proptest::collection::vec(any::<u8>(), 0..300), framed in any::<bool>()) {
+        if framed {
+            bytes.splice(0..0, *b"PAR1");
+            bytes.extend((bytes.len() as u32 / 2).to_le_bytes());
+            bytes.extend(b"PAR1");
+        }
+        prop_assert!(error(&bytes).contains("not a readable recording"));
+    }
+}
+
+#[test]
+fn every_flipped_byte_is_found_or_does_no_harm() {
+    let recording = example();
+    let bytes = written(&recording);
+    let (_folder, path) = file();
+    let mut harmless = 0;
+    for place in 0..bytes.len() {
+        let mut bytes = bytes.clone();
+        bytes[place] ^= 0x55;
+        std::fs::write(&path, bytes).unwrap();
+        // Only the mark of the checksum itself holds nothing of the recording.
+        match Recording::read_parquet(&path) {
+            Ok(back) => {
+                assert_eq!(back, recording, "byte {place}");
+                harmless += 1;
+            }
+            Err(error) => assert!(error.to_string().contains("not a readable recording"), "{error}"),
+        }
+    }
+    assert_eq!(harmless, 8);
+}
+
+#[test]
+fn every_truncation_is_found() {
+    let bytes = written(&example());
+    for length in 0..bytes.len() {
+        let error = error(&bytes[..length]);
+        assert!(
+            error.contains("truncated") || error.contains("does not start"),
+            "{length}: {error}"
+        );
+    }
+}
+
+#[test]
+fn the_same_recording_gives_the_same_bytes_and_leaves_no_partial_file() {
+    let (folder, path) = file();
+    example().write_parquet(&path).unwrap();
+    let first = std::fs::read(&path).unwrap();
+    example().write_parquet(&path).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), first);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn files_that_cannot_be_opened_are_named() {
+    let path = Path::new("/nowhere/recording.parquet");
+    let error = example().write_parquet(path).unwrap_err().to_string();
+    assert!(
+        error.starts_with("cannot write /nowhere/recording.parquet"),
+        "{error}"
+    );
+    let error = Recording::read_parquet(path).unwrap_err().to_string();
+    assert!(
+        error.starts_with("cannot read /nowhere/recording.parquet"),
+        "{error}"
+    );
+}
+
+#[test]
+fn inconsistent_recordings_are_not_written() {
+    let spoiled = |spoil: fn(&mut Recording)| {
+        let mut recording = example();
+        spoil(&mut recording);
+        let (_folder, path) = file();
+        let error = recording.write_parquet(&path).unwrap_err().to_string();
+        assert!(!path.exists());
+        error
+    };
+    let error = spoiled(|r| r.presses[1].time_s[2] = 0.05);
+    assert_eq!(
+        error,
+        "press `bench#2`, frame 2: time 0.05 s follows 0.1 s, expected times to increase"
+    );
+    let error = spoiled(|r| r.presses[0].taxels_kpa[1][0] = f64::NAN);
+    assert_eq!(error, "press `bench#1`, frame 1: a reading is not finite");
+    let error = spoiled(|r| r.presses[0].time_s[0] = f64::NAN);
+    assert_eq!(
+        error,
+        "press `bench#1`, frame 0: `time_s` is NaN, expected a finite number"
+    );
+    let error = spoiled(|r| r.presses[0].valid[1] = vec![true]);
+    assert_eq!(
+        error,
+        "press `bench#1`, frame 1: expected 2 taxels, found [2, 2, 1] (kPa, raw, valid)"
+    );
+    let error = spoiled(|r| r.presses[1].force_n = Some(vec![1.0]));
+    assert_eq!(error, "press `bench#2`: `force_n` has 1 frames, `time_s` 3");
+    let error =
+        spoiled(|r| r.presses[1].gel_from_indenter[0].rotation = DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0));
+    assert_eq!(
+        error,
+        "press `bench#2`, frame 0: the rotation's quaternion has length 2, expected 1"
+    );
+    let error = spoiled(|r| r.presses[1].name = "bench#1".to_owned());
+    assert_eq!(error, "recording: press name `bench#1` is there twice");
+    let error = spoiled(|r| r.taxels[1] = "S0".to_owned());
+    assert_eq!(error, "recording: taxel name `S0` is empty or there twice");
+}
