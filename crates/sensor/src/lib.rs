@@ -1,1 +1,19 @@
 //! The sensor description: gel, shell, taxels, read-out, indenters.
+//!
+//! A description is one TOML file that says all there is to know about a sensor before it is pressed. [`Sensor::parse`] checks it as a
+//! whole; every error names file, line and field.
+//!
+//! The gel's frame has z up and z = 0 at the board. Lengths are in mm, pressures in kPa, times in s.
+
+mod check;
+mod describe;
+mod file;
+mod load;
+mod material;
+mod sensor;
+
+pub use material::{Material, Model, PronyTerm};
+pub use sensor::{Gel, Inclusion, Indenter, Readout, Sensor, Shell, Taxel};
+
+/// Why a description cannot be used: what is wrong with which field, in which file and line.
+pub type SensorError = twintac_config::ConfigError;

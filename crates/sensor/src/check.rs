@@ -1,0 +1,256 @@
+//! What has to hold of a sensor as a whole.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+use twintac_config::{ConfigError, Document};
+
+use crate::Sensor;
+use crate::file::SensorFile;
+
+/// Lengths that differ by less are the same, mm.
+const TOLERANCE_MM: f64 = 1e-6;
+
+/// Points of a port's rim that have to lie in the gel.
+const RIM_POINTS: u32 = 16;
+
+struct Checker<'a> {
+    sensor: &'a Sensor,
+    document: &'a Document<SensorFile>,
+}
+
+type Checked = Result<(), ConfigError>;
+
+impl Sensor {
+    pub(crate) fn check(&self, document: &Document<SensorFile>) -> Checked {
+        let checker = Checker {
+            sensor: self,
+            document,
+        };
+        checker.names()?;
+        checker.gel()?;
+        checker.inclusions()?;
+        checker.shell()?;
+        checker.taxels()?;
+        checker.readout()?;
+        checker.indenters()?;
+        checker.inferred()
+    }
+
+    /// Whether a point is in the gel, next to it, or in what is embedded in it.
+    fn is_within_gel(&self, point_mm: DVec3) -> bool {
+        self.gel.solid.contains(point_mm, TOLERANCE_MM, &self.surfaces)
+    }
+}
+
+impl Checker<'_> {
+    fn error(&self, field: &str, problem: impl Into<String>, hint: &str) -> ConfigError {
+        self.document.error(field, problem, hint)
+    }
+
+    fn above_zero(&self, field: &str, value: f64) -> Checked {
+        if value > 0.0 {
+            return Ok(());
+        }
+        Err(self.error(field, format!("is {value}"), "give a number above 0"))
+    }
+
+    fn names(&self) -> Checked {
+        self.name("name", &self.sensor.name)?;
+        if self.sensor.summary.trim().is_empty() {
+            return Err(self.error("summary", "is empty", "say what this sensor is"));
+        }
+        let list = |list: &str, names: Vec<&String>| {
+            let mut seen: BTreeMap<&String, usize> = BTreeMap::new();
+            for (index, name) in names.into_iter().enumerate() {
+                let field = format!("{list}[{index}].name");
+                self.name(&field, name)?;
+                if let Some(first) = seen.insert(name, index) {
+                    let problem = format!("is `{name}`, as that of {list}[{first}]");
+                    return Err(self.error(&field, problem, "give each a name of its own"));
+                }
+            }
+            Ok(())
+        };
+        list(
+            "taxels",
+            self.sensor.taxels.iter().map(|taxel| &taxel.name).collect(),
+        )?;
+        list(
+            "inclusions",
+            self.sensor
+                .inclusions
+                .iter()
+                .map(|inclusion| &inclusion.name)
+                .collect(),
+        )?;
+        list(
+            "indenters",
+            self.sensor
+                .indenters
+                .iter()
+                .map(|indenter| &indenter.name)
+                .collect(),
+        )
+    }
+
+    fn name(&self, field: &str, name: &str) -> Checked {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        if !name.is_empty() && !name.starts_with('.') && name.chars().all(is_plain) {
+            return Ok(());
+        }
+        let hint = "use letters, digits, `-`, `_` and `.`, so that files can bear the name";
+        Err(self.error(field, format!("is `{name}`"), hint))
+    }
+
+    fn gel(&self) -> Checked {
+        let gel = &self.sensor.gel;
+        gel.solid.validate().map_err(|error| {
+            let hint = format!("give {}", error.expected);
+            self.error(
+                &format!("gel.solid.{}", error.field),
+                format!("is {}", error.found),
+                &hint,
+            )
+        })?;
+        let lowest_mm = gel.solid.bounds_mm(&self.sensor.surfaces).0.z;
+        if lowest_mm.abs() > TOLERANCE_MM {
+            let problem = format!("names a surface whose lowest point is at z = {lowest_mm} mm");
+            return Err(self.error(
+                "gel.solid.path",
+                problem,
+                "move it so that it stands on the board at z = 0",
+            ));
+        }
+        Ok(())
+    }
+
+    fn inclusions(&self) -> Checked {
+        for (index, inclusion) in self.sensor.inclusions.iter().enumerate() {
+            let field = |name: &str| format!("inclusions[{index}].{name}");
+            let (min, max) = (inclusion.min_mm, inclusion.max_mm);
+            if min.cmpge(max).any() {
+                let problem = format!("is {max}, not beyond min_mm {min}");
+                return Err(self.error(&field("max_mm"), problem, "let all three coordinates be larger"));
+            }
+            if min.z.abs() > TOLERANCE_MM {
+                let problem = format!("stands at z = {} mm", min.z);
+                return Err(self.error(&field("min_mm"), problem, "let it stand on the board, at z = 0"));
+            }
+            let corners = (0..8).map(|bits| {
+                let pick = |axis: usize| {
+                    if bits >> axis & 1 == 0 {
+                        min[axis]
+                    } else {
+                        max[axis]
+                    }
+                };
+                DVec3::new(pick(0), pick(1), pick(2))
+            });
+            for corner in corners {
+                if !self.sensor.is_within_gel(corner) {
+                    let problem = format!("is a box with a corner at {corner} mm, outside the gel");
+                    return Err(self.error(
+                        &format!("inclusions[{index}]"),
+                        problem,
+                        "keep it inside the gel",
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn shell(&self) -> Checked {
+        let Some(shell) = &self.sensor.shell else {
+            return Ok(());
+        };
+        self.above_zero("shell.gap_mm", shell.gap_mm)?;
+        self.above_zero("shell.height_mm", shell.height_mm)
+    }
+
+    fn taxels(&self) -> Checked {
+        if self.sensor.taxels.is_empty() {
+            return Err(self.error("taxels", "is empty", "describe at least one taxel"));
+        }
+        let mut channels = BTreeMap::new();
+        for (index, taxel) in self.sensor.taxels.iter().enumerate() {
+            let field = |name: &str| format!("taxels[{index}].{name}");
+            let at = taxel.position_mm;
+            if !self.sensor.is_within_gel(at) {
+                let (low, high) = self.sensor.gel.solid.bounds_mm(&self.sensor.surfaces);
+                let problem = format!("is {at}, outside the gel, which spans {low} to {high}");
+                return Err(self.error(&field("position_mm"), problem, "put the taxel into the gel"));
+            }
+            let buried = self.sensor.inclusions.iter().find(|inclusion| {
+                let inside = (at - inclusion.min_mm).min(inclusion.max_mm - at);
+                inside.truncate().min_element() > TOLERANCE_MM && at.z < inclusion.max_mm.z - TOLERANCE_MM
+            });
+            if let Some(inclusion) = buried {
+                let problem = format!("is {at}, inside the rigid `{}`", inclusion.name);
+                return Err(self.error(&field("position_mm"), problem, "put the taxel onto its face"));
+            }
+            self.above_zero(&field("port_radius_mm"), taxel.port_radius_mm)?;
+            let rim = (0..RIM_POINTS).map(|step| {
+                let angle = std::f64::consts::TAU * f64::from(step) / f64::from(RIM_POINTS);
+                at + (taxel.port_radius_mm * DVec2::from_angle(angle)).extend(0.0)
+            });
+            for point in rim {
+                if !self.sensor.is_within_gel(point) {
+                    let problem = format!(
+                        "is {}, which lets the port reach out of the gel",
+                        taxel.port_radius_mm
+                    );
+                    return Err(self.error(
+                        &field("port_radius_mm"),
+                        problem,
+                        "make it smaller or move the taxel inwards",
+                    ));
+                }
+            }
+            if let Some(first) = channels.insert(taxel.channel, index) {
+                let problem = format!("is {}, as that of taxels[{first}]", taxel.channel);
+                return Err(self.error(&field("channel"), problem, "give each taxel a channel of its own"));
+            }
+        }
+        Ok(())
+    }
+
+    fn readout(&self) -> Checked {
+        let readout = &self.sensor.readout;
+        if readout.min_kpa >= readout.max_kpa {
+            let problem = format!("is {}, not above min_kpa {}", readout.max_kpa, readout.min_kpa);
+            return Err(self.error("readout.max_kpa", problem, "give the larger pressure here"));
+        }
+        self.above_zero("readout.resolution_kpa", readout.resolution_kpa)?;
+        self.above_zero("readout.rate_hz", readout.rate_hz)
+    }
+
+    fn indenters(&self) -> Checked {
+        for (index, indenter) in self.sensor.indenters.iter().enumerate() {
+            indenter.shape.validate().map_err(|error| {
+                let field = format!("indenters[{index}].shape.{}", error.field);
+                self.error(
+                    &field,
+                    format!("is {}", error.found),
+                    &format!("give {}", error.expected),
+                )
+            })?;
+        }
+        Ok(())
+    }
+
+    fn inferred(&self) -> Checked {
+        for (index, path) in self.sensor.inferred.iter().enumerate() {
+            if !self.document.has(path) {
+                let problem = format!("names `{path}`, which this file does not have");
+                return Err(self.error(
+                    &format!("inferred[{index}]"),
+                    problem,
+                    "give the path of a field, such as gel.solid.size_mm",
+                ));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,277 @@
+//! A sensor in words, for people.
+
+use std::fmt::Write;
+
+use glam::DVec3;
+use twintac_shape::{Shape, Solid};
+
+use crate::{Model, Sensor};
+
+/// Stands behind inferred values.
+const MARK: &str = " *";
+
+impl Sensor {
+    /// Whether a field, or something that it is part of, is inferred rather than stated by the source. Lists count as wholes or by
+    /// entry: `taxels` covers `taxels[2].position_mm`.
+    #[must_use]
+    pub fn is_inferred(&self, field: &str) -> bool {
+        self.inferred.iter().any(|path| {
+            field
+                .strip_prefix(path.as_str())
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        })
+    }
+
+    /// The description as a table for people, with units; inferred values are marked.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write_description(&mut text);
+        text
+    }
+
+    fn mark(&self, field: &str) -> &'static str {
+        if self.is_inferred(field) { MARK } else { "" }
+    }
+
+    /// The mark if any of these fields is inferred.
+    fn mark_any(&self, parent: &str, names: &[&str]) -> &'static str {
+        let any = names
+            .iter()
+            .any(|name| self.is_inferred(&format!("{parent}.{name}")));
+        if any { MARK } else { "" }
+    }
+
+    fn write_description(&self, out: &mut String) -> std::fmt::Result {
+        writeln!(out, "{}: {}", self.name, self.summary)?;
+        writeln!(out, "  source      {}", self.source)?;
+        self.write_gel(out)?;
+        if let Some(shell) = &self.shell {
+            let (gap, height) = (self.mark("shell.gap_mm"), self.mark("shell.height_mm"));
+            writeln!(
+                out,
+                "  shell       {} mm{gap} beside the gel, {} mm{height} high",
+                shell.gap_mm, shell.height_mm
+            )?;
+        }
+        let readout = &self.readout;
+        let mark = self.mark_any("readout", &["min_kpa", "max_kpa", "resolution_kpa", "rate_hz"]);
+        writeln!(
+            out,
+            "  read-out    {} to {} kPa in steps of {} kPa, {} Hz, reported in {}{mark}",
+            readout.min_kpa, readout.max_kpa, readout.resolution_kpa, readout.rate_hz, readout.unit
+        )?;
+        writeln!(
+            out,
+            "  taxels      {:<8} {:>7} {:>26} {:>12}",
+            "name", "channel", "x, y, z (mm)", "port (mm)"
+        )?;
+        for (index, taxel) in self.taxels.iter().enumerate() {
+            let field = |name: &str| self.mark(&format!("taxels[{index}].{name}"));
+            let place = format!("{}{}", triple(taxel.position_mm), field("position_mm"));
+            let port = format!("r {}{}", taxel.port_radius_mm, field("port_radius_mm"));
+            writeln!(
+                out,
+                "              {:<8} {:>7} {place:>26} {port:>12}",
+                taxel.name, taxel.channel
+            )?;
+        }
+        for (index, inclusion) in self.inclusions.iter().enumerate() {
+            let title = if index == 0 { "inclusions" } else { "" };
+            let mark = self.mark_any(&format!("inclusions[{index}]"), &["min_mm", "max_mm"]);
+            let (min, max) = (triple(inclusion.min_mm), triple(inclusion.max_mm));
+            writeln!(out, "  {title:<11} {:<8} {min} to {max} mm{mark}", inclusion.name)?;
+        }
+        for (index, indenter) in self.indenters.iter().enumerate() {
+            let title = if index == 0 { "indenters" } else { "" };
+            let mark = self.mark_any(&format!("indenters[{index}].shape"), SHAPE_FIELDS);
+            writeln!(
+                out,
+                "  {title:<11} {:<10} {}{mark}",
+                indenter.name,
+                shape_in_words(&indenter.shape)
+            )?;
+        }
+        if !self.inferred.is_empty() {
+            writeln!(out, "{MARK} inferred, not stated by the source")?;
+        }
+        Ok(())
+    }
+
+    fn write_gel(&self, out: &mut String) -> std::fmt::Result {
+        let (low, high) = self.gel.solid.bounds_mm(&self.surfaces);
+        let kind = match &self.gel.solid {
+            Solid::Block { edge_radius_mm, .. } if *edge_radius_mm > 0.0 => {
+                format!("block, top edges r {edge_radius_mm}")
+            }
+            Solid::Block { .. } => "block".to_owned(),
+            Solid::Dome(_) => "dome".to_owned(),
+            Solid::Stl { path } => format!("`{path}`"),
+        };
+        let mark = self.mark_any(
+            "gel.solid",
+            &[
+                "size_mm",
+                "crown_mm",
+                "drop_x_mm",
+                "drop_y_mm",
+                "x_mm",
+                "y_mm",
+                "path",
+            ],
+        );
+        let volume_mm3 = self.gel.solid.volume_mm3(&self.surfaces);
+        let (size, low, high) = (size_in_words(high - low), triple(low), triple(high));
+        writeln!(
+            out,
+            "  gel         {kind}, {size} mm{mark}, {volume_mm3:.0} mm³, from {low} to {high}"
+        )?;
+        let material = &self.gel.material;
+        let constants = match material.model {
+            Model::NeoHookean { .. } => String::new(),
+            Model::MooneyRivlin { c10_kpa, c01_kpa } => format!(" C10 {c10_kpa} kPa, C01 {c01_kpa} kPa,"),
+            Model::Yeoh {
+                c10_kpa,
+                c20_kpa,
+                c30_kpa,
+            } => format!(" C10 {c10_kpa} kPa, C20 {c20_kpa} kPa, C30 {c30_kpa} kPa,"),
+        };
+        let mark = self.mark_any("gel.material", MATERIAL_FIELDS);
+        writeln!(
+            out,
+            "  material    {},{constants} E {:.2} kPa, G {:.2} kPa, ν {:.5}, K {:.0} kPa{mark}",
+            material.model.name(),
+            material.youngs_modulus_kpa(),
+            material.shear_modulus_kpa(),
+            material.poissons_ratio(),
+            material.bulk_modulus_kpa
+        )?;
+        for term in &material.prony {
+            let mark = self.mark("gel.material.prony");
+            writeln!(
+                out,
+                "              {} % relax in {} s{mark}",
+                100.0 * term.weight,
+                term.time_s
+            )?;
+        }
+        writeln!(out, "              {}", material.source)
+    }
+}
+
+const MATERIAL_FIELDS: &[&str] = &[
+    "youngs_modulus_kpa",
+    "shear_modulus_kpa",
+    "c10_kpa",
+    "c01_kpa",
+    "c20_kpa",
+    "c30_kpa",
+    "poissons_ratio",
+    "bulk_modulus_kpa",
+];
+
+const SHAPE_FIELDS: &[&str] = &[
+    "radius_mm",
+    "height_mm",
+    "size_mm",
+    "length_mm",
+    "width_mm",
+    "outer_radius_mm",
+    "inner_radius_mm",
+    "side_mm",
+    "angle_rad",
+    "edge_radius_mm",
+    "path",
+];
+
+fn triple(place_mm: DVec3) -> String {
+    // Adding zero makes -0 a plain 0.
+    let DVec3 { x, y, z } = place_mm + DVec3::ZERO;
+    format!("({x:.2}, {y:.2}, {z:.2})")
+}
+
+fn size_in_words(size_mm: DVec3) -> String {
+    let round = |length: f64| (length * 1e6).round() / 1e6;
+    format!(
+        "{} × {} × {}",
+        round(size_mm.x),
+        round(size_mm.y),
+        round(size_mm.z)
+    )
+}
+
+fn shape_in_words(shape: &Shape) -> String {
+    let edges = |radius_mm: f64| {
+        if radius_mm > 0.0 {
+            format!(", edges r {radius_mm} mm")
+        } else {
+            String::new()
+        }
+    };
+    match shape {
+        Shape::Sphere { radius_mm } => format!("sphere, r {radius_mm} mm"),
+        Shape::Cylinder {
+            radius_mm,
+            height_mm,
+            edge_radius_mm,
+        } => {
+            format!(
+                "cylinder, r {radius_mm} mm, {height_mm} mm high{}",
+                edges(*edge_radius_mm)
+            )
+        }
+        Shape::Box {
+            size_mm,
+            edge_radius_mm,
+        } => {
+            format!(
+                "box, {} mm{}",
+                size_in_words(DVec3::from(*size_mm)),
+                edges(*edge_radius_mm)
+            )
+        }
+        Shape::X {
+            length_mm,
+            width_mm,
+            height_mm,
+            edge_radius_mm,
+        } => {
+            format!(
+                "X, bars {length_mm} × {width_mm} mm, {height_mm} mm high{}",
+                edges(*edge_radius_mm)
+            )
+        }
+        Shape::Ring {
+            outer_radius_mm,
+            inner_radius_mm,
+            height_mm,
+            edge_radius_mm,
+        } => {
+            format!(
+                "ring, r {inner_radius_mm} to {outer_radius_mm} mm, {height_mm} mm high{}",
+                edges(*edge_radius_mm)
+            )
+        }
+        Shape::Triangle {
+            side_mm,
+            height_mm,
+            edge_radius_mm,
+        } => {
+            format!(
+                "triangle, side {side_mm} mm, {height_mm} mm high{}",
+                edges(*edge_radius_mm)
+            )
+        }
+        Shape::Wedge {
+            angle_rad,
+            length_mm,
+            height_mm,
+            edge_radius_mm,
+        } => format!(
+            "wedge, {angle_rad:.3} rad, ridge {length_mm} mm, {height_mm} mm high{}",
+            edges(*edge_radius_mm)
+        ),
+        Shape::Stl { path } => format!("triangle surface `{path}`"),
+    }
+}

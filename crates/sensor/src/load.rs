@@ -1,0 +1,101 @@
+//! From a text to a checked sensor.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use twintac_config::Document;
+use twintac_shape::{Shape, Solid, Surfaces, TriangleSurface};
+
+use crate::file::SensorFile;
+use crate::{Gel, Sensor, SensorError};
+
+impl Sensor {
+    /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file by the path that the description
+    /// has for it.
+    ///
+    /// # Errors
+    /// The first field that is wrong, or a surface that cannot be had.
+    pub fn parse(
+        file: &str,
+        text: &str,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
+        let document = twintac_config::parse::<SensorFile>(file, text)?;
+        Self::from_document(document, load)
+    }
+
+    /// Reads a description from a file; paths of STL files are relative to its folder.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`], and a file that cannot be read.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SensorError> {
+        let folder = path.as_ref().parent().unwrap_or(Path::new("")).to_owned();
+        let document = twintac_config::read::<SensorFile>(path)?;
+        Self::from_document(document, &|name| std::fs::read(folder.join(name)))
+    }
+
+    fn from_document(
+        document: Document<SensorFile>,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
+        let material = document.value.gel.material.resolve(&document)?;
+        let surfaces = load_surfaces(&document, load)?;
+        let file = document.value.clone();
+        let sensor = Self {
+            name: file.name,
+            summary: file.summary,
+            source: file.source,
+            inferred: file.inferred,
+            gel: Gel {
+                solid: file.gel.solid,
+                material,
+            },
+            inclusions: file.inclusions,
+            shell: file.shell,
+            taxels: file.taxels,
+            readout: file.readout,
+            indenters: file.indenters,
+            surfaces,
+        };
+        sensor.check(&document)?;
+        Ok(sensor)
+    }
+}
+
+fn load_surfaces(
+    document: &Document<SensorFile>,
+    load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+) -> Result<Surfaces, SensorError> {
+    let file = &document.value;
+    let of_gel = match &file.gel.solid {
+        Solid::Stl { path } => Some(("gel.solid.path".to_owned(), path)),
+        _ => None,
+    };
+    let of_indenters =
+        file.indenters
+            .iter()
+            .enumerate()
+            .filter_map(|(index, indenter)| match &indenter.shape {
+                Shape::Stl { path } => Some((format!("indenters[{index}].shape.path"), path)),
+                _ => None,
+            });
+    let mut surfaces = Surfaces::new();
+    for (field, path) in of_gel.into_iter().chain(of_indenters) {
+        if surfaces.contains_key(path) {
+            continue;
+        }
+        let error = |problem: String, hint: &str| {
+            document.error(&field, format!("names `{path}`, which {problem}"), hint)
+        };
+        let bytes = load(path).map_err(|found| {
+            error(
+                format!("cannot be read: {found}"),
+                "give a path relative to this file",
+            )
+        })?;
+        let surface = TriangleSurface::from_stl(&bytes)
+            .map_err(|found| error(found.to_string(), "export it again as a closed mesh in mm"))?;
+        surfaces.insert(path.clone(), Arc::new(surface));
+    }
+    Ok(surfaces)
+}

@@ -1,0 +1,110 @@
+//! What a sensor consists of.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use twintac_shape::{Shape, Solid, Surfaces};
+
+use crate::Material;
+
+/// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    /// A short name, fit for file names.
+    pub name: String,
+    /// What this sensor is, in a sentence or two.
+    pub summary: String,
+    /// Where the description's values come from.
+    pub source: String,
+    /// Paths of the fields that are inferred rather than stated by the source, such as `gel.solid.size_mm`.
+    pub inferred: Vec<String>,
+    /// The gel.
+    pub gel: Gel,
+    /// Rigid boxes that stand on the board inside the gel.
+    pub inclusions: Vec<Inclusion>,
+    /// The rigid shell around the gel, if there is one.
+    pub shell: Option<Shell>,
+    /// Where pressure is felt, in the order of all readings.
+    pub taxels: Vec<Taxel>,
+    /// How readings come out.
+    pub readout: Readout,
+    /// What the sensor is pressed with.
+    pub indenters: Vec<Indenter>,
+    /// The triangle surfaces that the gel and the indenters name.
+    pub surfaces: Surfaces,
+}
+
+/// The soft part. It is bonded to the board at z = 0 and to the inclusions.
+#[derive(Clone, Debug)]
+pub struct Gel {
+    /// Its undeformed shape.
+    pub solid: Solid,
+    /// What it is made of.
+    pub material: Material,
+}
+
+/// A rigid box that stands on the board inside the gel, such as a barometer's housing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Inclusion {
+    /// A name of its own.
+    pub name: String,
+    /// Corner with the smallest coordinates, mm; z is 0.
+    pub min_mm: DVec3,
+    /// Corner with the largest coordinates, mm.
+    pub max_mm: DVec3,
+}
+
+/// Rigid walls beside the gel. The gel can bulge into the gap between.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shell {
+    /// Distance from the gel's footprint to the walls on all four sides, mm.
+    pub gap_mm: f64,
+    /// Height of the walls above the board, mm.
+    pub height_mm: f64,
+}
+
+/// A place where pressure is felt.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Taxel {
+    /// A name of its own, fit for column names.
+    pub name: String,
+    /// Centre of the port, mm: in the gel, on the board or on a face of an inclusion.
+    pub position_mm: DVec3,
+    /// Radius of the port, a disc with normal z over which pressure is averaged, mm.
+    pub port_radius_mm: f64,
+    /// Which channel of the bus it is read through.
+    pub channel: u8,
+}
+
+/// How readings come out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Readout {
+    /// Smallest absolute pressure that can be read, kPa.
+    pub min_kpa: f64,
+    /// Largest absolute pressure that can be read, kPa.
+    pub max_kpa: f64,
+    /// Smallest step between readings, kPa.
+    pub resolution_kpa: f64,
+    /// Readings of all taxels in a second, Hz.
+    pub rate_hz: f64,
+    /// Unit that the device itself reports, such as `kPa` or `psi`; for people to read.
+    #[serde(default = "kilopascal")]
+    pub unit: String,
+}
+
+fn kilopascal() -> String {
+    "kPa".to_owned()
+}
+
+/// A rigid body that the sensor is pressed with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Indenter {
+    /// A name of its own, by which protocols and recordings call it.
+    pub name: String,
+    /// Its shape.
+    pub shape: Shape,
+}
