@@ -17,12 +17,14 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Lines from `low` to `high`, outwards from the focus given as (its place on this axis, the focus), or else from the middle.
+    /// Lines from `low` to `high`, outwards from the focus given as (its place on this axis, the focus), or else from the middle. The
+    /// mirror line keeps a margin to both ends.
     pub(crate) fn new(
         [low_mm, high_mm]: [f64; 2],
         focus: Option<(f64, &Focus)>,
         faces_mm: &[f64],
         size: &SizeField,
+        margin_mm: f64,
     ) -> Result<Self, MeshError> {
         let core_mm = match focus {
             Some((center_mm, focus)) => core([low_mm, high_mm], center_mm, focus),
@@ -38,13 +40,10 @@ impl Axis {
             }
             _ => size.divide(low_mm, high_mm, &mut ideal_mm)?,
         }
-        let mirror = (0..ideal_mm.len())
-            .min_by(|&a, &b| {
-                (ideal_mm[a] - center_mm)
-                    .abs()
-                    .total_cmp(&(ideal_mm[b] - center_mm).abs())
-            })
-            .unwrap_or(0);
+        let mirror = nearest(
+            &ideal_mm,
+            center_mm.max(low_mm + margin_mm).min(high_mm - margin_mm),
+        );
         let snapped_mm = snap(&ideal_mm, faces_mm, mirror)?;
         Ok(Self {
             ideal_mm,

@@ -15,6 +15,9 @@ pub enum MeshError {
         /// What was found.
         found: String,
     },
+    /// A solid that can't be.
+    #[error("the gel's {0}")]
+    Solid(#[from] twintac_shape::ShapeError),
     /// An inclusion that is not a box inside the solid.
     #[error("inclusion {index} {found}, expected {expected}")]
     Inclusion {
@@ -30,6 +33,16 @@ pub enum MeshError {
     SurfaceMissing {
         /// Its path, as the solid names it.
         path: String,
+    },
+    /// A triangle surface that can't be meshed.
+    #[error("the surface `{path}`: expected {expected}, found {found}")]
+    Surface {
+        /// Its path, as the solid names it.
+        path: String,
+        /// What was expected.
+        expected: String,
+        /// What was found.
+        found: String,
     },
     /// The mesh would be larger than the generator is willing to make.
     #[error("the mesh would have {found} lattice points, at most {most} are made; increase `edge_mm`")]

@@ -1,10 +1,7 @@
 //! Solids that stand on a rectangle: blocks and domes, as a bent box.
 
 use glam::DVec3;
-use twintac_shape::{Dome, Solid};
-
-use crate::MeshError;
-use crate::settings::within;
+use twintac_shape::{Dome, Solid, Surfaces};
 
 /// A box and the way it is bent into a solid.
 pub(crate) struct Footprint {
@@ -21,46 +18,20 @@ enum Bend {
 }
 
 impl Footprint {
-    /// The footprint of a block or dome; none of a triangle surface.
-    pub(crate) fn of(solid: &Solid) -> Result<Option<Self>, MeshError> {
-        let footprint = match solid {
-            Solid::Block {
-                size_mm,
-                edge_radius_mm,
-            } => {
-                let [x, y, z] = *size_mm;
-                for (axis, size_mm) in size_mm.iter().enumerate() {
-                    within(&format!("size_mm[{axis}]"), *size_mm, 1e-3, 1e4)?;
-                }
-                within(
-                    "edge_radius_mm",
-                    *edge_radius_mm,
-                    0.0,
-                    (0.5 * x).min(0.5 * y).min(z),
-                )?;
-                let half = DVec3::new(0.5 * x, 0.5 * y, 0.0);
-                Self {
-                    box_mm: [-half, half + DVec3::Z * z],
-                    bend: Bend::RoundEdges {
-                        radius_mm: *edge_radius_mm,
-                    },
-                }
-            }
-            Solid::Dome(dome) => {
-                within("x_mm[1]", dome.x_mm[1], dome.x_mm[0] + 1e-3, 1e4)?;
-                within("y_mm[1]", dome.y_mm[1], dome.y_mm[0] + 1e-3, 1e4)?;
-                within("crown_mm", dome.crown_mm, 1e-3, 1e4)?;
-                Self {
-                    box_mm: [
-                        DVec3::new(dome.x_mm[0], dome.y_mm[0], 0.0),
-                        DVec3::new(dome.x_mm[1], dome.y_mm[1], dome.crown_mm),
-                    ],
-                    bend: Bend::Dome(dome.clone()),
-                }
-            }
-            Solid::Stl { .. } => return Ok(None),
+    /// The footprint of a valid block or dome; none of a triangle surface.
+    pub(crate) fn of(solid: &Solid) -> Option<Self> {
+        let bend = match solid {
+            Solid::Block { edge_radius_mm, .. } => Bend::RoundEdges {
+                radius_mm: *edge_radius_mm,
+            },
+            Solid::Dome(dome) => Bend::Dome(dome.clone()),
+            Solid::Stl { .. } => return None,
         };
-        Ok(Some(footprint))
+        let (low_mm, high_mm) = solid.bounds_mm(&Surfaces::new());
+        Some(Self {
+            box_mm: [low_mm, high_mm],
+            bend,
+        })
     }
 
     /// Takes a point of the box to the solid. Nothing moves up to the height `base_mm`.
@@ -95,14 +66,21 @@ impl Footprint {
         }
     }
 
+    /// Radius of the rounded top edges, mm.
+    pub(crate) fn edge_radius_mm(&self) -> f64 {
+        match &self.bend {
+            Bend::RoundEdges { radius_mm } => *radius_mm,
+            Bend::Dome(_) => 0.0,
+        }
+    }
+
     /// Height up to which the solid fills its whole footprint, mm.
     pub(crate) fn full_height_mm(&self) -> f64 {
         match &self.bend {
             Bend::RoundEdges { radius_mm } => self.box_mm[1].z - radius_mm,
-            // The top falls towards the corners, or rises: then it is lowest at the crown.
             Bend::Dome(dome) => {
-                let lowest = |drops: [f64; 2]| drops[0].max(drops[1]).max(0.0);
-                dome.crown_mm - lowest(dome.drop_x_mm) - lowest(dome.drop_y_mm)
+                let deepest_mm = |drops_mm: [f64; 2]| drops_mm[0].max(drops_mm[1]);
+                dome.crown_mm - deepest_mm(dome.drop_x_mm) - deepest_mm(dome.drop_y_mm)
             }
         }
     }
@@ -127,19 +105,9 @@ impl Footprint {
     }
 }
 
-/// Height of a dome's top above a point in plan, mm.
+/// Height of a dome's top above a point in plan, that of the nearest edge beside it, mm.
 fn dome_top_mm(dome: &Dome, at_mm: DVec3) -> f64 {
-    let fall = |at: f64, crown_at: f64, ends: [f64; 2], drops: [f64; 2]| {
-        let side = usize::from(at > crown_at);
-        let reach = ends[side] - crown_at;
-        // A crown over the edge has nothing to fall to on that side.
-        if reach == 0.0 {
-            0.0
-        } else {
-            drops[side] * ((at - crown_at) / reach).powi(2)
-        }
-    };
-    dome.crown_mm
-        - fall(at_mm.x, dome.crown_at_mm[0], dome.x_mm, dome.drop_x_mm)
-        - fall(at_mm.y, dome.crown_at_mm[1], dome.y_mm, dome.drop_y_mm)
+    let x_mm = at_mm.x.max(dome.x_mm[0]).min(dome.x_mm[1]);
+    let y_mm = at_mm.y.max(dome.y_mm[0]).min(dome.y_mm[1]);
+    dome.top_height_mm(x_mm, y_mm).unwrap_or(dome.crown_mm)
 }

@@ -1,40 +1,83 @@
 //! From a solid to a mesh.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use twintac_shape::{SignedDistance, Solid};
+use twintac_shape::{SignedDistance, Solid, Surfaces};
 
 use crate::footprint::Footprint;
+use crate::lattice::Lattice;
 use crate::quality::check_volumes;
-use crate::{Cuboid, MeshError, MeshSettings, TetMesh, grid};
+use crate::region::Region;
+use crate::{Cuboid, MeshError, MeshSettings, TetMesh, grid, stuffing};
 
 /// Part of the volume of a regular tetrahedron with the same longest edge that every tetrahedron has.
 const LEAST_VOLUME_SHARE: f64 = 1e-3;
 
+/// How far the base of a triangle surface may be from z = 0, mm.
+const OFF_BOARD_MM: f64 = 0.01;
+
 /// Meshes a solid without its inclusions. Nodes on the board (z = 0) and on inclusions are bonded.
 ///
-/// Blocks and domes are cut from a bent tensor grid and mirrored about the first focus. The same input gives the same mesh, bit for bit.
+/// Blocks and domes are cut from a bent tensor grid and mirrored about the first focus. Triangle surfaces are found in `surfaces` by
+/// their path, must be closed and stand on z = 0, and are meshed by isosurface stuffing. The same input gives the same mesh, bit for bit.
 ///
 /// # Errors
 /// Settings, solids or inclusions that make no sense; more than 20 million lattice points; a tetrahedron that came out flat.
-pub fn generate<S: SignedDistance>(
+pub fn generate(
     solid: &Solid,
-    surfaces: &BTreeMap<String, Arc<S>>,
+    surfaces: &Surfaces,
     inclusions: &[Cuboid],
     settings: &MeshSettings,
 ) -> Result<TetMesh, MeshError> {
     settings.check()?;
-    let Some(footprint) = Footprint::of(solid)? else {
-        let _ = surfaces;
-        return Err(MeshError::Empty {
-            reason: "triangle surfaces are not meshed yet".to_owned(),
-        });
+    solid.validate()?;
+    let mesh = match (solid, Footprint::of(solid)) {
+        (_, Some(footprint)) => grid::mesh(&footprint, &grid::lattice(&footprint, inclusions, settings)?),
+        (Solid::Stl { path }, None) => {
+            let missing = || MeshError::SurfaceMissing { path: path.clone() };
+            stuff(
+                path,
+                surfaces.get(path).ok_or_else(missing)?.as_ref(),
+                inclusions,
+                settings,
+            )?
+        }
+        (_, None) => {
+            return Err(MeshError::Empty {
+                reason: "this kind of solid has no surface".to_owned(),
+            });
+        }
     };
-    let lattice = grid::lattice(&footprint, inclusions, settings)?;
-    let mesh = grid::mesh(&footprint, &lattice);
     check_volumes(&mesh, LEAST_VOLUME_SHARE)?;
     Ok(mesh)
+}
+
+/// Meshes a triangle surface that stands on the board.
+fn stuff(
+    path: &str,
+    surface: &dyn SignedDistance,
+    inclusions: &[Cuboid],
+    settings: &MeshSettings,
+) -> Result<TetMesh, MeshError> {
+    let (low_mm, high_mm) = surface.bounds_mm();
+    if !(low_mm.is_finite()
+        && high_mm.is_finite()
+        && low_mm.cmplt(high_mm).all()
+        && low_mm.z.abs() <= OFF_BOARD_MM)
+    {
+        return Err(MeshError::Surface {
+            path: path.to_owned(),
+            expected: format!("a surface that stands on z = 0, within {OFF_BOARD_MM} mm"),
+            found: format!("one from {low_mm} to {high_mm}"),
+        });
+    }
+    let low_mm = low_mm.with_z(0.0);
+    for (index, inclusion) in inclusions.iter().enumerate() {
+        inclusion.check(index, [low_mm, high_mm], high_mm.z)?;
+    }
+    // The lattice has two points a cell.
+    let settings = settings.scaled(2_f64.cbrt());
+    let lattice = Lattice::new([low_mm, high_mm], inclusions, &settings, 0.0)?;
+    let tolerance_mm = 1e-4 * settings.smallest_edge_mm();
+    stuffing::mesh(&lattice, &Region::new(surface, inclusions, 0.0, tolerance_mm))
 }
 
 /// Meshes a solid with about `n_nodes` nodes (± 10 %): all edge lengths of the settings are multiplied by one factor. Also returns the
@@ -42,15 +85,16 @@ pub fn generate<S: SignedDistance>(
 ///
 /// # Errors
 /// Those of [`generate`]; [`MeshError::NodeCount`] where no factor gives such a number.
-pub fn generate_with_node_count<S: SignedDistance>(
+pub fn generate_with_node_count(
     solid: &Solid,
-    surfaces: &BTreeMap<String, Arc<S>>,
+    surfaces: &Surfaces,
     inclusions: &[Cuboid],
     settings: &MeshSettings,
     n_nodes: usize,
 ) -> Result<(TetMesh, MeshSettings), MeshError> {
     settings.check()?;
-    let footprint = Footprint::of(solid)?;
+    solid.validate()?;
+    let footprint = Footprint::of(solid);
     let count = |settings: &MeshSettings| match &footprint {
         Some(footprint) => Ok(grid::number_nodes(&grid::lattice(footprint, inclusions, settings)?).0),
         None => Ok(generate(solid, surfaces, inclusions, settings)?.nodes_mm.len()),
@@ -66,29 +110,35 @@ fn search(
     count: impl Fn(&MeshSettings) -> Result<usize, MeshError>,
 ) -> Result<MeshSettings, MeshError> {
     let away = |n_nodes: usize| n_nodes.abs_diff(target);
-    let mut factor = 1.0;
-    let mut best: Option<(usize, f64)> = None;
+    // Nearest number of nodes so far, and its factor.
+    let mut best = (usize::MAX, 1.0);
+    let mut attempt = |factor: f64| {
+        let n_nodes = match count(&settings.scaled(factor)) {
+            Err(MeshError::TooFine { found, .. }) => found.max(2 * target),
+            counted => counted?,
+        };
+        if away(n_nodes) < away(best.0) {
+            best = (n_nodes, factor);
+        }
+        Ok::<_, MeshError>((n_nodes, best))
+    };
     // The count goes roughly with the cube of the edge length, in jumps: follow that, with shorter and shorter steps.
+    let mut factor = 1.0;
     for step in 0..24 {
         let exponent = 0.4 / (1.0 + 0.1 * f64::from(step));
-        let n_nodes = match count(&settings.scaled(factor)) {
-            Ok(n_nodes) => n_nodes,
-            Err(MeshError::TooFine { found, .. }) => found.max(2 * target),
-            Err(other) => return Err(other),
-        };
-        if best.is_none_or(|(nearest, _)| away(n_nodes) < away(nearest)) {
-            best = Some((n_nodes, factor));
-        }
-        if 100 * away(n_nodes) <= target {
-            break;
+        let (n_nodes, best) = attempt(factor)?;
+        if 100 * away(best.0) <= target {
+            return Ok(settings.scaled(best.1));
         }
         factor *= (n_nodes as f64 / target.max(1) as f64).powf(exponent);
     }
+    // Between two jumps of one axis there may be a narrow step of another.
+    let (_, (_, middle)) = attempt(factor)?;
+    for step in -80..=80 {
+        attempt(middle * 1.002_f64.powi(step))?;
+    }
     match best {
-        Some((nearest, factor)) if 10 * away(nearest) <= target => Ok(settings.scaled(factor)),
-        nearest => Err(MeshError::NodeCount {
-            target,
-            nearest: nearest.map_or(0, |(n_nodes, _)| n_nodes),
-        }),
+        (nearest, factor) if 10 * away(nearest) <= target => Ok(settings.scaled(factor)),
+        (nearest, _) => Err(MeshError::NodeCount { target, nearest }),
     }
 }

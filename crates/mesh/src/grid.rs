@@ -31,45 +31,19 @@ pub(crate) fn lattice(
         .iter()
         .fold(0.0, |top: f64, inclusion| top.max(inclusion.max_mm.z));
     for (index, inclusion) in inclusions.iter().enumerate() {
-        check_inclusion(index, inclusion, footprint)?;
+        inclusion.check(index, footprint.box_mm, footprint.full_height_mm())?;
     }
     let mut settings = settings.clone();
     for focus in &mut settings.focuses {
         focus.center_mm = footprint.unbend_mm(focus.center_mm, tallest_mm);
     }
-    Lattice::new(footprint.box_mm, inclusions, &settings)
-}
-
-fn check_inclusion(index: usize, inclusion: &Cuboid, footprint: &Footprint) -> Result<(), MeshError> {
-    let wrong = |expected: String, found: String| {
-        Err(MeshError::Inclusion {
-            index,
-            expected,
-            found,
-        })
-    };
-    let (min, max) = (inclusion.min_mm, inclusion.max_mm);
-    if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
-        return wrong(
-            "min_mm below max_mm".to_owned(),
-            format!("reaches from {min} to {max} mm"),
-        );
-    }
-    let [low, high] = footprint.box_mm;
-    if !(min.cmplt(high).all() && max.cmpgt(low).all()) {
-        return wrong(
-            format!("to overlap the solid, {low} to {high} mm"),
-            format!("reaches from {min} to {max} mm"),
-        );
-    }
-    let below_mm = footprint.full_height_mm();
-    if max.z > 0.98 * below_mm {
-        return wrong(
-            format!("gel above it: the solid fills its footprint up to {below_mm:.3} mm"),
-            format!("is {:.3} mm high", max.z),
-        );
-    }
-    Ok(())
+    // A cut across a rounded edge, the wrong way round, would be flat.
+    Lattice::new(
+        footprint.box_mm,
+        inclusions,
+        &settings,
+        footprint.edge_radius_mm(),
+    )
 }
 
 /// Cuts a lattice into tetrahedra and bends it into the solid.

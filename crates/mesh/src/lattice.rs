@@ -28,11 +28,13 @@ struct IndexBox {
 }
 
 impl Lattice {
-    /// A lattice over the box from `low_mm` to `high_mm`, its first focus given in the lattice's own (unbent) coordinates.
+    /// A lattice over the box from `low_mm` to `high_mm`, focuses given in the lattice's own (unbent) coordinates. The
+    /// mirror lines keep a margin to the walls.
     pub(crate) fn new(
         [low_mm, high_mm]: [DVec3; 2],
         inclusions: &[Cuboid],
         settings: &MeshSettings,
+        margin_mm: f64,
     ) -> Result<Self, MeshError> {
         let smallest_mm = settings
             .focuses
@@ -57,7 +59,7 @@ impl Lattice {
                 .focuses
                 .first()
                 .map(|focus: &Focus| (focus.center_mm[axis], focus));
-            Axis::new([low_mm[axis], high_mm[axis]], focus, &planes, &size)
+            Axis::new([low_mm[axis], high_mm[axis]], focus, &planes, &size, margin_mm)
         };
         let (x, y) = (across(0)?, across(1)?);
 

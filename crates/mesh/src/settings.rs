@@ -66,6 +66,12 @@ impl MeshSettings {
         scaled
     }
 
+    pub(crate) fn smallest_edge_mm(&self) -> f64 {
+        self.focuses
+            .iter()
+            .fold(self.edge_mm, |smallest_mm, focus| smallest_mm.min(focus.edge_mm))
+    }
+
     pub(crate) fn check(&self) -> Result<(), MeshError> {
         within("edge_mm", self.edge_mm, 1e-4, 1e4)?;
         within("top_edge_ratio", self.top_edge_ratio, 1e-3, 1.0)?;
@@ -80,6 +86,33 @@ impl MeshSettings {
             }
         }
         Ok(())
+    }
+}
+
+impl Cuboid {
+    /// Checks that this is a box that overlaps a solid and has gel above it, where the solid is whole up to some height.
+    pub(crate) fn check(
+        &self,
+        index: usize,
+        [low, high]: [DVec3; 2],
+        whole_to_mm: f64,
+    ) -> Result<(), MeshError> {
+        let (min, max) = (self.min_mm, self.max_mm);
+        let reaches = format!("reaches from {min} to {max} mm");
+        let expected = if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
+            "min_mm below max_mm".to_owned()
+        } else if !(min.cmplt(high).all() && max.cmpgt(low).all()) {
+            format!("to overlap the solid, {low} to {high} mm")
+        } else if max.z > 0.98 * whole_to_mm {
+            format!("gel above it: the solid is whole up to {whole_to_mm:.3} mm")
+        } else {
+            return Ok(());
+        };
+        Err(MeshError::Inclusion {
+            index,
+            expected,
+            found: reaches,
+        })
     }
 }
 

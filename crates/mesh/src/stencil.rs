@@ -1,0 +1,130 @@
+//! The inner part of a tetrahedron that a surface cuts.
+
+use glam::DVec3;
+
+/// Where a corner lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Inside,
+    On,
+    Outside,
+}
+
+/// A corner of the inner part: a number that all tetrahedra around it agree on, and its position.
+pub(crate) type Corner = (u32, DVec3);
+
+/// Cuts the inner part of a tetrahedron into tetrahedra of positive volume.
+///
+/// `cut(a, b)` gives the point where the edge between corners `a` (inside) and `b` (outside) is cut. Faces that two tetrahedra share are
+/// cut alike in both. `center` makes a new corner for the rare part that has no cut without one.
+pub(crate) fn inner_part(
+    corners: [Corner; 4],
+    sides: [Side; 4],
+    cut: impl Fn(usize, usize) -> Corner,
+    mut center: impl FnMut(DVec3) -> Corner,
+    out: &mut Vec<[u32; 4]>,
+) {
+    let of = |side: Side| (0..4).filter(move |&corner| sides[corner] == side);
+    let (inside, on, outside): (Vec<_>, Vec<_>, Vec<_>) = (
+        of(Side::Inside).collect(),
+        of(Side::On).collect(),
+        of(Side::Outside).collect(),
+    );
+    let at = |corner: usize| corners[corner];
+    match (inside.as_slice(), on.as_slice(), outside.as_slice()) {
+        ([], ..) => {}
+        (_, _, []) => push(corners, out),
+        (&[a], _, _) => {
+            // The corners outside are pulled in along their edges.
+            push(
+                [0, 1, 2, 3].map(|c| {
+                    if sides[c] == Side::Outside {
+                        cut(a, c)
+                    } else {
+                        at(c)
+                    }
+                }),
+                out,
+            );
+        }
+        (&[a, b], &[apex], &[c]) => {
+            for [p, q, r] in halves([at(a), at(b), cut(b, c), cut(a, c)]) {
+                push([at(apex), p, q, r], out);
+            }
+        }
+        (&[a, b], _, &[c, d]) => {
+            prism(
+                [at(a), cut(a, c), cut(a, d)],
+                [at(b), cut(b, c), cut(b, d)],
+                &mut center,
+                out,
+            );
+        }
+        (&[a, b, c], _, &[d]) => {
+            prism(
+                [at(a), at(b), at(c)],
+                [cut(a, d), cut(b, d), cut(c, d)],
+                &mut center,
+                out,
+            );
+        }
+        // Four corners leave no other case.
+        _ => {}
+    }
+}
+
+/// The two triangles of a quadrilateral: divided by the shorter diagonal, of equal ones by that with the lowest number.
+fn halves(quad: [Corner; 4]) -> [[Corner; 3]; 2] {
+    let [a, b, c, d] = quad;
+    let (ac, bd) = (a.1.distance_squared(c.1), b.1.distance_squared(d.1));
+    let alike = (ac - bd).abs() <= 1e-9 * (ac + bd);
+    let take_ac = if alike {
+        a.0.min(c.0) < b.0.min(d.0)
+    } else {
+        ac < bd
+    };
+    if take_ac {
+        [[a, b, c], [a, c, d]]
+    } else {
+        [[a, b, d], [b, c, d]]
+    }
+}
+
+/// Cuts a prism between two triangles, corner by corner, into three tetrahedra, or eight around its centre if need be.
+fn prism(
+    bottom: [Corner; 3],
+    top: [Corner; 3],
+    center: &mut impl FnMut(DVec3) -> Corner,
+    out: &mut Vec<[u32; 4]>,
+) {
+    let mut triangles = vec![bottom, top];
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+        triangles.extend(halves([bottom[i], bottom[j], top[j], top[i]]));
+    }
+    // A corner that both its quadrilaterals are divided from is in five triangles; the three others face it.
+    let touching = |corner: Corner| {
+        triangles
+            .iter()
+            .filter(|t| t.iter().any(|c| c.0 == corner.0))
+            .count()
+    };
+    let hub = bottom
+        .into_iter()
+        .chain(top)
+        .find(|&corner| touching(corner) == 5);
+    let hub = hub.unwrap_or_else(|| center(bottom.iter().chain(&top).map(|c| c.1).sum::<DVec3>() / 6.0));
+    for [a, b, c] in triangles {
+        if [a, b, c].iter().all(|corner| corner.0 != hub.0) {
+            push([hub, a, b, c], out);
+        }
+    }
+}
+
+/// Adds a tetrahedron, turned to have a positive volume.
+fn push(corners: [Corner; 4], out: &mut Vec<[u32; 4]>) {
+    let mut numbers = corners.map(|corner| corner.0);
+    if crate::tet_mesh::signed_volume_mm3(corners.map(|corner| corner.1)) < 0.0 {
+        numbers.swap(2, 3);
+    }
+    out.push(numbers);
+}
