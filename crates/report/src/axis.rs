@@ -1,6 +1,7 @@
 //! Axes: round tick values, linear and logarithmic scales, numbers as text.
 
 use crate::color::Ink;
+use crate::font;
 use crate::scene::{Anchor, SMALL, Scene};
 
 /// A quantity's range mapped onto a range of pixels.
@@ -64,7 +65,7 @@ impl Axis {
 
     /// Horizontal grid lines and tick texts on the left of the box `[left, right]`.
     pub(crate) fn draw_left(&self, scene: &mut Scene, left: f64, right: f64) {
-        for (value, text) in self.ticks(30.0) {
+        for (value, text) in self.ticks(26.0) {
             let y = self.place(value);
             scene.line([[left, y], [right, y]], Ink::Grid, 1.0);
             scene.small([left - 6.0, y + 0.35 * SMALL], text, Ink::Muted, Anchor::End);
@@ -73,10 +74,11 @@ impl Axis {
 
     /// Tick texts below `bottom`, with grid lines up to `top`.
     pub(crate) fn draw_below(&self, scene: &mut Scene, top: f64, bottom: f64) {
-        for (value, text) in self.ticks(64.0) {
+        for (value, text) in self.ticks(56.0) {
             let x = self.place(value);
             scene.line([[x, top], [x, bottom]], Ink::Grid, 1.0);
-            scene.small([x, bottom + 5.0 + SMALL], text, Ink::Muted, Anchor::Middle);
+            let inside = x.min(scene.width - 0.5 * font::text_width(&text, SMALL));
+            scene.small([inside, bottom + 5.0 + SMALL], text, Ink::Muted, Anchor::Middle);
         }
     }
 }
@@ -109,22 +111,39 @@ fn widen([low, high]: [f64; 2]) -> [f64; 2] {
     }
 }
 
+/// Multiples of the smallest round step that gives at most `most` intervals, or of the next one with two values.
 fn round_values([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {
     let rough = (high - low) / most;
     let power = 10f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0]
+    let bounds = |step: f64| ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|head| head * power);
+    let coarse = steps
         .into_iter()
-        .map(|head| head * power)
-        .find(|&step| step >= rough * 0.999);
-    let step = step.unwrap_or(10.0 * power);
-    let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-    let (first, last) = ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());
+        .find(|&step| step >= rough * 0.999)
+        .unwrap_or(10.0 * power);
+    let finer = [1.0, 0.5, 0.4, 0.2]
+        .map(|part| part * coarse)
+        .into_iter()
+        .filter(|&step| is_round(step));
+    let step = finer
+        .clone()
+        .find(|&step| bounds(step).1 > bounds(step).0)
+        .unwrap_or(coarse);
+    let decimals = (-(step * 1.001).log10().floor()).clamp(0.0, 9.0) as usize;
+    let (first, last) = bounds(step);
     let count = (last - first).clamp(0.0, 1000.0) as usize;
     (0..=count)
         .map(|index| (first + index as f64) * step)
-        .filter(|value| *value <= high + 1e-6 * step)
         .map(|value| (value, fixed(value, decimals)))
         .collect()
+}
+
+/// Whether a step is 1, 2 or 5 times a power of ten.
+fn is_round(step: f64) -> bool {
+    let head = step / 10f64.powf((step * 1.001).log10().floor());
+    [1.0, 2.0, 5.0]
+        .into_iter()
+        .any(|round| (head - round).abs() < 0.01)
 }
 
 fn decades([low, high]: [f64; 2], most: f64) -> Vec<(f64, String)> {

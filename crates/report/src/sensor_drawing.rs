@@ -100,7 +100,7 @@ const DIMENSION_ROW: f64 = 24.0;
 const UPRIGHT_ROW: f64 = 54.0;
 
 impl SensorDrawing {
-    /// Draws all views, 920 px wide.
+    /// Draws all views, 920 px wide at most.
     pub fn scene(&self) -> Scene {
         let upright = |view: &View| {
             view.dimensions
@@ -116,7 +116,7 @@ impl SensorDrawing {
 
         let mut scene = Scene::new(&self.title, WIDTH, 0.0);
         scene.title([0.0, 14.0], &self.title);
-        let mut top = 30.0 + scene.legend([0.0, 36.0], &self.legend());
+        let mut top = 48.0 + scene.legend([0.0, 36.0], &self.legend());
         for (view, [x_mm, y_mm]) in self.views.iter().zip(boxes) {
             scene.small([0.0, top], &view.name, Ink::Muted, Anchor::Start);
             top += 14.0;
@@ -134,6 +134,7 @@ impl SensorDrawing {
             top = bottom + DIMENSION_ROW * level as f64 + 30.0;
         }
         scene.height = top;
+        scene.width = (left + scale * widest + 16.0).clamp(560.0, WIDTH);
         scene
     }
 
@@ -300,7 +301,7 @@ impl View {
                 let x = left - UPRIGHT_ROW * upright as f64 + 34.0;
                 let (top, low) = (from[1].min(to[1]), from[1].max(to[1]));
                 for point in [from, to] {
-                    scene.line([[x - 4.0, point[1]], [point[0] - 2.0, point[1]]], Ink::Grid, 1.0);
+                    scene.line([[x - 4.0, point[1]], [point[0] - 2.0, point[1]]], Ink::Muted, 0.6);
                 }
                 arrow(scene, [x, top], [x, low]);
                 let text = label((dimension.to_mm[1] - dimension.from_mm[1]).abs());
@@ -310,11 +311,15 @@ impl View {
                 let y = bottom + DIMENSION_ROW * level as f64 - 4.0;
                 let (start, end) = (from[0].min(to[0]), from[0].max(to[0]));
                 for point in [from, to] {
-                    scene.line([[point[0], point[1] + 2.0], [point[0], y + 4.0]], Ink::Grid, 1.0);
+                    scene.line([[point[0], point[1] + 2.0], [point[0], y + 4.0]], Ink::Muted, 0.6);
                 }
                 arrow(scene, [start, y], [end, y]);
                 let text = label((dimension.to_mm[0] - dimension.from_mm[0]).abs());
-                scene.small([0.5 * (start + end), y - 5.0], text, Ink::Text, Anchor::Middle);
+                if font::text_width(&text, SMALL) < end - start - 4.0 {
+                    scene.small([0.5 * (start + end), y - 5.0], text, Ink::Text, Anchor::Middle);
+                } else {
+                    scene.small([end + 6.0, y + 4.0], text, Ink::Text, Anchor::Start);
+                }
             }
         }
         level

@@ -30,18 +30,19 @@ pub(super) fn badge(provenance: Provenance) -> String {
     format!("<span class=\"badge {word}\">{word}</span>")
 }
 
-/// A picture with its caption.
-pub(super) fn figure(scene: &Scene, provenance: Provenance, caption: &str) -> String {
-    framed_figure("", scene, provenance, caption)
+/// A picture with its caption, and a badge if its numbers come from a sensor or stand for one.
+pub(super) fn figure(scene: &Scene, provenance: impl Into<Option<Provenance>>, caption: &str) -> String {
+    framed_figure("", scene, provenance.into(), caption)
 }
 
 /// A picture that takes the whole width.
-pub(super) fn wide_figure(scene: &Scene, provenance: Provenance, caption: &str) -> String {
-    framed_figure(" class=\"wide\"", scene, provenance, caption)
+pub(super) fn wide_figure(scene: &Scene, caption: &str) -> String {
+    framed_figure(" class=\"wide\"", scene, None, caption)
 }
 
-fn framed_figure(class: &str, scene: &Scene, provenance: Provenance, caption: &str) -> String {
-    let (picture, badge, caption) = (svg(scene), badge(provenance), escape(caption));
+fn framed_figure(class: &str, scene: &Scene, provenance: Option<Provenance>, caption: &str) -> String {
+    let badge = provenance.map_or(String::new(), badge);
+    let (picture, caption) = (svg(scene), escape(caption));
     format!(
         "<figure{class}><div class=\"plot\">{picture}</div><figcaption>{badge} {caption}</figcaption></figure>\n"
     )
@@ -49,7 +50,11 @@ fn framed_figure(class: &str, scene: &Scene, provenance: Provenance, caption: &s
 
 /// Figures beside each other where there is room.
 pub(super) fn figures(figures: &[String]) -> String {
-    if figures.is_empty() { String::new() } else { format!("<div class=\"figures\">\n{}</div>\n", figures.concat()) }
+    if figures.is_empty() {
+        String::new()
+    } else {
+        format!("<div class=\"figures\">\n{}</div>\n", figures.concat())
+    }
 }
 
 /// One cell of a table.
@@ -86,16 +91,24 @@ pub(super) fn table(caption: &str, head: &[&str], rows: &[(bool, Vec<Cell>)]) ->
         return String::new();
     }
     let is_words = |column: usize| {
-        rows.iter().all(|(_, row)| !matches!(row.get(column), Some(Cell::Number(_))))
+        rows.iter()
+            .all(|(_, row)| !matches!(row.get(column), Some(Cell::Number(_))))
     };
-    let mut out = format!("<div class=\"scroll\"><table><caption>{}</caption>\n<thead><tr>", escape(caption));
+    let mut out = format!(
+        "<div class=\"scroll\"><table><caption>{}</caption>\n<thead><tr>",
+        escape(caption)
+    );
     for (column, name) in head.iter().enumerate() {
         let class = if is_words(column) { "" } else { " class=\"number\"" };
         let _ = write!(out, "<th scope=\"col\"{class}>{}</th>", escape(name));
     }
     out.push_str("</tr></thead>\n<tbody>\n");
     for (emphasised, row) in rows {
-        out.push_str(if *emphasised { "<tr class=\"chosen\">" } else { "<tr>" });
+        out.push_str(if *emphasised {
+            "<tr class=\"chosen\">"
+        } else {
+            "<tr>"
+        });
         for cell in row {
             let _ = match cell {
                 Cell::Words(text) => write!(out, "<td>{}</td>", escape(text)),
@@ -114,7 +127,10 @@ pub(super) fn cards(cards: &[(String, &str, Provenance)]) -> String {
     let mut out = String::from("<div class=\"cards\">\n");
     for (value, name, provenance) in cards {
         let (value, name, badge) = (escape(value), escape(name), badge(*provenance));
-        let _ = writeln!(out, "<div class=\"card\"><b>{value}</b><span>{name}</span>{badge}</div>");
+        let _ = writeln!(
+            out,
+            "<div class=\"card\"><b>{value}</b><span>{name}</span>{badge}</div>"
+        );
     }
     out.push_str("</div>\n");
     out
@@ -122,7 +138,11 @@ pub(super) fn cards(cards: &[(String, &str, Provenance)]) -> String {
 
 /// A paragraph.
 pub(super) fn paragraph(text: &str) -> String {
-    if text.is_empty() { String::new() } else { format!("<p>{}</p>\n", escape(text)) }
+    if text.is_empty() {
+        String::new()
+    } else {
+        format!("<p>{}</p>\n", escape(text))
+    }
 }
 
 /// An error in % with two significant digits at least.

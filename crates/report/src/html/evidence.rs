@@ -11,13 +11,29 @@ use crate::svg::escape;
 
 fn series(name: &str, x: &[f64], y: &[f64], ink: Ink, dashed: bool) -> Series {
     let points = x.iter().zip(y).map(|(&x, &y)| [x, y]).collect();
-    Series { name: name.into(), points, ink, width_px: 1.75, dashed }
+    Series {
+        name: name.into(),
+        points,
+        ink,
+        width_px: 1.75,
+        dashed,
+    }
 }
 
 fn single(title: &str, x_label: &str, y_label: &str, series: Vec<Series>, logarithmic: bool) -> Panels {
-    let panel = Panel { y_label: y_label.into(), series, ..Panel::default() };
+    let panel = Panel {
+        y_label: y_label.into(),
+        series,
+        ..Panel::default()
+    };
     let (title, x_label) = (title.into(), x_label.into());
-    Panels { title, x_label, panels: vec![panel], panel_height_px: 200.0, logarithmic }
+    Panels {
+        title,
+        x_label,
+        panels: vec![panel],
+        panel_height_px: 200.0,
+        logarithmic,
+    }
 }
 
 /// Losses over steps, one chart a variant.
@@ -31,7 +47,7 @@ pub(super) fn training(data: &ReportData) -> Option<Section> {
                 series("validation", &curve.step, &curve.validation_loss, Ink::Twin, false),
             ];
             let chart = single(&curve.name, "optimiser step", "loss", lines, true);
-            let caption = "Training stops to help where the validation loss stops falling.";
+            let caption = "Where the validation loss rises while the training loss falls, the twin learns its examples by heart.";
             figure(&chart.scene(), data.provenance, caption)
         })
         .collect();
@@ -40,13 +56,19 @@ pub(super) fn training(data: &ReportData) -> Option<Section> {
 
 /// What was fitted about the bench.
 pub(super) fn bench(data: &ReportData) -> Option<Section> {
-    let BenchFit { parameters, gains, objective_by_radius } = data.bench.as_ref()?;
+    let BenchFit {
+        parameters,
+        gains,
+        objective_by_radius,
+    } = data.bench.as_ref()?;
     let source = data.provenance;
     let rows: Vec<_> = parameters
         .iter()
         .map(|parameter| {
             let value = short(parameter.value);
-            let spread = parameter.uncertainty.map_or(String::new(), |half| format!(" ± {}", short(half)));
+            let spread = parameter
+                .uncertainty
+                .map_or(String::new(), |half| format!(" ± {}", short(half)));
             let cells = vec![
                 Cell::words(&parameter.name),
                 Cell::Number(format!("{value}{spread} {}", parameter.unit)),
@@ -64,15 +86,39 @@ pub(super) fn bench(data: &ReportData) -> Option<Section> {
             text: fixed(gain.value, 2),
             ink: Ink::Series(0),
         });
-        let (title, x_label) = ("Gain of each taxel".into(), "measured over simulated pressure".into());
-        let chart = Bars { title, x_label, bars: bars.collect() };
-        pictures.push(figure(&chart.scene(), source, "One number a taxel: trapped air and the port's filling differ."));
+        let (title, x_label) = (
+            "Gain of each taxel".into(),
+            "measured over simulated pressure".into(),
+        );
+        let chart = Bars {
+            title,
+            x_label,
+            bars: bars.collect(),
+        };
+        pictures.push(figure(
+            &chart.scene(),
+            source,
+            "One number a taxel, with its uncertainty.",
+        ));
     }
     if !objective_by_radius.is_empty() {
         let points = objective_by_radius.clone();
-        let line = Series { name: String::new(), points, ink: Ink::Series(0), width_px: 1.75, dashed: false };
-        let chart = single("Fit of the indenter's radius", "radius, mm", "objective, %", vec![line], false);
-        let caption = "A sharp valley means that the data decide the radius; a flat one means that they do not.";
+        let line = Series {
+            name: String::new(),
+            points,
+            ink: Ink::Series(0),
+            width_px: 1.75,
+            dashed: false,
+        };
+        let chart = single(
+            "Fit of the indenter's radius",
+            "radius, mm",
+            "objective, %",
+            vec![line],
+            false,
+        );
+        let caption =
+            "A sharp valley means that the data decide the radius; a flat one means that they do not.";
         pictures.push(figure(&chart.scene(), source, caption));
     }
     let body = figures(&pictures) + &table("Fitted quantities", &["quantity", "value", "source"], &rows);
@@ -85,12 +131,28 @@ pub(super) fn alignment(data: &ReportData) -> Option<Section> {
         return None;
     }
     let lines = data.warps.iter().enumerate().map(|(index, warp)| {
-        series(&warp.name, &warp.time_s, &warp.shift_s, Ink::Series(index), index >= crate::PALETTE.len())
+        series(
+            &warp.name,
+            &warp.time_s,
+            &warp.shift_s,
+            Ink::Series(index),
+            index >= crate::PALETTE.len(),
+        )
     });
-    let chart = single("Shift of the simulation", "time, s", "shift, s", lines.collect(), false);
+    let chart = single(
+        "Shift of the simulation",
+        "time, s",
+        "shift, s",
+        lines.collect(),
+        false,
+    );
     let caption = "Simulated time matched to each measured frame, minus that frame's time. Flat and near zero: the \
                    two clocks agree. A wandering line: the match bends time to hide an error.";
-    Section::new("alignment", "Alignment", figures(&[figure(&chart.scene(), data.provenance, caption)]))
+    Section::new(
+        "alignment",
+        "Alignment",
+        figures(&[figure(&chart.scene(), data.provenance, caption)]),
+    )
 }
 
 /// How far the simulation can be trusted.
@@ -98,10 +160,22 @@ pub(super) fn simulation(data: &ReportData) -> Option<Section> {
     let quality = data.simulation.as_ref()?;
     let source = Provenance::Simulated;
     let mut body = cards(&[
-        (format!("{} of {}", quality.converged_frames, quality.frames), "frames converged", source),
+        (
+            format!("{} of {}", quality.converged_frames, quality.frames),
+            "frames converged",
+            source,
+        ),
         (short(quality.worst_residual), "worst relative residual", source),
-        (format!("{} mm", short(quality.largest_penetration_mm)), "largest penetration", source),
-        (short(quality.smallest_volume_ratio), "smallest volume ratio of an element", source),
+        (
+            format!("{} mm", short(quality.largest_penetration_mm)),
+            "largest penetration",
+            source,
+        ),
+        (
+            short(quality.smallest_volume_ratio),
+            "smallest volume ratio of an element",
+            source,
+        ),
     ]);
     if quality.failures.is_empty() {
         body += &paragraph("No simulated press failed.");
@@ -121,7 +195,7 @@ pub(super) fn sensor(data: &ReportData) -> Option<Section> {
     let mut body = String::new();
     if let Some(drawing) = &sensor.drawing {
         let caption = format!("{}, drawn from its description; dimensions in mm.", sensor.name);
-        body += &wide_figure(&drawing.scene(), Provenance::Simulated, &caption);
+        body += &wide_figure(&drawing.scene(), &caption);
     }
     body += &fact_list(&sensor.facts);
     Section::new("sensor", "The sensor", body)
@@ -131,7 +205,11 @@ pub(super) fn sensor(data: &ReportData) -> Option<Section> {
 pub(super) fn making_of(data: &ReportData) -> Option<Section> {
     let mut body = String::new();
     if !data.command.is_empty() {
-        let _ = writeln!(body, "<pre class=\"command\"><code>{}</code></pre>", escape(&data.command));
+        let _ = writeln!(
+            body,
+            "<pre class=\"command\"><code>{}</code></pre>",
+            escape(&data.command)
+        );
     }
     let seed = data.seed.map(|seed| Fact::new("seed", seed.to_string()));
     let facts: Vec<Fact> = data.versions.iter().cloned().chain(seed).collect();
@@ -144,13 +222,20 @@ pub(super) fn making_of(data: &ReportData) -> Option<Section> {
             text: format!("{} s", short(stage.wall_s)),
             ink: Ink::Series(0),
         });
-        let chart = Bars { title: "Time by stage".into(), x_label: "wall time, s".into(), bars: bars.collect() };
+        let chart = Bars {
+            title: "Time by stage".into(),
+            x_label: "wall time, s".into(),
+            bars: bars.collect(),
+        };
         let caption = "Measured while this report was made; it depends on the machine.";
-        body += &figures(&[figure(&chart.scene(), Provenance::Real, caption)]);
+        body += &figures(&[figure(&chart.scene(), None, caption)]);
     }
     if !data.settings.is_empty() {
         let settings = escape(&data.settings);
-        let _ = writeln!(body, "<details><summary>Settings used</summary><pre><code>{settings}</code></pre></details>");
+        let _ = writeln!(
+            body,
+            "<details><summary>Settings used</summary><pre><code>{settings}</code></pre></details>"
+        );
     }
     Section::new("making-of", "How it was made", body)
 }
@@ -161,7 +246,12 @@ fn fact_list(facts: &[Fact]) -> String {
     }
     let mut out = String::from("<dl class=\"facts\">\n");
     for fact in facts {
-        let _ = writeln!(out, "<div><dt>{}</dt><dd>{}</dd></div>", escape(&fact.name), escape(&fact.value));
+        let _ = writeln!(
+            out,
+            "<div><dt>{}</dt><dd>{}</dd></div>",
+            escape(&fact.name),
+            escape(&fact.value)
+        );
     }
     out.push_str("</dl>\n");
     out

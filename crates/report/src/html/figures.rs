@@ -30,9 +30,19 @@ pub(super) fn presses(data: &ReportData) -> Option<Section> {
 }
 
 fn press_panels(press: &PressSeries) -> Panels {
-    let over_time = |values: &[f64]| press.time_s.iter().zip(values).map(|(&time, &value)| [time, value]).collect();
+    let over_time = |values: &[f64]| {
+        press
+            .time_s
+            .iter()
+            .zip(values)
+            .map(|(&time, &value)| [time, value])
+            .collect()
+    };
     let taxel_values = |frames: &[Vec<f64>], taxel: usize| -> Vec<f64> {
-        frames.iter().map(|frame| frame.get(taxel).copied().unwrap_or(f64::NAN)).collect()
+        frames
+            .iter()
+            .map(|frame| frame.get(taxel).copied().unwrap_or(f64::NAN))
+            .collect()
     };
     let readings = press.sensor_kpa.iter().chain(&press.twin_kpa).flatten().copied();
     let y_range = extent(readings).map(|range| padded(range, 0.06));
@@ -54,20 +64,46 @@ fn press_panels(press: &PressSeries) -> Panels {
         })
         .collect();
     if !(press.sensor_force_n.is_empty() && press.twin_force_n.is_empty()) {
-        let series = vec![sensor(over_time(&press.sensor_force_n)), twin(over_time(&press.twin_force_n))];
-        let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
-        panels.push(Panel { name: "force".into(), y_label: "N".into(), series, y_range: None });
+        let series = vec![
+            sensor(over_time(&press.sensor_force_n)),
+            twin(over_time(&press.twin_force_n)),
+        ];
+        let series = series
+            .into_iter()
+            .filter(|series| !series.points.is_empty())
+            .collect();
+        panels.push(Panel {
+            name: "force".into(),
+            y_label: "N".into(),
+            series,
+            y_range: None,
+        });
     }
     if !press.depth_mm.is_empty() {
         let series = vec![line("", over_time(&press.depth_mm), Ink::Series(0), 1.5)];
-        panels.push(Panel { name: "depth".into(), y_label: "mm".into(), series, y_range: None });
+        panels.push(Panel {
+            name: "depth".into(),
+            y_label: "mm".into(),
+            series,
+            y_range: None,
+        });
     }
     let label = match press.label.as_str() {
         "" => press.name.clone(),
-        label => format!("{}{} press", label[..first_letter(label)].to_uppercase(), &label[first_letter(label)..]),
+        label => format!(
+            "{}{} press",
+            label[..first_letter(label)].to_uppercase(),
+            &label[first_letter(label)..]
+        ),
     };
     let panel_height_px = if panels.len() > 6 { 52.0 } else { 68.0 };
-    Panels { title: label, x_label: "time, s".into(), panels, panel_height_px, logarithmic: false }
+    Panels {
+        title: label,
+        x_label: "time, s".into(),
+        panels,
+        panel_height_px,
+        logarithmic: false,
+    }
 }
 
 fn first_letter(text: &str) -> usize {
@@ -75,7 +111,13 @@ fn first_letter(text: &str) -> usize {
 }
 
 fn line(name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64) -> Series {
-    Series { name: name.into(), points, ink, width_px, dashed: false }
+    Series {
+        name: name.into(),
+        points,
+        ink,
+        width_px,
+        dashed: false,
+    }
 }
 
 /// Pressure maps, sensor beside twin.
@@ -85,8 +127,11 @@ pub(super) fn peaks(data: &ReportData) -> Option<Section> {
         .iter()
         .filter_map(|peak| {
             let chart = peak_maps(peak)?;
-            let caption = format!("{}, at its peak.", peak.name);
-            Some(figure(&chart.scene(), data.provenance, &caption))
+            Some(figure(
+                &chart.scene(),
+                data.provenance,
+                "Sensor and twin at the peak of the press.",
+            ))
         })
         .collect();
     let body = if pictures.is_empty() {
@@ -106,20 +151,33 @@ fn peak_maps(peak: &PressPeak) -> Option<HeatMaps> {
     let map = |name: &str, readings: &[f64]| {
         // A map that cannot be drawn (readings missing, two taxels at one place) is left out.
         let map = pressure_map(&peak.taxels_mm, readings, &baseline, peak.gel_mm, &settings).ok()?;
-        Some(HeatMap { name: name.into(), map })
+        Some(HeatMap {
+            name: name.into(),
+            map,
+        })
     };
     let maps = vec![map("sensor", &peak.sensor_kpa)?, map("twin", &peak.twin_kpa)?];
     let (taxels_mm, contact_mm) = (peak.taxels_mm.clone(), peak.indenter_mm);
-    Some(HeatMaps { title: peak.name.clone(), maps, taxels_mm, contact_mm })
+    Some(HeatMaps {
+        title: peak.name.clone(),
+        maps,
+        taxels_mm,
+        contact_mm,
+    })
 }
 
 /// Square cells, about 6000 in all.
 fn map_settings(peak: &PressPeak) -> MapSettings {
     let [width, height] = [0, 1].map(|axis| peak.gel_mm.max_mm[axis] - peak.gel_mm.min_mm[axis]);
     let aspect = (width / height).clamp(0.05, 20.0);
-    let columns = (6000.0 * if aspect.is_nan() { 1.0 } else { aspect }).sqrt().ceil();
+    let columns = (6000.0 * if aspect.is_nan() { 1.0 } else { aspect })
+        .sqrt()
+        .ceil();
     let rows = (6000.0 / columns).ceil();
-    MapSettings { grid: [columns as usize, rows as usize], ..MapSettings::default() }
+    MapSettings {
+        grid: [columns as usize, rows as usize],
+        ..MapSettings::default()
+    }
 }
 
 /// Errors over the places of static presses.
@@ -133,9 +191,10 @@ pub(super) fn places(data: &ReportData) -> Option<Section> {
         taxels_mm: errors.taxels_mm.clone(),
     };
     let mut pictures = Vec::new();
-    for (title, values) in
-        [("Error, nearest taxel", &errors.nearest_percent), ("Error, all taxels", &errors.all_percent)]
-    {
+    for (title, values) in [
+        ("Error, nearest taxel", &errors.nearest_percent),
+        ("Error, all taxels", &errors.all_percent),
+    ] {
         if !values.is_empty() {
             let caption = "Absolute error of each held-out press where it was made, % of the largest reading. \
                            Dots with a white rim are taxels; the scale ends at the 99th percentile.";

@@ -38,7 +38,11 @@ pub fn render(data: &ReportData) -> String {
     .flatten()
     .collect();
 
-    let title = if data.title.is_empty() { "TwinTac report" } else { &data.title };
+    let title = if data.title.is_empty() {
+        "TwinTac report"
+    } else {
+        &data.title
+    };
     let title = escape(title);
     let mut page = String::new();
     let _ = write!(
@@ -53,7 +57,12 @@ pub fn render(data: &ReportData) -> String {
     );
     page.push_str("<div class=\"columns\">\n<nav aria-label=\"Contents\"><ul>\n");
     for section in &sections {
-        let _ = writeln!(page, "<li><a href=\"#{}\">{}</a></li>", section.id, escape(section.title));
+        let _ = writeln!(
+            page,
+            "<li><a href=\"#{}\">{}</a></li>",
+            section.id,
+            escape(section.title)
+        );
     }
     page.push_str("</ul></nav>\n<main>\n");
     for section in &sections {

@@ -2,7 +2,7 @@
 
 use super::elements::{Cell, Section, cards, figure, figures, paragraph, percent, table};
 use crate::color::Ink;
-use crate::data::{PAPER_ERROR_PERCENT, Provenance, ReferenceKind, ReportData};
+use crate::data::{Headline, PAPER_ERROR_PERCENT, Provenance, ReferenceKind, ReportData};
 use crate::plot::{Bar, Bars, Density};
 
 const NEAREST: &str = "nearest taxel in contact";
@@ -19,10 +19,13 @@ pub(super) fn result(data: &ReportData) -> Option<Section> {
             (percent(headline.nearest_in_contact_percent), NEAREST, source),
             (percent(headline.all_percent), ALL, source),
             (headline.presses.to_string(), "held-out presses", source),
-            (percent(PAPER_ERROR_PERCENT), "the paper, its own sensor", Provenance::Real),
+            (
+                percent(PAPER_ERROR_PERCENT),
+                "the paper, its own sensor",
+                Provenance::Real,
+            ),
         ]);
         body += &paragraph(&headline.definition);
-        let bar = |name: &str, value: f64, ink| bar(name, value, ink);
         let mut bars = vec![bar("this twin", headline.nearest_in_contact_percent, Ink::Twin)];
         for reference in &headline.references {
             let ink = match reference.kind {
@@ -32,10 +35,15 @@ pub(super) fn result(data: &ReportData) -> Option<Section> {
             bars.push(bar(&reference.name, reference.nearest_in_contact_percent, ink));
         }
         bars.push(bar("paper (its own sensor)", PAPER_ERROR_PERCENT, Ink::Series(0)));
-        let chart = Bars { title: format!("Error, {NEAREST}"), x_label: ERROR_AXIS.into(), bars };
+        let chart = Bars {
+            title: format!("Error, {NEAREST}"),
+            x_label: ERROR_AXIS.into(),
+            bars,
+        };
         let caption = "Shorter is better. Grey: simpler predictors. Green: the sensor's own repeatability. \
                        Blue: the figure that the paper reports for another sensor and protocol (real).";
-        pictures.push(figure(&chart.scene(), source, caption));
+        let comparison = figure(&chart.scene(), source, caption) + &references(headline, source);
+        pictures.push(format!("<div>{comparison}</div>\n"));
     }
     if let Some(agreement) = &data.agreement {
         let pairs = agreement.measured_kpa.iter().zip(&agreement.predicted_kpa);
@@ -43,41 +51,48 @@ pub(super) fn result(data: &ReportData) -> Option<Section> {
             title: "Twin against sensor".into(),
             x_label: "sensor, kPa".into(),
             y_label: "twin, kPa".into(),
-            points: pairs.map(|(&measured, &predicted)| [measured, predicted]).collect(),
+            points: pairs
+                .map(|(&measured, &predicted)| [measured, predicted])
+                .collect(),
         };
         let caption = "Every held-out reading. On the dashed line the twin equals the sensor; the shade counts \
-                       frames logarithmically.";
+                       readings logarithmically.";
         pictures.push(figure(&chart.scene(), data.provenance, caption));
     }
-    if let Some(headline) = data.headline.as_ref().filter(|headline| !headline.references.is_empty()) {
-        body += &figures(&pictures);
-        let own = vec![
-            Cell::words("this twin"),
-            Cell::percent(headline.nearest_in_contact_percent),
-            Cell::percent(headline.all_percent),
-            Cell::Source(data.provenance),
-        ];
-        let rows = headline.references.iter().map(|reference| {
-            let cells = vec![
-                Cell::words(&reference.name),
-                Cell::percent(reference.nearest_in_contact_percent),
-                Cell::percent(reference.all_percent.unwrap_or(f64::NAN)),
-                Cell::Source(data.provenance),
-            ];
-            (false, cells)
-        });
-        let paper = vec![
-            Cell::words("paper (its own sensor and protocol)"),
-            Cell::percent(f64::NAN),
-            Cell::percent(PAPER_ERROR_PERCENT),
-            Cell::Source(Provenance::Real),
-        ];
-        let rows: Vec<_> = std::iter::once((true, own)).chain(rows).chain([(false, paper)]).collect();
-        body += &table("The twin beside what it is compared to", &["", NEAREST, ALL, "source"], &rows);
-    } else {
-        body += &figures(&pictures);
-    }
+    body += &figures(&pictures);
     Section::new("result", "Result", body)
+}
+
+/// The twin's errors and those of its references in numbers.
+fn references(headline: &Headline, source: Provenance) -> String {
+    let row = |name: &str, nearest: f64, all: f64, source: Provenance| {
+        vec![
+            Cell::words(name),
+            Cell::percent(nearest),
+            Cell::percent(all),
+            Cell::Source(source),
+        ]
+    };
+    let own = row(
+        "this twin",
+        headline.nearest_in_contact_percent,
+        headline.all_percent,
+        source,
+    );
+    let others = headline.references.iter().map(|reference| {
+        let all = reference.all_percent.unwrap_or(f64::NAN);
+        (
+            false,
+            row(&reference.name, reference.nearest_in_contact_percent, all, source),
+        )
+    });
+    // The paper does not say which frames and taxels its mean is over.
+    let paper = row("paper", PAPER_ERROR_PERCENT, f64::NAN, Provenance::Real);
+    let rows: Vec<_> = std::iter::once((true, own))
+        .chain(others)
+        .chain([(false, paper)])
+        .collect();
+    table("The same in numbers", &["", "nearest", "all", "source"], &rows)
 }
 
 /// Errors by taxel and by depth.
@@ -85,19 +100,32 @@ pub(super) fn where_it_errs(data: &ReportData) -> Option<Section> {
     let source = data.provenance;
     let mut pictures = Vec::new();
     if !data.taxels.is_empty() {
-        let bars = data.taxels.iter().map(|taxel| bar(&taxel.name, taxel.nearest_in_contact_percent, Ink::Twin));
-        let chart =
-            Bars { title: "Error by taxel".into(), x_label: ERROR_AXIS.into(), bars: bars.collect() };
+        let bars = data
+            .taxels
+            .iter()
+            .map(|taxel| bar(&taxel.name, taxel.nearest_in_contact_percent, Ink::Twin));
+        let chart = Bars {
+            title: "Error by taxel".into(),
+            x_label: ERROR_AXIS.into(),
+            bars: bars.collect(),
+        };
         let caption = "Frames in contact in which the taxel reads the most.";
         pictures.push(figure(&chart.scene(), source, caption));
     }
     if !data.depths.is_empty() {
         let bars = data.depths.iter().map(|depth| {
-            let name = format!("{}–{} mm", crate::axis::short(depth.from_mm), crate::axis::short(depth.to_mm));
+            let name = format!(
+                "{}–{} mm",
+                crate::axis::short(depth.from_mm),
+                crate::axis::short(depth.to_mm)
+            );
             bar(&name, depth.nearest_in_contact_percent, Ink::Twin)
         });
-        let chart =
-            Bars { title: "Error by depth".into(), x_label: ERROR_AXIS.into(), bars: bars.collect() };
+        let chart = Bars {
+            title: "Error by depth".into(),
+            x_label: ERROR_AXIS.into(),
+            bars: bars.collect(),
+        };
         let frames: usize = data.depths.iter().map(|depth| depth.frames).sum();
         let caption = format!("Nearest taxel in contact, by the indenter's depth; {frames} frames.");
         pictures.push(figure(&chart.scene(), source, &caption));
@@ -141,8 +169,21 @@ pub(super) fn recordings(data: &ReportData) -> Option<Section> {
             (false, cells)
         })
         .collect();
-    let head = ["recording", "used for", "presses", "frames", "largest reading, kPa", NEAREST, ALL, "source"];
-    Section::new("recordings", "Recordings", table("Errors of each recording", &head, &rows))
+    let head = [
+        "recording",
+        "used for",
+        "presses",
+        "frames",
+        "largest reading, kPa",
+        NEAREST,
+        ALL,
+        "source",
+    ];
+    Section::new(
+        "recordings",
+        "Recordings",
+        table("Errors of each recording", &head, &rows),
+    )
 }
 
 /// Variants, the chosen one emphasised.
@@ -153,10 +194,13 @@ pub(super) fn variants(data: &ReportData) -> Option<Section> {
             let ink = if variant.chosen { Ink::Twin } else { Ink::Sensor };
             bar(&variant.name, variant.nearest_in_contact_percent, ink)
         });
-        let chart =
-            Bars { title: "Error by variant".into(), x_label: ERROR_AXIS.into(), bars: bars.collect() };
-        let caption = "Held-out error, nearest taxel in contact. The coloured one was chosen by its validation \
-                       error, before the held-out presses were looked at.";
+        let chart = Bars {
+            title: "Error by variant".into(),
+            x_label: ERROR_AXIS.into(),
+            bars: bars.collect(),
+        };
+        let caption =
+            "Held-out error, nearest taxel in contact. The coloured one is the twin of this report.";
         body += &figures(&[figure(&chart.scene(), data.provenance, caption)]);
     }
     let rows: Vec<_> = data
@@ -180,5 +224,11 @@ pub(super) fn variants(data: &ReportData) -> Option<Section> {
 }
 
 fn bar(name: &str, value: f64, ink: Ink) -> Bar {
-    Bar { name: name.into(), value, uncertainty: None, text: percent(value), ink }
+    Bar {
+        name: name.into(),
+        value,
+        uncertainty: None,
+        text: percent(value),
+        ink,
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::elements::percent;
+use super::elements::{badge, percent};
 use crate::data::{Headline, PAPER_ERROR_PERCENT, Provenance, ReferenceKind, ReportData};
 use crate::svg::escape;
 
@@ -10,8 +10,18 @@ use crate::svg::escape;
 pub(super) fn paragraphs(data: &ReportData) -> String {
     let mut out = String::new();
     if let Some(headline) = &data.headline {
-        let _ = writeln!(out, "<p class=\"lead\">{}</p>", escape(&result(headline, data.provenance)));
-        let _ = writeln!(out, "<p>{}</p>", escape(&comparison(headline)));
+        let (source, paper_source) = (badge(data.provenance), badge(Provenance::Real));
+        let (result, comparison) = (
+            escape(&result(headline, data.provenance)),
+            escape(&comparison(headline)),
+        );
+        let paper = percent(PAPER_ERROR_PERCENT);
+        let _ = writeln!(out, "<p class=\"lead\">{result} {source}</p>");
+        let _ = writeln!(
+            out,
+            "<p>{comparison} {source} The paper reports {paper} {paper_source} for its own sensor and protocol, so the \
+             two figures cannot be compared directly.</p>"
+        );
     }
     if !data.warnings.is_empty() {
         out.push_str("<aside class=\"warnings\" role=\"note\"><b>Before you trust a number</b><ul>\n");
@@ -54,21 +64,26 @@ fn comparison(headline: &Headline) -> String {
         })
     };
     let baselines: Vec<String> = known(ReferenceKind::Baseline)
-        .map(|reference| format!("{} {}", reference.name, percent(reference.nearest_in_contact_percent)))
+        .map(|reference| {
+            format!(
+                "{} {}",
+                reference.name,
+                percent(reference.nearest_in_contact_percent)
+            )
+        })
         .collect();
     if !baselines.is_empty() {
-        sentences.push(format!("Simpler predictors of the same readings: {}.", baselines.join(", ")));
+        sentences.push(format!(
+            "Simpler predictors of the same readings: {}.",
+            baselines.join(", ")
+        ));
     }
     for floor in known(ReferenceKind::Floor) {
         sentences.push(format!(
-            "The sensor repeats itself to within {}, and no twin can be closer than that.",
+            "The sensor repeats itself to within {}: the floor for any twin.",
             percent(floor.nearest_in_contact_percent)
         ));
     }
-    sentences.push(format!(
-        "The paper reports {} for its own sensor and protocol, so the two are neighbours, not rivals.",
-        percent(PAPER_ERROR_PERCENT)
-    ));
     sentences.join(" ")
 }
 
@@ -78,13 +93,20 @@ mod tests {
 
     #[test]
     fn the_lead_says_who_how_many_and_how_well() {
-        let headline = Headline { presses: 12, nearest_in_contact_percent: 1.3, ..Headline::default() };
+        let headline = Headline {
+            presses: 12,
+            nearest_in_contact_percent: 1.3,
+            ..Headline::default()
+        };
         assert_eq!(
             result(&headline, Provenance::Real),
             "The twin predicts the nearest taxel’s reading on 12 presses that it never saw with 1.30 % error (real data)."
         );
         assert!(result(&headline, Provenance::Emulated).contains("nothing about a physical sensor"));
-        let unknown = Headline { nearest_in_contact_percent: f64::NAN, ..headline };
+        let unknown = Headline {
+            nearest_in_contact_percent: f64::NAN,
+            ..headline
+        };
         assert!(result(&unknown, Provenance::Real).starts_with("No error could be computed"));
     }
 }

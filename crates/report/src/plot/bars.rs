@@ -36,7 +36,7 @@ impl Bars {
     /// Draws the bars, [`WIDTH_PX`] wide.
     pub fn scene(&self) -> Scene {
         const ROW: f64 = 24.0;
-        const LONGEST_NAME: f64 = 170.0;
+        const LONGEST_NAME: f64 = 150.0;
         let widest = |texts: &mut dyn Iterator<Item = &str>| {
             texts
                 .map(|text| font::text_width(text, SMALL))

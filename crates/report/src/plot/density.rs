@@ -1,4 +1,4 @@
-//! Two quantities that should agree, as the logarithm of how many frames fall into each cell.
+//! Two quantities that should agree, as the logarithm of how many readings fall into each cell.
 
 use super::{BELOW, LEFT, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent, padded};
@@ -69,9 +69,9 @@ impl Density {
 
     fn draw_key(&self, scene: &mut Scene, most: f64, shade: impl Fn(f64) -> [u8; 3]) {
         const STEPS: usize = 48;
-        let (y, width) = (26.0, 96.0);
-        scene.small([LEFT, y + 9.0], "frames in a cell:  1", Ink::Muted, Anchor::Start);
-        let left = LEFT + crate::font::text_width("frames in a cell:  1", crate::scene::SMALL) + 6.0;
+        let (y, width) = (26.0, 80.0);
+        scene.small([LEFT, y + 9.0], "readings: 1", Ink::Muted, Anchor::Start);
+        let left = LEFT + crate::font::text_width("readings: 1", crate::scene::SMALL) + 6.0;
         let pixels = (0..STEPS)
             .map(|step| shade(most.powf(step as f64 / (STEPS - 1) as f64)))
             .collect();
@@ -88,12 +88,12 @@ impl Density {
             Anchor::Start,
         );
         scene.dashes(
-            [[left + width + 60.0, y + 5.0], [left + width + 80.0, y + 5.0]],
+            [[left + width + 56.0, y + 5.0], [left + width + 76.0, y + 5.0]],
             Ink::Text,
             1.0,
         );
         scene.small(
-            [left + width + 86.0, y + 9.0],
+            [left + width + 82.0, y + 9.0],
             "agreement",
             Ink::Muted,
             Anchor::Start,

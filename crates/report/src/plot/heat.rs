@@ -32,7 +32,7 @@ impl HeatMaps {
     pub fn scene(&self) -> Scene {
         const WIDTH: f64 = super::WIDTH_PX;
         const GAP: f64 = 16.0;
-        const BAR: f64 = 58.0;
+        const BAR: f64 = 54.0;
         let count = self.maps.len().max(1);
         let aspect = self.maps.first().map_or(1.0, |heat| {
             let [width, height] = size_mm(&heat.map);
@@ -45,11 +45,11 @@ impl HeatMaps {
         let columns = if aspect > 1.6 { 1 } else { count };
         let rows = count.div_ceil(columns);
         let room = WIDTH - BAR;
-        let tall = if columns == 1 { 150.0 } else { 260.0 };
+        let tall = if columns == 1 { 180.0 } else { 260.0 };
         let width = ((room - GAP * (columns - 1) as f64) / columns as f64).min(tall * aspect);
         let height = (width / aspect).max(12.0);
         let (top, pitch_y) = (40.0, height + 34.0);
-        let mut scene = Scene::new(&self.title, WIDTH, top + pitch_y * rows as f64 - 8.0);
+        let mut scene = Scene::new(&self.title, WIDTH, top + pitch_y * rows as f64 - 30.0);
         scene.title([0.0, 14.0], &self.title);
 
         let range = self.range();
@@ -70,7 +70,7 @@ impl HeatMaps {
             right + 12.0,
             [top, bottom.max(top + 60.0)],
         );
-        scene.height = scene.height.max(bottom.max(top + 60.0) + 14.0);
+        scene.height = scene.height.max(bottom.max(top + 60.0) + 6.0);
         scene
     }
 
@@ -160,7 +160,7 @@ pub(crate) fn draw_color_bar(
             Anchor::Start,
         );
     }
-    scene.small([x, top - 6.0], unit, Ink::Muted, Anchor::Start);
+    scene.small([x, top - 10.0], unit, Ink::Muted, Anchor::Start);
 }
 
 #[cfg(test)]

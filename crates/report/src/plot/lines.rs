@@ -71,6 +71,13 @@ impl Panels {
             let bottom = top + self.panel_height_px;
             let last = index + 1 == self.panels.len();
             self.draw_panel(&mut scene, panel, &x_axis, [left, right], [top, bottom]);
+            // Neighbours with the same quantity share one label in the middle.
+            let same = |other: &&Panel| other.y_label == panel.y_label;
+            if index == 0 || self.panels[index - 1].y_label != panel.y_label {
+                let run = self.panels[index..].iter().take_while(same).count() as f64;
+                let middle = top + 0.5 * (run * (self.panel_height_px + GAP) - GAP);
+                scene.upwards([12.0, middle], &panel.y_label);
+            }
             if last {
                 x_axis.draw_below(&mut scene, bottom, bottom);
             }
@@ -108,7 +115,6 @@ impl Panels {
         };
         y_axis.draw_left(scene, left, right);
         let middle = 0.5 * (top + bottom);
-        scene.upwards([12.0, middle], &panel.y_label);
         for series in &panel.series {
             let pixels = thinned(&series.points, 2 * (right - left) as usize);
             let pixels = pixels

@@ -24,7 +24,7 @@ pub struct Places {
 impl Places {
     /// Draws the places in their true proportions; the colour scale ends at the 99th percentile.
     pub fn scene(&self) -> Scene {
-        const HEIGHT: f64 = 380.0;
+        const HEIGHT: f64 = 340.0;
         let shown = || {
             let pairs = self.places_mm.iter().copied().zip(self.values.iter().copied());
             pairs.filter(|(place, value)| place.iter().all(|x| x.is_finite()) && value.is_finite())
@@ -37,7 +37,7 @@ impl Places {
         };
         let (x_range, y_range) = (range(0), range(1));
         let length = |range: [f64; 2]| (range[1] - range[0]).max(1e-9);
-        let scale = ((WIDTH_PX - LEFT - 70.0) / length(x_range)).min(HEIGHT / length(y_range));
+        let scale = ((WIDTH_PX - LEFT - 60.0) / length(x_range)).min(HEIGHT / length(y_range));
         let (left, top) = (LEFT, 34.0);
         let right = left + (scale * length(x_range)).max(40.0);
         let bottom = top + (scale * length(y_range)).max(40.0);
