@@ -1,0 +1,379 @@
+//! Taking a press from one pose of the indenter to the next.
+
+use std::time::Instant;
+
+use glam::DVec3;
+use twintac_shape::{Pose, SignedDistance};
+
+use crate::SolveError;
+use crate::body::SoftBody;
+use crate::contact::RigidBody;
+use crate::material::Relaxation;
+use crate::newton::{Equilibrium, Failure, Step, Unknowns, hold_forces};
+use crate::state::{Frame, Motion, State};
+
+/// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
+const CLEARANCE_MM: f64 = 0.01;
+
+/// How far past the last motion the next may be extrapolated.
+const MAX_EXTRAPOLATION: f64 = 2.0;
+
+impl SoftBody {
+    /// Moves the indenter to a pose within a time, and finds the new equilibrium. A motion too large for one step is halved as
+    /// often as the settings allow. On an error the state stays as it was.
+    pub fn advance(
+        &self,
+        state: &mut State,
+        indenter: &dyn SignedDistance,
+        gel_from_indenter: &Pose,
+        time_step_s: f64,
+    ) -> Result<Frame, SolveError> {
+        check_pose(gel_from_indenter)?;
+        let start = state
+            .gel_from_indenter
+            .unwrap_or_else(|| self.retreat(state, indenter, gel_from_indenter));
+        let drive = Drive::Indenter {
+            shape: indenter,
+            from: start,
+            to: *gel_from_indenter,
+        };
+        self.drive(state, &drive, time_step_s)
+    }
+
+    /// Moves the bonded nodes, with no indenter: `displacements_mm` is in the order of the mesh's set of bonded nodes.
+    pub fn advance_prescribed(
+        &self,
+        state: &mut State,
+        displacements_mm: &[DVec3],
+        time_step_s: f64,
+    ) -> Result<Frame, SolveError> {
+        let bonded = &self.mesh().sets.bonded;
+        if displacements_mm.len() != bonded.len() || displacements_mm.iter().any(|u| !u.is_finite()) {
+            return Err(SolveError::Input {
+                what: "prescribed displacements",
+                expected: format!("{} finite vectors", bonded.len()),
+                found: format!("{} vectors", displacements_mm.len()),
+            });
+        }
+        let from = bonded
+            .iter()
+            .map(|&node| state.displacements_mm[node as usize])
+            .collect();
+        self.drive(
+            state,
+            &Drive::Bonded {
+                from,
+                to: displacements_mm,
+            },
+            time_step_s,
+        )
+    }
+
+    fn drive(&self, state: &mut State, drive: &Drive, time_step_s: f64) -> Result<Frame, SolveError> {
+        let started = Instant::now();
+        if !(time_step_s.is_finite() && time_step_s >= 0.0) {
+            return Err(SolveError::Input {
+                what: "time step",
+                expected: "a finite number of s, 0 or above".into(),
+                found: format!("{time_step_s} s"),
+            });
+        }
+        let before = state.clone();
+        let mut iterations = 0;
+        let (mut done, mut size) = (0.0, 1.0_f64);
+        loop {
+            let next = f64::min(done + size, 1.0);
+            match self.substep(
+                state,
+                drive,
+                [done, next],
+                time_step_s * (next - done),
+                &mut iterations,
+            ) {
+                Ok(equilibrium) if next >= 1.0 => {
+                    let wall_time_s = started.elapsed().as_secs_f64();
+                    return Ok(self.frame(state, &equilibrium, iterations, wall_time_s));
+                }
+                Ok(_) => done = next,
+                Err(_) if 0.5 * size >= self.settings.min_substep => size *= 0.5,
+                Err(failure) => {
+                    let workspace = std::mem::take(&mut state.workspace);
+                    *state = State { workspace, ..before };
+                    return Err(match failure {
+                        Failure::NotConverged { residual } => SolveError::NotConverged {
+                            fraction: done,
+                            residual,
+                            iterations,
+                        },
+                        Failure::Inverted => SolveError::Inverted { fraction: done },
+                        Failure::Singular => SolveError::Singular { fraction: done },
+                    });
+                }
+            }
+        }
+    }
+
+    /// Solves for a part of a step; on failure the state is as before.
+    fn substep(
+        &self,
+        state: &mut State,
+        drive: &Drive,
+        part: [f64; 2],
+        time_step_s: f64,
+        iterations: &mut u32,
+    ) -> Result<Equilibrium, Failure> {
+        let relaxation = Relaxation::new(&self.material().prony, time_step_s);
+        let [from, to] = part.map(|fraction| drive.pose(fraction));
+        let mut shapes = Vec::with_capacity(1 + self.obstacles.len());
+        shapes.push(RigidBody {
+            shape: drive.shape(),
+            gel_from_shape: to,
+        });
+        shapes.extend(self.obstacles.iter().map(|(shape, pose)| RigidBody {
+            shape: shape.as_ref(),
+            gel_from_shape: *pose,
+        }));
+        let old = state.clone();
+        state.touches[0]
+            .iter_mut()
+            .for_each(|touch| touch.forget_distance());
+        drive.hold(self, part[1], &mut state.displacements_mm);
+
+        let State {
+            displacements_mm,
+            pressures_mpa,
+            memory,
+            touches,
+            workspace,
+            last,
+            ..
+        } = &mut *state;
+        let buffers = workspace.buffers(self);
+        let step = Step {
+            relaxation: &relaxation,
+            memory,
+            shapes: &shapes,
+        };
+        let mut x = Unknowns {
+            displacements_mm,
+            pressures_mpa,
+            touches,
+        };
+        let travel_mm = to.position_mm - from.position_mm;
+        let ratio = last
+            .as_ref()
+            .map_or(0.0, |last| extrapolation(last.travel_mm, travel_mm));
+        if let Some(last) = last.as_ref().filter(|_| ratio != 0.0) {
+            // The better of the two starts: where the body is, or where it would be if it went on as before.
+            let plain = buffers.energy(self, &step, &mut x);
+            let as_before = x.displacements_mm.clone();
+            for (u, change) in x.displacements_mm.iter_mut().zip(&last.displacements_mm) {
+                *u += *change * ratio;
+            }
+            let extrapolated = buffers.energy(self, &step, &mut x);
+            let is_better = match (plain, extrapolated) {
+                (Some(plain), Some(extrapolated)) => extrapolated < plain,
+                (None, Some(_)) => true,
+                _ => false,
+            };
+            if !is_better {
+                *x.displacements_mm = as_before;
+            }
+        }
+        match buffers.solve(self, &step, &mut x, iterations) {
+            Ok(equilibrium) => {
+                for (tet, element) in self.elements.iter().enumerate() {
+                    let deformation = element.deformation(displacements_mm);
+                    memory.remember(&relaxation, &self.material().isochoric, tet, &deformation);
+                }
+                hold_forces(touches);
+                if let Drive::Indenter { .. } = drive {
+                    let displacements_mm = state
+                        .displacements_mm
+                        .iter()
+                        .zip(&old.displacements_mm)
+                        .map(|(new, old)| *new - *old)
+                        .collect();
+                    if travel_mm != DVec3::ZERO {
+                        state.last = Some(Motion {
+                            travel_mm,
+                            displacements_mm,
+                        });
+                    }
+                    state.gel_from_indenter = Some(to);
+                }
+                Ok(equilibrium)
+            }
+            Err(failure) => {
+                let workspace = std::mem::take(&mut state.workspace);
+                *state = State { workspace, ..old };
+                Err(failure)
+            }
+        }
+    }
+
+    fn frame(
+        &self,
+        state: &mut State,
+        equilibrium: &Equilibrium,
+        iterations: u32,
+        wall_time_s: f64,
+    ) -> Frame {
+        let origin_mm = state
+            .gel_from_indenter
+            .map_or(DVec3::ZERO, |pose| pose.position_mm);
+        let at_mm = |node: usize| self.mesh().nodes_mm[node] + state.displacements_mm[node];
+        let mut torque = DVec3::ZERO;
+        let mut forces = vec![DVec3::ZERO; state.touches.len()];
+        let mut penetration_mm: f64 = 0.0;
+        for (shape, touches) in state.touches.iter().enumerate() {
+            for (boundary, touch) in self.boundary.iter().zip(touches) {
+                let force = touch.normal * touch.force_n;
+                forces[shape] += force;
+                if shape == 0 {
+                    torque += (at_mm(boundary.node as usize) - origin_mm).cross(force);
+                }
+                penetration_mm = penetration_mm.max(-touch.gap_mm);
+            }
+        }
+        let held = self.bonded_forces_n(state);
+        Frame {
+            indenter_force_n: forces[0],
+            indenter_torque_n_mm: torque,
+            board_reaction_n: held.iter().sum(),
+            obstacle_reaction_n: forces[1..].iter().sum(),
+            converged: true,
+            iterations,
+            residual: equilibrium.residual,
+            penetration_mm,
+            smallest_volume_ratio: equilibrium.smallest_volume_ratio,
+            wall_time_s,
+        }
+    }
+
+    /// The forces that hold the bonded nodes, in their order, N. `[n_bonded]`
+    #[must_use]
+    pub fn bonded_forces_n(&self, state: &State) -> Vec<DVec3> {
+        let now = Relaxation::new(&self.material().prony, 0.0);
+        let mut forces = vec![DVec3::ZERO; self.mesh().nodes_mm.len()];
+        for (tet, element) in self.elements.iter().enumerate() {
+            let deformation = element.deformation(&state.displacements_mm);
+            let offset = now.offset(&state.memory, tet);
+            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
+            let response = now.response_mpa(&self.material().isochoric, &offset, &right_cauchy_green);
+            let element_forces = element.forces(&deformation, &response, element.mean(&state.pressures_mpa));
+            for (&node, force) in element.nodes.iter().zip(element_forces) {
+                forces[node as usize] += force;
+            }
+        }
+        self.mesh()
+            .sets
+            .bonded
+            .iter()
+            .map(|&node| forces[node as usize])
+            .collect()
+    }
+
+    /// A pose near another at which the indenter does not touch the body: straight out of it.
+    fn retreat(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Pose {
+        let mut free = *pose;
+        for _ in 0..20 {
+            let deepest = self
+                .boundary
+                .iter()
+                .map(|boundary| {
+                    let node = boundary.node as usize;
+                    let at_mm = self.mesh().nodes_mm[node] + state.displacements_mm[node];
+                    indenter.signed_distance(free.inverse_transform_point(at_mm))
+                })
+                .min_by(|a, b| a.distance_mm.total_cmp(&b.distance_mm));
+            match deepest {
+                Some(deepest) if deepest.distance_mm < 0.0 => {
+                    free.position_mm -=
+                        free.rotation * deepest.gradient * (CLEARANCE_MM - deepest.distance_mm);
+                }
+                _ => break,
+            }
+        }
+        free
+    }
+}
+
+/// What moves.
+enum Drive<'a> {
+    Indenter {
+        shape: &'a dyn SignedDistance,
+        from: Pose,
+        to: Pose,
+    },
+    Bonded {
+        from: Vec<DVec3>,
+        to: &'a [DVec3],
+    },
+}
+
+impl Drive<'_> {
+    fn pose(&self, fraction: f64) -> Pose {
+        match self {
+            Self::Indenter { from, to, .. } if fraction < 1.0 => Pose {
+                position_mm: from.position_mm.lerp(to.position_mm, fraction),
+                rotation: from.rotation.slerp(to.rotation, fraction),
+            },
+            Self::Indenter { to, .. } => *to,
+            Self::Bonded { .. } => Pose::IDENTITY,
+        }
+    }
+
+    fn shape(&self) -> &dyn SignedDistance {
+        match self {
+            Self::Indenter { shape, .. } => *shape,
+            Self::Bonded { .. } => &Nothing,
+        }
+    }
+
+    /// Puts the bonded nodes where they are to be.
+    fn hold(&self, body: &SoftBody, fraction: f64, displacements_mm: &mut [DVec3]) {
+        if let Self::Bonded { from, to } = self {
+            for ((&node, from), to) in body.mesh().sets.bonded.iter().zip(from).zip(*to) {
+                displacements_mm[node as usize] = from.lerp(*to, fraction);
+            }
+        }
+    }
+}
+
+/// No shape at all.
+struct Nothing;
+
+impl SignedDistance for Nothing {
+    fn signed_distance(&self, _: DVec3) -> twintac_shape::Distance {
+        twintac_shape::Distance {
+            distance_mm: f64::MAX,
+            gradient: DVec3::Z,
+        }
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        (DVec3::ZERO, DVec3::ZERO)
+    }
+}
+
+/// How much of the last motion the next one is, backwards included: presses are extrapolated in depth, not in time.
+fn extrapolation(last_mm: DVec3, next_mm: DVec3) -> f64 {
+    let size = last_mm.length_squared();
+    if size > 0.0 {
+        (last_mm.dot(next_mm) / size).clamp(-1.0, MAX_EXTRAPOLATION)
+    } else {
+        0.0
+    }
+}
+
+fn check_pose(pose: &Pose) -> Result<(), SolveError> {
+    if pose.position_mm.is_finite() && pose.rotation.is_finite() && pose.rotation.is_normalized() {
+        return Ok(());
+    }
+    Err(SolveError::Input {
+        what: "pose of the indenter",
+        expected: "finite numbers and a unit quaternion".into(),
+        found: format!("{pose:?}"),
+    })
+}

@@ -1,0 +1,101 @@
+//! What can go wrong.
+
+/// A model that can't be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SoftBodyError {
+    /// A mesh without tetrahedra.
+    #[error("the mesh has no tetrahedra")]
+    Empty,
+    /// A mesh that nothing holds.
+    #[error("the mesh has no bonded nodes, so nothing holds it in place")]
+    NotBonded,
+    /// A reference to a node that does not exist.
+    #[error("{place} names node {found}, but there are {n_nodes} nodes")]
+    Node {
+        /// Which tetrahedron or set.
+        place: String,
+        /// The index found.
+        found: u32,
+        /// Number of nodes.
+        n_nodes: usize,
+    },
+    /// A node without tetrahedron.
+    #[error("node {node} belongs to no tetrahedron")]
+    Stray {
+        /// Its index.
+        node: usize,
+    },
+    /// A tetrahedron without volume, or inside out.
+    #[error("tetrahedron {tet} has a volume of {volume_mm3:.3e} mm³, expected more than 0")]
+    Degenerate {
+        /// Its index.
+        tet: usize,
+        /// Its signed volume, mm³.
+        volume_mm3: f64,
+    },
+    /// A material that can't be.
+    #[error("material: {what} is {found}, expected {expected}")]
+    Material {
+        /// Which constant.
+        what: String,
+        /// What was expected.
+        expected: String,
+        /// What was found.
+        found: f64,
+    },
+    /// A setting that makes no sense.
+    #[error("solver setting `{field}` is {found}, expected {expected}")]
+    Setting {
+        /// The offending field.
+        field: &'static str,
+        /// What was expected.
+        expected: &'static str,
+        /// What was found.
+        found: f64,
+    },
+    /// The analysis of the sparse system failed.
+    #[error("the system of {n_unknowns} unknowns can't be analysed: {reason}")]
+    Analysis {
+        /// Size of the system.
+        n_unknowns: usize,
+        /// What the sparse solver said.
+        reason: String,
+    },
+}
+
+/// A step that could not be taken. The state stays as it was before the call.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// Equilibrium was not reached, however small the sub-steps.
+    #[error("no equilibrium beyond {:.1} % of the step: residual {residual:.1e} of the load after {iterations} iterations", fraction * 100.0)]
+    NotConverged {
+        /// Part of the step that did converge.
+        fraction: f64,
+        /// Residual of the failed try over the load.
+        residual: f64,
+        /// Newton iterations spent on the whole step.
+        iterations: u32,
+    },
+    /// No step along the search direction keeps every tetrahedron's volume above zero.
+    #[error("tetrahedra turn inside out beyond {:.1} % of the step", fraction * 100.0)]
+    Inverted {
+        /// Part of the step that did converge.
+        fraction: f64,
+    },
+    /// The tangent could not be factorised.
+    #[error("the tangent is singular beyond {:.1} % of the step", fraction * 100.0)]
+    Singular {
+        /// Part of the step that did converge.
+        fraction: f64,
+    },
+    /// A pose or time that is no number, or a time that runs backwards.
+    #[error("{what} is {found}, expected {expected}")]
+    Input {
+        /// Which argument.
+        what: &'static str,
+        /// What was expected.
+        expected: String,
+        /// What was found.
+        found: String,
+    },
+}

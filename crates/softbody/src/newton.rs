@@ -1,0 +1,355 @@
+//! Newton's method with a line search down the energy.
+
+use faer::dyn_stack::MemBuffer;
+use glam::{DMat3, DVec3};
+
+use crate::body::SoftBody;
+use crate::contact::{RigidBody, Touch};
+use crate::material::{Memory, Relaxation};
+use crate::system::Factors;
+
+/// Trial steps of a line search before the direction is given up.
+const MAX_TRIALS: u32 = 20;
+
+/// Part of the decrease promised by the slope that a trial step must reach (Armijo).
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+/// Below this part of the energy a change of energy is round-off, and the slope decides.
+const ROUND_OFF: f64 = 1e-11;
+
+/// Loads below this part of the shear modulus times the squared size of the body count as none.
+const NEGLIGIBLE_LOAD: f64 = 1e-7;
+
+/// A step to solve: everything that stays fixed while the displacements are sought.
+pub(crate) struct Step<'a> {
+    pub(crate) relaxation: &'a Relaxation,
+    pub(crate) memory: &'a Memory,
+    pub(crate) shapes: &'a [RigidBody<'a>],
+}
+
+/// Unknowns of a step.
+pub(crate) struct Unknowns<'a> {
+    pub(crate) displacements_mm: &'a mut Vec<DVec3>,
+    pub(crate) pressures_mpa: &'a mut Vec<f64>,
+    pub(crate) touches: &'a mut Vec<Vec<Touch>>,
+}
+
+/// Why a step failed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Failure {
+    NotConverged { residual: f64 },
+    Inverted,
+    Singular,
+}
+
+/// How a step ended well.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equilibrium {
+    pub(crate) residual: f64,
+    pub(crate) smallest_volume_ratio: f64,
+}
+
+/// Energy and its slope at a set of displacements.
+#[derive(Clone, Copy, Debug, Default)]
+struct Evaluation {
+    energy: f64,
+    smallest_volume_ratio: f64,
+    /// 2-norm of the gradient at free nodes, N.
+    unbalanced_n: f64,
+    /// Sum of the sizes of all forces from outside, N.
+    load_n: f64,
+}
+
+/// Memory that a press works in. Not part of its state: a clone starts without.
+#[derive(Default)]
+pub(crate) struct Workspace(Option<Box<Buffers>>);
+
+impl Clone for Workspace {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+pub(crate) struct Buffers {
+    factors: Factors,
+    pressure_scratch: MemBuffer,
+    /// Gradient of the energy at each node, N; at bonded nodes the force of what holds them. `[n_nodes]`
+    pub(crate) gradient_n: Vec<DVec3>,
+    direction_mm: Vec<DVec3>,
+    unbalanced_n: Vec<DVec3>,
+    start_mm: Vec<DVec3>,
+    unknowns: Vec<f64>,
+    /// Constant stresses of the step. `[n_tets]`, or empty for an elastic material.
+    offsets: Vec<DMat3>,
+}
+
+impl Workspace {
+    pub(crate) fn buffers(&mut self, body: &SoftBody) -> &mut Buffers {
+        self.0.get_or_insert_with(|| {
+            let n_nodes = body.mesh().nodes_mm.len();
+            Box::new(Buffers {
+                factors: body.system.factors(),
+                pressure_scratch: body.compressibility.scratch(),
+                gradient_n: vec![DVec3::ZERO; n_nodes],
+                direction_mm: vec![DVec3::ZERO; n_nodes],
+                unbalanced_n: vec![DVec3::ZERO; n_nodes],
+                start_mm: vec![DVec3::ZERO; n_nodes],
+                unknowns: vec![0.0; body.system.n_unknowns()],
+                offsets: Vec::new(),
+            })
+        })
+    }
+}
+
+impl Buffers {
+    /// Finds the equilibrium of a step, starting from the unknowns given. `iterations` counts up.
+    pub(crate) fn solve(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &mut Unknowns,
+        iterations: &mut u32,
+    ) -> Result<Equilibrium, Failure> {
+        self.prepare(body, step);
+        let settings = &body.settings;
+        let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+        let mut is_last_resort = false;
+        for _ in 0..=settings.max_iterations {
+            let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n(NEGLIGIBLE_LOAD));
+            if residual <= settings.tolerance {
+                if !push_out(body, x.touches) {
+                    return Ok(Equilibrium {
+                        residual,
+                        smallest_volume_ratio: now.smallest_volume_ratio,
+                    });
+                }
+                now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+            } else if is_last_resort {
+                break;
+            }
+            *iterations += 1;
+            self.find_direction(body, step, x)?;
+            match self.search(body, step, x, &now) {
+                Ok(next) => now = next,
+                Err(failure @ Failure::Inverted) => return Err(failure),
+                Err(_) => {
+                    is_last_resort = true;
+                    now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+                }
+            }
+        }
+        Err(Failure::NotConverged {
+            residual: now.unbalanced_n / now.load_n.max(body.negligible_load_n(NEGLIGIBLE_LOAD)),
+        })
+    }
+
+    /// Energy of a start, for comparing starts; none if it is inside out.
+    pub(crate) fn energy(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<f64> {
+        self.prepare(body, step);
+        self.evaluate(body, step, x).map(|evaluation| evaluation.energy)
+    }
+
+    fn prepare(&mut self, body: &SoftBody, step: &Step) {
+        self.offsets.clear();
+        if !body.material().prony.is_empty() {
+            self.offsets
+                .extend((0..body.elements.len()).map(|tet| step.relaxation.offset(step.memory, tet)));
+        }
+    }
+
+    fn offset(&self, tet: usize) -> DMat3 {
+        self.offsets.get(tet).copied().unwrap_or(DMat3::ZERO)
+    }
+
+    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out.
+    fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
+        let mut evaluation = Evaluation {
+            smallest_volume_ratio: f64::INFINITY,
+            ..Evaluation::default()
+        };
+        x.pressures_mpa.fill(0.0);
+        for element in &body.elements {
+            let volume_ratio = element.deformation(x.displacements_mm).volume_ratio;
+            evaluation.smallest_volume_ratio = evaluation.smallest_volume_ratio.min(volume_ratio);
+            let share = 0.25 * element.volume_mm3 * (volume_ratio - 1.0);
+            for &node in &element.nodes {
+                x.pressures_mpa[node as usize] -= share;
+            }
+        }
+        // Not `<= 0`, so that a NaN is caught as well.
+        if !(evaluation.smallest_volume_ratio > 0.0) {
+            return None;
+        }
+        self.unknowns[..x.pressures_mpa.len()].copy_from_slice(x.pressures_mpa);
+        body.compressibility
+            .solve(x.pressures_mpa, &mut self.pressure_scratch);
+        let volumetric: f64 = self
+            .unknowns
+            .iter()
+            .zip(x.pressures_mpa.iter())
+            .map(|(g, p)| g * p)
+            .sum();
+        evaluation.energy = 0.5 * volumetric;
+
+        self.gradient_n.fill(DVec3::ZERO);
+        let law = &body.material().isochoric;
+        for (tet, element) in body.elements.iter().enumerate() {
+            let deformation = element.deformation(x.displacements_mm);
+            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
+            let response = step
+                .relaxation
+                .response_mpa(law, &self.offset(tet), &right_cauchy_green);
+            evaluation.energy += element.volume_mm3 * response.energy;
+            let forces = element.forces(&deformation, &response, element.mean(x.pressures_mpa));
+            for (&node, force) in element.nodes.iter().zip(forces) {
+                self.gradient_n[node as usize] += force;
+            }
+        }
+        for (shape, touches) in step.shapes.iter().zip(x.touches.iter_mut()) {
+            for (boundary, touch) in body.boundary.iter().zip(touches) {
+                let node = boundary.node as usize;
+                let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
+                evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness);
+                self.gradient_n[node] -= touch.normal * touch.force_n;
+                evaluation.load_n += touch.force_n;
+            }
+        }
+        let mut unbalanced = 0.0;
+        for (node, gradient) in self.gradient_n.iter().enumerate() {
+            if body.system.displacement(node).is_some() {
+                unbalanced += gradient.length_squared();
+            } else {
+                evaluation.load_n = evaluation.load_n.max(gradient.length());
+            }
+        }
+        evaluation.unbalanced_n = unbalanced.sqrt();
+        evaluation.energy.is_finite().then_some(evaluation)
+    }
+
+    /// Newton's direction at the unknowns; where the energy is not convex, that of a stiffened, convex one.
+    fn find_direction(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
+        for (unbalanced, gradient) in self.unbalanced_n.iter_mut().zip(&self.gradient_n) {
+            *unbalanced = -*gradient;
+        }
+        let mut is_convex = false;
+        // First the true tangent, then without the curvature of the shapes, then ever stiffer.
+        for shift in [None, Some(0.0), Some(0.01), Some(0.1), Some(1.0), Some(10.0)] {
+            self.assemble(body, step, x, shift);
+            if body
+                .system
+                .factorise(&mut self.factors)
+                .map_err(|_| Failure::Singular)?
+            {
+                is_convex = true;
+                break;
+            }
+        }
+        if !is_convex {
+            return Err(Failure::Singular);
+        }
+        body.system.solve(
+            &mut self.factors,
+            &self.unbalanced_n,
+            &mut self.unknowns,
+            &mut self.direction_mm,
+        );
+        Ok(())
+    }
+
+    fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns, shift: Option<f64>) {
+        let law = &body.material().isochoric;
+        body.system.clear(&mut self.factors);
+        for (tet, element) in body.elements.iter().enumerate() {
+            let deformation = element.deformation(x.displacements_mm);
+            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
+            let response = step
+                .relaxation
+                .response_mpa(law, &self.offset(tet), &right_cauchy_green);
+            let tangent = element.tangent(&deformation, &response, element.mean(x.pressures_mpa));
+            body.system.add(&mut self.factors, tet, element, &tangent);
+        }
+        for (shape, touches) in step.shapes.iter().zip(x.touches.iter()) {
+            for (boundary, touch) in body.boundary.iter().zip(touches) {
+                if touch.force_n > 0.0 {
+                    let node = boundary.node as usize;
+                    let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
+                    let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, shift.is_none());
+                    body.system.add_to_node(&mut self.factors, node, &stiffness);
+                }
+            }
+        }
+        if let Some(shift) = shift.filter(|shift| *shift > 0.0) {
+            for (node, stiffness) in body.node_stiffness.iter().enumerate() {
+                let extra = DMat3::from_diagonal(DVec3::splat(shift * stiffness));
+                body.system.add_to_node(&mut self.factors, node, &extra);
+            }
+        }
+    }
+
+    /// Goes along the direction as far as the energy goes down.
+    fn search(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &mut Unknowns,
+        start: &Evaluation,
+    ) -> Result<Evaluation, Failure> {
+        let slope_at_start = -dot(&self.unbalanced_n, &self.direction_mm);
+        self.start_mm.copy_from_slice(x.displacements_mm);
+        let mut length = 1.0;
+        let mut was_inverted = true;
+        for _ in 0..MAX_TRIALS {
+            for ((u, start), direction) in x
+                .displacements_mm
+                .iter_mut()
+                .zip(&self.start_mm)
+                .zip(&self.direction_mm)
+            {
+                *u = *start + *direction * length;
+            }
+            let Some(trial) = self.evaluate(body, step, x) else {
+                length *= 0.5;
+                continue;
+            };
+            was_inverted = false;
+            let change = trial.energy - start.energy;
+            let slope = dot(&self.gradient_n, &self.direction_mm);
+            let is_round_off = change.abs() <= ROUND_OFF * start.energy.abs();
+            if change <= SUFFICIENT_DECREASE * length * slope_at_start
+                || (is_round_off && slope.abs() <= 0.9 * slope_at_start.abs())
+            {
+                return Ok(trial);
+            }
+            // Where a line through both slopes is zero.
+            let secant = slope_at_start / (slope_at_start - slope);
+            length *= if slope > 0.0 { secant.clamp(0.1, 0.7) } else { 0.5 };
+        }
+        x.displacements_mm.copy_from_slice(&self.start_mm);
+        Err(if was_inverted {
+            Failure::Inverted
+        } else {
+            Failure::NotConverged { residual: f64::NAN }
+        })
+    }
+}
+
+/// Raises the multipliers of nodes that are too deep inside a shape; true if there were any.
+fn push_out(body: &SoftBody, touches: &mut [Vec<Touch>]) -> bool {
+    let is_deep = |touch: &Touch| touch.gap_mm < -body.settings.penetration_mm;
+    if !touches.iter().flatten().any(is_deep) {
+        return false;
+    }
+    hold_forces(touches);
+    true
+}
+
+/// Makes the forces of contact its multipliers.
+pub(crate) fn hold_forces(touches: &mut [Vec<Touch>]) {
+    for touch in touches.iter_mut().flatten() {
+        touch.multiplier_n = touch.force_n;
+    }
+}
+
+fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+}

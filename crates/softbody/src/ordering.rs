@@ -1,0 +1,102 @@
+//! The order in which nodes are eliminated: nested dissection by coordinates (George, SIAM J. Numer. Anal. 10, 1973).
+//!
+//! A set of nodes is cut by a plane; the nodes on one side that touch the other side separate the two halves and are eliminated
+//! after both. On bodies of gel it leaves less fill than minimum degree, and its separators make large dense blocks.
+
+use glam::DVec3;
+
+/// Sets of this size are not cut further.
+const LEAF: usize = 24;
+
+/// Nodes in the order of elimination. `neighbours[n]` are the nodes that share a tetrahedron with node `n`.
+pub(crate) fn elimination_order(positions_mm: &[DVec3], neighbours: &[Vec<u32>]) -> Vec<u32> {
+    let mut order = Vec::with_capacity(positions_mm.len());
+    let mut side = vec![0; positions_mm.len()];
+    let all = (0..positions_mm.len() as u32).collect();
+    dissect(all, positions_mm, neighbours, &mut side, &mut 0, &mut order);
+    order
+}
+
+fn dissect(
+    nodes: Vec<u32>,
+    positions_mm: &[DVec3],
+    neighbours: &[Vec<u32>],
+    side: &mut [u32],
+    last_mark: &mut u32,
+    order: &mut Vec<u32>,
+) {
+    if nodes.len() <= LEAF {
+        order.extend(nodes);
+        return;
+    }
+    let best = (0..3)
+        .map(|axis| {
+            *last_mark += 1;
+            cut(&nodes, axis, positions_mm, neighbours, side, *last_mark)
+        })
+        .min_by_key(|[low, high, separator]| separator.len() * nodes.len() + low.len().max(high.len()));
+    match best {
+        Some([low, high, separator]) if !low.is_empty() && !high.is_empty() => {
+            dissect(low, positions_mm, neighbours, side, last_mark, order);
+            dissect(high, positions_mm, neighbours, side, last_mark, order);
+            order.extend(separator);
+        }
+        _ => order.extend(nodes),
+    }
+}
+
+/// Cuts a set in two halves along an axis: those below, those above, and those below that touch the ones above.
+fn cut(
+    nodes: &[u32],
+    axis: usize,
+    positions_mm: &[DVec3],
+    neighbours: &[Vec<u32>],
+    side: &mut [u32],
+    mark: u32,
+) -> [Vec<u32>; 3] {
+    let along = |node: u32| positions_mm[node as usize][axis];
+    let mut sorted = nodes.to_vec();
+    sorted.sort_by(|&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+    // Move the cut off the middle of a plane of nodes, to whichever end of it is nearer.
+    let middle = along(sorted[sorted.len() / 2]);
+    let span = along(sorted[sorted.len() - 1]) - along(sorted[0]);
+    let first = sorted.partition_point(|&node| along(node) < middle - 1e-6 * span);
+    let after = sorted.partition_point(|&node| along(node) <= middle + 1e-6 * span);
+    let split = if sorted.len() / 2 - first < after - sorted.len() / 2 && first > 0 {
+        first
+    } else {
+        after
+    };
+    let (low, high) = sorted.split_at(split);
+    high.iter().for_each(|&node| side[node as usize] = mark);
+    let (separator, low) = low.iter().partition(|&&node| {
+        neighbours[node as usize]
+            .iter()
+            .any(|&other| side[other as usize] == mark)
+    });
+    [low, high.to_vec(), separator]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_node_is_eliminated_once() {
+        let n = 500;
+        let positions: Vec<DVec3> = (0..n)
+            .map(|i| DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)))
+            .collect();
+        let neighbours: Vec<Vec<u32>> = positions
+            .iter()
+            .map(|a| {
+                (0..n as u32)
+                    .filter(|&b| a.distance(positions[b as usize]) < 1.5)
+                    .collect()
+            })
+            .collect();
+        let mut order = elimination_order(&positions, &neighbours);
+        order.sort_unstable();
+        assert_eq!(order, (0..n as u32).collect::<Vec<_>>());
+    }
+}

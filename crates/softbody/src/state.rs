@@ -1,0 +1,75 @@
+//! Where a soft body is, and what a step reports.
+
+use glam::DVec3;
+use twintac_shape::Pose;
+
+use crate::contact::Touch;
+use crate::material::{KPA_PER_MPA, Memory};
+use crate::newton::Workspace;
+
+/// Where a soft body is: what one press changes. Made by [`crate::SoftBody::rest`].
+#[derive(Clone)]
+pub struct State {
+    pub(crate) displacements_mm: Vec<DVec3>,
+    pub(crate) pressures_mpa: Vec<f64>,
+    pub(crate) memory: Memory,
+    /// `[n_shapes][n_boundary_nodes]`; the indenter first, then the obstacles.
+    pub(crate) touches: Vec<Vec<Touch>>,
+    pub(crate) gel_from_indenter: Option<Pose>,
+    /// Last accepted motion, to start the next from.
+    pub(crate) last: Option<Motion>,
+    pub(crate) workspace: Workspace,
+}
+
+/// A motion of the indenter, and how the body followed.
+#[derive(Clone)]
+pub(crate) struct Motion {
+    pub(crate) travel_mm: DVec3,
+    pub(crate) displacements_mm: Vec<DVec3>,
+}
+
+impl State {
+    /// How far a node has moved from its place at rest, mm.
+    #[must_use]
+    pub fn displacement_mm(&self, node: usize) -> DVec3 {
+        self.displacements_mm[node]
+    }
+
+    /// How far each node has moved from its place at rest, mm. `[n_nodes]`
+    #[must_use]
+    pub fn displacements_mm(&self) -> &[DVec3] {
+        &self.displacements_mm
+    }
+
+    pub(crate) fn pressures_kpa(&self) -> Vec<f64> {
+        self.pressures_mpa
+            .iter()
+            .map(|pressure| pressure * KPA_PER_MPA)
+            .collect()
+    }
+}
+
+/// What a step came to. Forces act on the gel, in the gel's frame; their sum is zero but for the residual.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Force of the indenter, N.
+    pub indenter_force_n: DVec3,
+    /// Torque of the indenter about the indenter's origin, N mm.
+    pub indenter_torque_n_mm: DVec3,
+    /// Force of what the gel is bonded to, N.
+    pub board_reaction_n: DVec3,
+    /// Force of all obstacles, N.
+    pub obstacle_reaction_n: DVec3,
+    /// Always true: a step that does not converge is an error. Kept for records of frames.
+    pub converged: bool,
+    /// Newton iterations, those of sub-steps that were given up included.
+    pub iterations: u32,
+    /// 2-norm of the unbalanced nodal forces over the load.
+    pub residual: f64,
+    /// Largest depth of a node inside a shape, mm.
+    pub penetration_mm: f64,
+    /// Smallest volume of a tetrahedron over its volume at rest.
+    pub smallest_volume_ratio: f64,
+    /// Time spent, s.
+    pub wall_time_s: f64,
+}

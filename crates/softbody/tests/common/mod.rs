@@ -1,0 +1,194 @@
+//! Blocks, spheres and boxes to press.
+#![allow(dead_code)]
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+use twintac_mesh::{NodeSets, TetMesh};
+use twintac_shape::{Distance, Pose, SignedDistance};
+use twintac_softbody::{Frame, SoftBody, State};
+
+/// A ball whose lowest point is its origin.
+pub struct Ball {
+    pub radius_mm: f64,
+}
+
+impl SignedDistance for Ball {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        let from_center = point_mm - DVec3::Z * self.radius_mm;
+        let distance_mm = from_center.length() - self.radius_mm;
+        Distance {
+            distance_mm,
+            gradient: from_center.normalize_or(DVec3::Z),
+        }
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        let r = DVec3::splat(self.radius_mm);
+        (DVec3::Z * self.radius_mm - r, DVec3::Z * self.radius_mm + r)
+    }
+}
+
+/// Everything outside a box about the z axis: four walls.
+pub struct Walls {
+    pub half_mm: [f64; 2],
+}
+
+impl SignedDistance for Walls {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        let x = self.half_mm[0] - point_mm.x.abs();
+        let y = self.half_mm[1] - point_mm.y.abs();
+        let (distance_mm, gradient) = if x < y {
+            (x, DVec3::X * -point_mm.x.signum())
+        } else {
+            (y, DVec3::Y * -point_mm.y.signum())
+        };
+        Distance {
+            distance_mm,
+            gradient,
+        }
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        (DVec3::splat(-1e3), DVec3::splat(1e3))
+    }
+}
+
+/// `n + 1` equally spaced values.
+pub fn even(from: f64, to: f64, n: usize) -> Vec<f64> {
+    (0..=n)
+        .map(|i| from + (to - from) * i as f64 / n as f64)
+        .collect()
+}
+
+/// Values from 0 to `to`, spaced by `edge` at first and growing by `growth` after `fine`.
+pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
+    let mut values = vec![0.0];
+    let (mut at, mut step) = (0.0, edge);
+    while at < to {
+        if at >= fine {
+            step *= growth;
+        }
+        at += step;
+        values.push(at);
+    }
+    // Fit the last value to the end.
+    let last = values[values.len() - 1];
+    let scale_from = fine.min(to);
+    for value in &mut values {
+        if *value > scale_from {
+            *value = scale_from + (*value - scale_from) * (to - scale_from) / (last - scale_from);
+        }
+    }
+    values
+}
+
+/// The values and their mirror images.
+pub fn mirrored(half: &[f64]) -> Vec<f64> {
+    half.iter()
+        .skip(1)
+        .rev()
+        .map(|x| -x)
+        .chain(half.iter().copied())
+        .collect()
+}
+
+/// A block of bricks, six tetrahedra each, its bottom bonded.
+pub fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
+    let (nx, ny, nz) = (x_mm.len(), y_mm.len(), z_mm.len());
+    let index = |i: usize, j: usize, k: usize| (i + nx * (j + ny * k)) as u32;
+    let mut nodes_mm = Vec::new();
+    for z in z_mm {
+        for y in y_mm {
+            for x in x_mm {
+                nodes_mm.push(DVec3::new(*x, *y, *z));
+            }
+        }
+    }
+    let mut tets = Vec::new();
+    for k in 0..nz - 1 {
+        for j in 0..ny - 1 {
+            for i in 0..nx - 1 {
+                for order in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+                    let mut corner = [i, j, k];
+                    let mut tet = [index(i, j, k); 4];
+                    for (step, axis) in order.into_iter().enumerate() {
+                        corner[axis] += 1;
+                        tet[step + 1] = index(corner[0], corner[1], corner[2]);
+                    }
+                    tets.push(tet);
+                }
+            }
+        }
+    }
+    let mut mesh = TetMesh {
+        nodes_mm,
+        tets,
+        sets: NodeSets::default(),
+    };
+    for tet in 0..mesh.tets.len() {
+        if mesh.tet_volume_mm3(tet) < 0.0 {
+            mesh.tets[tet].swap(2, 3);
+        }
+    }
+    let bottom_mm = z_mm[0];
+    bond(&mut mesh, |at| at.z == bottom_mm);
+    mesh
+}
+
+/// Bonds the boundary nodes that a test picks; the rest is free.
+pub fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
+    let boundary: BTreeSet<u32> = mesh.boundary_triangles().into_iter().flatten().collect();
+    let (bonded, free) = boundary
+        .into_iter()
+        .partition(|&node| is_bonded(mesh.nodes_mm[node as usize]));
+    mesh.sets = NodeSets {
+        bonded,
+        free,
+        top: Vec::new(),
+    };
+}
+
+/// Presses straight down from the height at which the origin touches.
+pub fn press(
+    body: &SoftBody,
+    state: &mut State,
+    indenter: &dyn SignedDistance,
+    top_mm: f64,
+    depth_mm: f64,
+) -> Result<Frame, twintac_softbody::SolveError> {
+    body.advance(
+        state,
+        indenter,
+        &Pose::from_position(DVec3::Z * (top_mm - depth_mm)),
+        0.0,
+    )
+}
+
+/// Mean over a disc of a nodal field given on the bottom of a block with these lines, by bilinear interpolation.
+pub fn disc_mean(x_mm: &[f64], y_mm: &[f64], field: &[f64], at_mm: [f64; 2], radius_mm: f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for i in -20..=20 {
+        for j in -20..=20 {
+            let (dx, dy) = (f64::from(i) / 20.0, f64::from(j) / 20.0);
+            if dx * dx + dy * dy <= 1.0 {
+                let (x, y) = (at_mm[0] + dx * radius_mm, at_mm[1] + dy * radius_mm);
+                let cell = |lines: &[f64], at: f64| {
+                    let i = lines
+                        .partition_point(|line| *line <= at)
+                        .clamp(1, lines.len() - 1)
+                        - 1;
+                    (i, (at - lines[i]) / (lines[i + 1] - lines[i]))
+                };
+                let ((i, s), (j, t)) = (cell(x_mm, x), cell(y_mm, y));
+                let value = |i: usize, j: usize| field[i + x_mm.len() * j];
+                sum += (1.0 - s) * (1.0 - t) * value(i, j)
+                    + s * (1.0 - t) * value(i + 1, j)
+                    + (1.0 - s) * t * value(i, j + 1)
+                    + s * t * value(i + 1, j + 1);
+                count += 1.0;
+            }
+        }
+    }
+    sum / count
+}
