@@ -77,7 +77,7 @@ impl Axis {
         for (value, text) in self.ticks(56.0) {
             let x = self.place(value);
             scene.line([[x, top], [x, bottom]], Ink::Grid, 1.0);
-            let inside = x.min(scene.width - 0.5 * font::text_width(&text, SMALL));
+            let inside = x.min(scene.width - 2.0 - 0.5 * font::text_width(&text, SMALL));
             scene.small([inside, bottom + 5.0 + SMALL], text, Ink::Muted, Anchor::Middle);
         }
     }

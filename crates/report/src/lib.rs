@@ -1,4 +1,17 @@
 //! Pressure maps, plots and the HTML report.
+//!
+//! Charts and drawings are plain data that turn into a [`Scene`]; [`svg`] and [`png`] paint it without any font of the
+//! system. [`render`] makes one self-contained page of a [`ReportData`] that other crates fill in: this crate computes
+//! no results.
+//!
+//! ```
+//! use twintac_report::data::Headline;
+//! use twintac_report::{Provenance, ReportData, render};
+//!
+//! let headline = Headline { presses: 12, nearest_in_contact_percent: 1.3, ..Headline::default() };
+//! let data = ReportData { provenance: Provenance::Emulated, headline: Some(headline), ..ReportData::default() };
+//! assert!(render(&data).contains("on 12 presses that it never saw"));
+//! ```
 
 mod axis;
 mod color;

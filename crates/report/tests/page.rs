@@ -131,7 +131,7 @@ fn numbers_that_are_missing_show_as_dashes() {
 fn badges_follow_the_provenance() {
     let mut data = invented::moving();
     data.provenance = Provenance::Real;
-    assert!(render(&data).contains("1.27 % error (real data)"));
+    assert!(render(&data).contains("1.27\u{a0}% error (real data)"));
     data.provenance = Provenance::Emulated;
     let page = render(&data);
     assert!(page.contains("badge emulated") && page.contains("emulated data, which says nothing"));

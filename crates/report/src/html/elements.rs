@@ -145,13 +145,13 @@ pub(super) fn paragraph(text: &str) -> String {
     }
 }
 
-/// An error in % with two significant digits at least.
+/// An error in %, kept on one line, with three significant digits or so.
 pub(super) fn percent(value: f64) -> String {
     if !value.is_finite() {
         return "–".into();
     }
     let decimals = if value.abs() < 9.995 { 2 } else { 1 };
-    format!("{} %", fixed(value, decimals))
+    format!("{}\u{a0}%", fixed(value, decimals))
 }
 
 #[cfg(test)]
@@ -160,8 +160,8 @@ mod tests {
 
     #[test]
     fn percentages_keep_their_digits() {
-        assert_eq!(percent(1.274), "1.27 %");
-        assert_eq!(percent(12.34), "12.3 %");
+        assert_eq!(percent(1.274), "1.27\u{a0}%");
+        assert_eq!(percent(12.34), "12.3\u{a0}%");
         assert_eq!(percent(f64::NAN), "–");
     }
 

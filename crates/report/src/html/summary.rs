@@ -100,7 +100,7 @@ mod tests {
         };
         assert_eq!(
             result(&headline, Provenance::Real),
-            "The twin predicts the nearest taxel’s reading on 12 presses that it never saw with 1.30 % error (real data)."
+            "The twin predicts the nearest taxel’s reading on 12 presses that it never saw with 1.30\u{a0}% error (real data)."
         );
         assert!(result(&headline, Provenance::Emulated).contains("nothing about a physical sensor"));
         let unknown = Headline {
