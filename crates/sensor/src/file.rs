@@ -23,6 +23,7 @@ pub(crate) struct SensorFile {
     pub(crate) readout: Readout,
     #[serde(default)]
     pub(crate) indenters: Vec<Indenter>,
+    pub(crate) import: Option<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

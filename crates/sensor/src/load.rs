@@ -55,6 +55,7 @@ impl Sensor {
             taxels: file.taxels,
             readout: file.readout,
             indenters: file.indenters,
+            import: file.import,
             surfaces,
         };
         sensor.check(&document)?;

@@ -29,6 +29,8 @@ pub struct Sensor {
     pub readout: Readout,
     /// What the sensor is pressed with.
     pub indenters: Vec<Indenter>,
+    /// Path, relative to the description, of the import description that reads recordings of this sensor.
+    pub import: Option<String>,
     /// The triangle surfaces that the gel and the indenters name.
     pub surfaces: Surfaces,
 }
@@ -76,6 +78,9 @@ pub struct Taxel {
     pub port_radius_mm: f64,
     /// Which channel of the bus it is read through.
     pub channel: u8,
+    /// Why its readings are not to be trusted, if they are not: it is then left out of headline figures and reported beside them.
+    #[serde(default)]
+    pub doubtful: Option<String>,
 }
 
 /// How readings come out.

@@ -1,0 +1,403 @@
+//! Every way in which a description can be wrong names file, line and field.
+
+use std::io;
+
+use twintac_sensor::{Sensor, SensorError};
+
+const GOOD: &str = r#"name = "small"
+summary = "A small sensor"
+source = "made up"
+inferred = ["gel.solid.size_mm"]
+
+[gel.solid]
+kind = "block"
+size_mm = [20.0, 10.0, 6.0]
+
+[gel.material]
+youngs_modulus_kpa = 60.0
+poissons_ratio = 0.49
+prony = [
+  { weight = 0.1, time_s = 1.0 },
+]
+source = "made up"
+
+[shell]
+gap_mm = 1.0
+height_mm = 5.0
+
+[readout]
+min_kpa = 50.0
+max_kpa = 150.0
+resolution_kpa = 0.01
+rate_hz = 50.0
+
+[[inclusions]]
+name = "chip"
+min_mm = [-2.0, -2.0, 0.0]
+max_mm = [2.0, 2.0, 1.0]
+
+[[taxels]]
+name = "a"
+position_mm = [0.0, 0.0, 1.0]
+port_radius_mm = 0.5
+channel = 0
+
+[[taxels]]
+name = "b"
+position_mm = [8.0, 0.0, 0.0]
+port_radius_mm = 0.5
+channel = 1
+
+[[indenters]]
+name = "ball"
+shape = { kind = "sphere", radius_mm = 2.0 }
+"#;
+
+fn no_files(path: &str) -> io::Result<Vec<u8>> {
+    Err(io::Error::new(io::ErrorKind::NotFound, format!("no {path}")))
+}
+
+fn error(text: &str) -> SensorError {
+    Sensor::parse("small.toml", text, &no_files).unwrap_err()
+}
+
+/// Replaces one line of the good file and expects an error about `field` there, or at the line of `at` if that stands elsewhere.
+#[track_caller]
+fn expect_at(old: &str, new: &str, at: &str, field: &str, says: &str) {
+    assert_eq!(GOOD.matches(old).count(), 1, "`{old}` must be there once");
+    let text = GOOD.replace(old, new);
+    let line = 1 + text.lines().position(|line| line.contains(at)).unwrap();
+    let found = error(&text);
+    assert_eq!((found.line, found.field.as_str()), (line, field), "{found}");
+    assert!(
+        found
+            .to_string()
+            .starts_with(&format!("small.toml:{line}: `{field}` ")),
+        "{found}"
+    );
+    assert!(found.to_string().contains(says), "{found}");
+}
+
+#[track_caller]
+fn expect(old: &str, new: &str, field: &str, says: &str) {
+    expect_at(old, new, new, field, says);
+}
+
+#[test]
+fn the_good_file_is_good() {
+    let sensor = Sensor::parse("small.toml", GOOD, &no_files).unwrap();
+    assert_eq!((sensor.taxels.len(), sensor.gel.material.prony.len()), (2, 1));
+}
+
+#[test]
+fn a_taxel_outside_the_gel() {
+    let text = GOOD.replace("[8.0, 0.0, 0.0]", "[18.0, 0.0, 0.0]");
+    assert_eq!(
+        error(&text).to_string(),
+        "small.toml:41: `taxels[1].position_mm` is [18, 0, 0], outside the gel, which spans [-10, -5, 0] to [10, 5, 6]; \
+         put the taxel into the gel"
+    );
+}
+
+#[test]
+fn taxels() {
+    expect(
+        "position_mm = [0.0, 0.0, 1.0]",
+        "position_mm = [0.0, 0.0, 0.5]",
+        "taxels[0].position_mm",
+        "inside the rigid `chip`",
+    );
+    let wide = "port_radius_mm = 2.5\nchannel = 1";
+    expect_at(
+        "port_radius_mm = 0.5\nchannel = 1",
+        wide,
+        "2.5",
+        "taxels[1].port_radius_mm",
+        "reach out",
+    );
+    expect_at(
+        "port_radius_mm = 0.5\nchannel = 1",
+        "port_radius_mm = 0.0\nchannel = 1",
+        "_mm = 0.0",
+        "taxels[1].port_radius_mm",
+        "above 0",
+    );
+}
+
+#[test]
+fn names_and_channels() {
+    expect(
+        "name = \"small\"",
+        "name = \"a/b\"",
+        "name",
+        "files can bear the name",
+    );
+    expect("name = \"ball\"", "name = \"\"", "indenters[0].name", "is ``");
+    expect_at(
+        "name = \"b\"\n",
+        "name = \"a\"  # again\n",
+        "again",
+        "taxels[1].name",
+        "as that of taxels[0]",
+    );
+    expect_at(
+        "channel = 1",
+        "channel = 0  # again",
+        "again",
+        "taxels[1].channel",
+        "as that of taxels[0]",
+    );
+    expect(
+        "summary = \"A small sensor\"",
+        "summary = \" \"",
+        "summary",
+        "is empty",
+    );
+}
+
+#[test]
+fn gel_and_inclusions() {
+    expect(
+        "size_mm = [20.0, 10.0, 6.0]",
+        "size_mm = [20.0, 10.0, 0.0]",
+        "gel.solid.size_mm[2]",
+        "a number above 0",
+    );
+    expect(
+        "max_mm = [2.0, 2.0, 1.0]",
+        "max_mm = [2.0, -2.0, 1.0]",
+        "inclusions[0].max_mm",
+        "beyond min_mm",
+    );
+    expect(
+        "min_mm = [-2.0, -2.0, 0.0]",
+        "min_mm = [-2.0, -2.0, 0.5]",
+        "inclusions[0].min_mm",
+        "stand on the board",
+    );
+    let moved = "max_mm = [12.0, 2.0, 1.0]";
+    expect_at(
+        "max_mm = [2.0, 2.0, 1.0]",
+        moved,
+        "[[inclusions]]",
+        "inclusions[0]",
+        "outside the gel",
+    );
+    expect("gap_mm = 1.0", "gap_mm = 0.0", "shell.gap_mm", "above 0");
+    expect(
+        "height_mm = 5.0",
+        "height_mm = -5.0",
+        "shell.height_mm",
+        "above 0",
+    );
+}
+
+#[test]
+fn materials() {
+    let ratio = "poissons_ratio = 0.49";
+    expect(
+        ratio,
+        "poissons_ratio = 0.5",
+        "gel.material.poissons_ratio",
+        "less than 0.5",
+    );
+    expect(
+        ratio,
+        "poissons_ratio = 0.0",
+        "gel.material.poissons_ratio",
+        "more than 0",
+    );
+    expect_at(
+        ratio,
+        "",
+        "[gel.material]",
+        "gel.material",
+        "says nothing about volume",
+    );
+    expect_at(
+        ratio,
+        "poissons_ratio = 0.49\nbulk_modulus_kpa = 9",
+        "bulk_",
+        "gel.material.bulk_modulus_kpa",
+        "one of the two",
+    );
+    expect(
+        ratio,
+        "bulk_modulus_kpa = 0.0",
+        "gel.material.bulk_modulus_kpa",
+        "above 0",
+    );
+    expect(
+        ratio,
+        "bulk_modulus_kpa = 18.0",
+        "gel.material.bulk_modulus_kpa",
+        "negative Poisson's ratio",
+    );
+    expect_at(
+        ratio,
+        "bulk_modulus_kpa = 6.0",
+        "youngs",
+        "gel.material.youngs_modulus_kpa",
+        "too large",
+    );
+    let youngs = "youngs_modulus_kpa = 60.0";
+    expect(
+        youngs,
+        "youngs_modulus_kpa = -60.0",
+        "gel.material.youngs_modulus_kpa",
+        "above 0",
+    );
+    expect_at(youngs, "", "[gel.material]", "gel.material", "has no stiffness");
+    expect_at(
+        youngs,
+        "youngs_modulus_kpa = 60.0\nshear_modulus_kpa = 20.0",
+        "shear",
+        "gel.material.shear_modulus_kpa",
+        "one of the two",
+    );
+    expect_at(
+        youngs,
+        "model = \"yeoh\"\nc10_kpa = 10.0\nc20_kpa = 0.1",
+        "[gel.material]",
+        "gel.material",
+        "lacks `c30_kpa`",
+    );
+    expect_at(
+        youngs,
+        "model = \"mooney-rivlin\"\nyoungs_modulus_kpa = 60.0",
+        "youngs",
+        "gel.material.youngs_modulus_kpa",
+        "not a constant",
+    );
+    expect_at(
+        youngs,
+        "youngs_modulus_kpa = 60.0\nc10_kpa = 10.0",
+        "c10",
+        "gel.material.c10_kpa",
+        "not a constant",
+    );
+    expect_at(
+        youngs,
+        "model = \"hooke\"",
+        "hooke",
+        "gel.material.model",
+        "unknown variant",
+    );
+    let term = "{ weight = 0.1, time_s = 1.0 },";
+    expect(
+        term,
+        "{ weight = 0.1, time_s = 0.0 },",
+        "gel.material.prony[0].time_s",
+        "above 0",
+    );
+    expect(
+        term,
+        "{ weight = -0.1, time_s = 1.0 },",
+        "gel.material.prony[0].weight",
+        "above 0",
+    );
+    expect_at(
+        term,
+        "{ weight = 0.5, time_s = 1.0 }, { weight = 0.5, time_s = 9.0 }",
+        "prony",
+        "gel.material.prony",
+        "below 1",
+    );
+}
+
+#[test]
+fn materials_mean_the_same_in_all_ways_of_writing_them() {
+    let material = |lines: &str| {
+        let text = GOOD.replace("youngs_modulus_kpa = 60.0\npoissons_ratio = 0.49", lines);
+        Sensor::parse("small.toml", &text, &no_files)
+            .unwrap()
+            .gel
+            .material
+    };
+    let shear = 60.0 / (2.0 * 1.49);
+    let bulk = 60.0 / (3.0 * (1.0 - 2.0 * 0.49));
+    for lines in [
+        "youngs_modulus_kpa = 60.0\npoissons_ratio = 0.49".to_owned(),
+        format!("youngs_modulus_kpa = 60.0\nbulk_modulus_kpa = {bulk}"),
+        format!("shear_modulus_kpa = {shear}\nbulk_modulus_kpa = {bulk}"),
+        format!(
+            "model = \"mooney-rivlin\"\nc10_kpa = {}\nc01_kpa = {}\npoissons_ratio = 0.49",
+            0.4 * shear,
+            0.1 * shear
+        ),
+        format!(
+            "model = \"yeoh\"\nc10_kpa = {}\nc20_kpa = 0.1\nc30_kpa = 0.0\npoissons_ratio = 0.49",
+            0.5 * shear
+        ),
+    ] {
+        let material = material(&lines);
+        let found = [
+            material.youngs_modulus_kpa() / 60.0,
+            material.poissons_ratio() / 0.49,
+            material.shear_modulus_kpa() / shear,
+            material.bulk_modulus_kpa / bulk,
+        ];
+        assert!(
+            found.iter().all(|share| (share - 1.0).abs() < 1e-12),
+            "{lines}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn readout_indenters_and_inferred_fields() {
+    expect(
+        "max_kpa = 150.0",
+        "max_kpa = 50.0",
+        "readout.max_kpa",
+        "not above",
+    );
+    expect(
+        "resolution_kpa = 0.01",
+        "resolution_kpa = 0.0",
+        "readout.resolution_kpa",
+        "above 0",
+    );
+    expect("rate_hz = 50.0", "rate_hz = -1.0", "readout.rate_hz", "above 0");
+    let ball = "shape = { kind = \"sphere\", radius_mm = 2.0 }";
+    expect(
+        ball,
+        "shape = { kind = \"sphere\", radius_mm = 0.0 }",
+        "indenters[0].shape.radius_mm",
+        "above 0",
+    );
+    expect(
+        ball,
+        "shape = { kind = \"stl\", path = \"tip.stl\" }",
+        "indenters[0].shape.path",
+        "no tip.stl",
+    );
+    expect(
+        "inferred = [\"gel.solid.size_mm\"]",
+        "inferred = [\"gel.size_mm\"]",
+        "inferred[0]",
+        "does not have",
+    );
+    expect("rate_hz = 50.0", "rate_hz = nan", "readout.rate_hz", "finite");
+}
+
+#[test]
+fn surfaces_are_loaded_and_checked() {
+    let text = GOOD.replace(
+        "kind = \"sphere\", radius_mm = 2.0",
+        "kind = \"stl\", path = \"tip.stl\"",
+    );
+    let found = Sensor::parse(
+        "small.toml",
+        &text,
+        &|_| Ok(b"solid tip\nendsolid tip\n".to_vec()),
+    )
+    .unwrap_err();
+    assert_eq!(found.field, "indenters[0].shape.path");
+    assert!(
+        found
+            .to_string()
+            .contains("names `tip.stl`, which has 0 triangles"),
+        "{found}"
+    );
+}
