@@ -1,0 +1,90 @@
+//! What is unknown about a bench: the tip's radius, the height at which it touches, and how stiff the gel really is.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Estimate, Gains};
+
+/// Values of a bench that no data sheet gives, fitted to training presses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bench {
+    /// Radius of the spherical tip, mm; `None` if the described indenter was taken as it is.
+    pub tip_radius_mm: Option<Estimate>,
+    /// By how much the tip is deeper than its recorded height says, mm, by file.
+    pub contact_offset_mm: BTreeMap<String, Estimate>,
+    /// The same for files that were not fitted: the median of the fitted ones, mm.
+    pub contact_offset_elsewhere_mm: f64,
+    /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where it cannot be told from the gains.
+    pub stiffness: Option<Estimate>,
+    /// The gains that went with these values.
+    pub gains: Option<Gains>,
+    /// Mean absolute deviation of the fit over the largest reading, %.
+    pub deviation_percent: f64,
+    /// What to doubt about the fit, in words.
+    pub doubts: Vec<String>,
+}
+
+impl Bench {
+    /// A bench that is exactly as described.
+    #[must_use]
+    pub fn nominal() -> Self {
+        Self {
+            tip_radius_mm: None,
+            contact_offset_mm: BTreeMap::new(),
+            contact_offset_elsewhere_mm: 0.0,
+            stiffness: None,
+            gains: None,
+            deviation_percent: 0.0,
+            doubts: Vec::new(),
+        }
+    }
+
+    /// By how much the tip is deeper than a file says, mm.
+    #[must_use]
+    pub fn contact_offset_mm(&self, file: &str) -> f64 {
+        self.contact_offset_mm
+            .get(file)
+            .map_or(self.contact_offset_elsewhere_mm, |offset| offset.value)
+    }
+
+    /// The gel's stiffness over the simulated gel's.
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness.map_or(1.0, |stiffness| stiffness.value)
+    }
+}
+
+/// How a bench is fitted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BenchSettings {
+    /// Tip radii to simulate, mm, at increasing size; the fit interpolates between them. Empty takes the described indenter.
+    pub tip_radii_mm: Vec<f64>,
+    /// How many places, spread over each file, the fit looks at.
+    pub n_places: usize,
+    /// Largest correction of the contact height, mm; not above the margin of [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
+    pub contact_offset_limit_mm: f64,
+    /// Smallest and largest stiffness over the simulated one.
+    pub stiffness_limits: [f64; 2],
+    /// Time constants of the barometers' memory, s.
+    pub time_constants_s: Vec<f64>,
+    /// Taxels that the fit leaves out, by index.
+    pub left_out: std::collections::BTreeSet<usize>,
+    /// How many blocks of places are left out in turn for the uncertainties.
+    pub n_blocks: usize,
+}
+
+impl Default for BenchSettings {
+    fn default() -> Self {
+        Self {
+            tip_radii_mm: vec![1.5, 2.2, 3.3, 5.0],
+            n_places: 12,
+            contact_offset_limit_mm: 0.3,
+            stiffness_limits: [0.25, 4.0],
+            time_constants_s: crate::TIME_CONSTANTS_S.to_vec(),
+            left_out: std::collections::BTreeSet::new(),
+            n_blocks: 6,
+        }
+    }
+}

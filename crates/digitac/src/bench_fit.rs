@@ -1,0 +1,486 @@
+//! Fits a [`Bench`] by variable projection: for every guess of radius, contact heights and stiffness the gains are solved for inside.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use twintac_recording::{Control, Press, Recording};
+
+use crate::gains::Sample;
+use crate::golden::minimize;
+use crate::paired::tables;
+use crate::source::request;
+use crate::table::SweepTable;
+use crate::{Bench, BenchSettings, DigitacError, Estimate, Features, Gains, Places, SweepSource};
+
+/// Frames of a press that the fit looks at.
+const MAX_FRAMES: usize = 96;
+/// Knots of tables between two radii.
+const KNOTS: usize = 40;
+/// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
+const TOLERANCE: f64 = 2e-3;
+/// Reach around the best values in fits that leave a block out, in the same units.
+const JACKKNIFE_REACH: f64 = 0.2;
+
+/// Fits the bench to some presses of a recording.
+pub fn fit_bench(
+    recording: &Recording,
+    places: &Places,
+    train: &[usize],
+    source: &dyn SweepSource,
+    settings: &BenchSettings,
+) -> Result<Bench, DigitacError> {
+    check(settings)?;
+    let chosen = choose(recording, places, train, settings.n_places);
+    if chosen.is_empty() {
+        return Err(DigitacError::TooFew {
+            expected: "presses to fit the bench to".into(),
+            found: "none".into(),
+        });
+    }
+    let problem = Problem::new(recording, places, &chosen, source, settings)?;
+    let everywhere = problem.solve(&problem.start(), None)?;
+    let without: Vec<Guess> = (0..problem.n_blocks())
+        .map(|block| problem.solve(&problem.start_near(&everywhere), Some(block)))
+        .collect::<Result<_, _>>()?;
+    problem.bench(&everywhere, &without)
+}
+
+fn check(settings: &BenchSettings) -> Result<(), DigitacError> {
+    let [low, high] = settings.stiffness_limits;
+    let wrong = |setting, expected, found| {
+        Err(DigitacError::Setting {
+            setting,
+            expected,
+            found,
+        })
+    };
+    if settings.tip_radii_mm.first().is_some_and(|r| *r <= 0.0)
+        || !settings.tip_radii_mm.is_sorted_by(|a, b| a < b)
+    {
+        return wrong(
+            "tip_radii_mm",
+            "increasing radii above zero",
+            format!("{:?}", settings.tip_radii_mm),
+        );
+    }
+    if low <= 0.0 || low >= high {
+        return wrong(
+            "stiffness_limits",
+            "two increasing numbers above zero",
+            format!("{low}, {high}"),
+        );
+    }
+    if settings.time_constants_s.iter().any(|tau| *tau <= 0.0) {
+        return wrong(
+            "time_constants_s",
+            "times above zero",
+            format!("{:?}", settings.time_constants_s),
+        );
+    }
+    Ok(())
+}
+
+/// Presses at places spread evenly over each file.
+fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usize) -> Vec<usize> {
+    let mut by_file: BTreeMap<&str, BTreeSet<usize>> = BTreeMap::new();
+    for &press in train {
+        by_file
+            .entry(&recording.presses[press].file)
+            .or_default()
+            .insert(places.of_press[press]);
+    }
+    let quota = n_places.div_ceil(by_file.len().max(1));
+    let mut chosen = BTreeSet::new();
+    for in_file in by_file.into_values() {
+        let in_file: Vec<usize> = in_file.into_iter().collect();
+        let count = quota.min(in_file.len());
+        chosen.extend((0..count).map(|i| in_file[(2 * i + 1) * in_file.len() / (2 * count)]));
+    }
+    train
+        .iter()
+        .copied()
+        .filter(|&press| chosen.contains(&places.of_press[press]))
+        .collect()
+}
+
+/// Values of all unknowns.
+#[derive(Clone, Debug)]
+struct Guess {
+    ln_radius: f64,
+    offsets_mm: BTreeMap<String, f64>,
+    ln_stiffness: f64,
+}
+
+/// Where to look for them.
+#[derive(Clone, Debug)]
+struct Bounds {
+    center: Guess,
+    ln_radius: [f64; 2],
+    offset_mm: f64,
+    ln_stiffness: [f64; 2],
+}
+
+struct Thinned {
+    press: Press,
+    place: usize,
+    touch_z_mm: f64,
+}
+
+struct Problem<'a> {
+    presses: Vec<Thinned>,
+    /// `[n_radii][n_places]`; a single row if the indenter is as described.
+    tables: Vec<Vec<SweepTable>>,
+    ln_radii: Vec<f64>,
+    settings: &'a BenchSettings,
+}
+
+impl<'a> Problem<'a> {
+    fn new(
+        recording: &Recording,
+        places: &Places,
+        chosen: &[usize],
+        source: &dyn SweepSource,
+        settings: &'a BenchSettings,
+    ) -> Result<Self, DigitacError> {
+        let used: Vec<usize> = chosen
+            .iter()
+            .map(|&p| places.of_press[p])
+            .collect::<BTreeSet<_>>()
+            .into_iter()
+            .collect();
+        let here = Places {
+            requests: used.iter().map(|&i| places.requests[i].clone()).collect(),
+            of_press: Vec::new(),
+        };
+        let radii: Vec<Option<f64>> = match &settings.tip_radii_mm[..] {
+            [] => vec![None],
+            radii => radii.iter().copied().map(Some).collect(),
+        };
+        // All radii in one request: the source may work on them side by side.
+        let requests: Vec<_> = radii
+            .iter()
+            .flat_map(|&radius| here.clone().with_tip_radius(radius).requests)
+            .collect();
+        let sweeps = request(source, &requests)?;
+        let tables = sweeps
+            .chunks(used.len())
+            .map(|sweeps| tables(&here, sweeps, recording.taxels.len()))
+            .collect::<Result<_, _>>()?;
+        let presses = chosen.iter().map(|&index| {
+            let place = places.of_press[index];
+            Thinned {
+                press: thin(&recording.presses[index]),
+                place: used.partition_point(|&other| other < place),
+                touch_z_mm: places.requests[place].gel_from_indenter_at_touch.position_mm.z,
+            }
+        });
+        let ln_radii = settings.tip_radii_mm.iter().map(|radius| radius.ln()).collect();
+        Ok(Self {
+            presses: presses.collect(),
+            tables,
+            ln_radii,
+            settings,
+        })
+    }
+
+    fn n_places(&self) -> usize {
+        self.tables[0].len()
+    }
+
+    fn n_blocks(&self) -> usize {
+        let n = self.settings.n_blocks.min(self.n_places());
+        if n < 2 { 0 } else { n }
+    }
+
+    fn start(&self) -> Bounds {
+        let files = self
+            .presses
+            .iter()
+            .filter(|p| p.press.control == Control::Pose)
+            .map(|p| p.press.file.clone());
+        let ln_radius = match (self.ln_radii.first(), self.ln_radii.last()) {
+            (Some(low), Some(high)) => [*low, *high],
+            _ => [0.0, 0.0],
+        };
+        let forced = self.presses.iter().any(|p| p.press.control == Control::Force);
+        Bounds {
+            center: Guess {
+                ln_radius: 0.5 * (ln_radius[0] + ln_radius[1]),
+                offsets_mm: files.map(|file| (file, 0.0)).collect(),
+                ln_stiffness: 0.0,
+            },
+            ln_radius,
+            offset_mm: self.settings.contact_offset_limit_mm,
+            ln_stiffness: if forced {
+                self.settings.stiffness_limits.map(f64::ln)
+            } else {
+                [0.0, 0.0]
+            },
+        }
+    }
+
+    fn start_near(&self, guess: &Guess) -> Bounds {
+        let start = self.start();
+        let near =
+            |[low, high]: [f64; 2], at: f64| [low.max(at - JACKKNIFE_REACH), high.min(at + JACKKNIFE_REACH)];
+        Bounds {
+            ln_radius: near(start.ln_radius, guess.ln_radius),
+            offset_mm: start.offset_mm,
+            ln_stiffness: near(start.ln_stiffness, guess.ln_stiffness),
+            center: guess.clone(),
+        }
+    }
+
+    /// The best values within bounds, seen by all places but those of one block.
+    fn solve(&self, bounds: &Bounds, without_block: Option<usize>) -> Result<Guess, DigitacError> {
+        let mut best = bounds.center.clone();
+        let mut failure = None;
+        let mut at_radius = |ln_radius: f64| -> (Guess, f64) {
+            let start = Guess {
+                ln_radius,
+                ..best.clone()
+            };
+            match self.solve_at_radius(start, bounds, without_block) {
+                Ok((guess, value)) => {
+                    best = guess.clone();
+                    (guess, value)
+                }
+                Err(error) => {
+                    failure = Some(error);
+                    (bounds.center.clone(), f64::INFINITY)
+                }
+            }
+        };
+        let [low, high] = bounds.ln_radius;
+        let ln_radius = if low < high {
+            minimize(low, high, TOLERANCE, |at| at_radius(at).1).0
+        } else {
+            low
+        };
+        let (guess, _) = at_radius(ln_radius);
+        failure.map_or(Ok(guess), Err)
+    }
+
+    fn solve_at_radius(
+        &self,
+        mut guess: Guess,
+        bounds: &Bounds,
+        without_block: Option<usize>,
+    ) -> Result<(Guess, f64), DigitacError> {
+        let tables = self.tables_at(guess.ln_radius)?;
+        let deviation = |guess: &Guess| {
+            self.deviation(&tables, guess, without_block)
+                .map_or(f64::INFINITY, |(_, d)| d)
+        };
+        let [low, high] = bounds.ln_stiffness;
+        if low < high {
+            let at = |ln_stiffness| {
+                deviation(&Guess {
+                    ln_stiffness,
+                    ..guess.clone()
+                })
+            };
+            guess.ln_stiffness = minimize(low, high, TOLERANCE, at).0;
+        }
+        let limit_mm = bounds.offset_mm;
+        if limit_mm > 0.0 && !guess.offsets_mm.is_empty() {
+            // First all files together, then each on its own.
+            let at = |offset_mm| {
+                let offsets_mm = guess
+                    .offsets_mm
+                    .keys()
+                    .map(|file| (file.clone(), offset_mm))
+                    .collect();
+                deviation(&Guess {
+                    offsets_mm,
+                    ..guess.clone()
+                })
+            };
+            let together_mm = minimize(-limit_mm, limit_mm, TOLERANCE, at).0;
+            guess
+                .offsets_mm
+                .values_mut()
+                .for_each(|offset| *offset = together_mm);
+            for _ in 0..2 * usize::from(guess.offsets_mm.len() > 1) {
+                for file in guess.offsets_mm.keys().cloned().collect::<Vec<_>>() {
+                    let here = guess.offsets_mm[&file];
+                    let reach = 0.5 * limit_mm;
+                    let (low, high) = ((here - reach).max(-limit_mm), (here + reach).min(limit_mm));
+                    let mut trial = guess.clone();
+                    let at = |offset_mm| {
+                        trial.offsets_mm.insert(file.clone(), offset_mm);
+                        deviation(&trial)
+                    };
+                    let offset_mm = minimize(low, high, TOLERANCE, at).0;
+                    guess.offsets_mm.insert(file, offset_mm);
+                }
+            }
+        }
+        let (_, value) = self.deviation(&tables, &guess, without_block)?;
+        Ok((guess, value))
+    }
+
+    /// The gains that fit best, and the mean over taxels of the mean absolute deviation, kPa.
+    fn deviation(
+        &self,
+        tables: &[SweepTable],
+        guess: &Guess,
+        without_block: Option<usize>,
+    ) -> Result<(Gains, f64), DigitacError> {
+        let bench = Bench {
+            contact_offset_mm: guess
+                .offsets_mm
+                .iter()
+                .map(|(file, mm)| (file.clone(), exactly(*mm)))
+                .collect(),
+            stiffness: Some(exactly(guess.ln_stiffness.exp())),
+            ..Bench::nominal()
+        };
+        let kept: Vec<&Thinned> = self
+            .presses
+            .iter()
+            .filter(|p| without_block.is_none_or(|block| p.place % self.n_blocks() != block))
+            .collect();
+        let features: Vec<Features> = kept
+            .iter()
+            .map(|p| Features::along(&tables[p.place], &p.press, p.touch_z_mm, &bench))
+            .collect::<Result<_, _>>()?;
+        let samples: Vec<Sample<'_>> = kept
+            .iter()
+            .zip(&features)
+            .map(|(p, features)| Sample {
+                features,
+                readings_kpa: &p.press.taxels_kpa,
+                valid: &p.press.valid,
+            })
+            .collect();
+        let memory = if features.iter().any(|f| f.n_frames() > 1) {
+            &self.settings.time_constants_s[..]
+        } else {
+            &[]
+        };
+        let (gains, deviations_kpa) = Gains::fit(&samples, memory);
+        let counted: Vec<f64> = deviations_kpa
+            .iter()
+            .enumerate()
+            .filter(|(taxel, _)| !self.settings.left_out.contains(taxel))
+            .map(|(_, deviation)| *deviation)
+            .collect();
+        let mean = counted.iter().sum::<f64>() / counted.len().max(1) as f64;
+        Ok((gains, mean))
+    }
+
+    /// Tables of a radius between those simulated, by the polynomial in ln radius through all of them.
+    fn tables_at(&self, ln_radius: f64) -> Result<Vec<SweepTable>, DigitacError> {
+        if self.ln_radii.len() < 2 {
+            return Ok(self.tables[0].clone());
+        }
+        let weights: Vec<f64> = (0..self.ln_radii.len())
+            .map(|i| {
+                let others = self.ln_radii.iter().enumerate().filter(|(j, _)| *j != i);
+                others
+                    .map(|(_, other)| (ln_radius - other) / (self.ln_radii[i] - other))
+                    .product()
+            })
+            .collect();
+        (0..self.n_places())
+            .map(|place| {
+                let tables: Vec<&SweepTable> = self.tables.iter().map(|row| &row[place]).collect();
+                SweepTable::blend(&tables, &weights, KNOTS).ok_or_else(|| DigitacError::WrongSweep {
+                    index: place,
+                    expected: "tables that can be interpolated between radii".into(),
+                    found: "a table of no depth".into(),
+                })
+            })
+            .collect()
+    }
+
+    fn bench(&self, best: &Guess, without: &[Guess]) -> Result<Bench, DigitacError> {
+        let (gains, deviation_kpa) = self.deviation(&self.tables_at(best.ln_radius)?, best, None)?;
+        let readings = self
+            .presses
+            .iter()
+            .flat_map(|p| p.press.taxels_kpa.iter().zip(&p.press.valid));
+        let usable = readings.flat_map(|(row, valid)| row.iter().zip(valid).filter(|(_, valid)| **valid));
+        let largest_kpa = usable.map(|(reading, _)| *reading).fold(0.0, f64::max);
+        let estimate = |value: &dyn Fn(&Guess) -> f64| {
+            Estimate::jackknife(value(best), &without.iter().map(value).collect::<Vec<_>>())
+        };
+        let start = self.start();
+        let radius_mm = (self.ln_radii.len() > 1).then(|| estimate(&|guess| guess.ln_radius.exp()));
+        let forced = start.ln_stiffness[0] < start.ln_stiffness[1];
+        let contact_offset_mm: BTreeMap<String, Estimate> = best
+            .offsets_mm
+            .keys()
+            .map(|file| (file.clone(), estimate(&|guess| guess.offsets_mm[file])))
+            .collect();
+        Ok(Bench {
+            tip_radius_mm: radius_mm
+                .or_else(|| self.settings.tip_radii_mm.first().map(|radius| exactly(*radius))),
+            contact_offset_elsewhere_mm: median(
+                contact_offset_mm.values().map(|offset| offset.value).collect(),
+            ),
+            contact_offset_mm,
+            stiffness: forced.then(|| estimate(&|guess| guess.ln_stiffness.exp())),
+            gains: Some(gains),
+            deviation_percent: if largest_kpa > 0.0 {
+                100.0 * deviation_kpa / largest_kpa
+            } else {
+                0.0
+            },
+            doubts: doubts(best, &start),
+        })
+    }
+}
+
+fn exactly(value: f64) -> Estimate {
+    Estimate {
+        value,
+        uncertainty: 0.0,
+    }
+}
+
+fn doubts(best: &Guess, bounds: &Bounds) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let mut doubt = |what: &str, value: f64, [low, high]: [f64; 2]| {
+        if low < high && (value - low < 3.0 * TOLERANCE || high - value < 3.0 * TOLERANCE) {
+            doubts.push(format!("{what} ended at a limit of its range"));
+        }
+    };
+    doubt("the tip's radius", best.ln_radius, bounds.ln_radius);
+    doubt("the stiffness", best.ln_stiffness, bounds.ln_stiffness);
+    for (file, offset_mm) in &best.offsets_mm {
+        doubt(
+            &format!("the contact height of {file}"),
+            *offset_mm,
+            [-bounds.offset_mm, bounds.offset_mm],
+        );
+    }
+    doubts
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    if n == 0 {
+        0.0
+    } else {
+        0.5 * (values[(n - 1) / 2] + values[n / 2])
+    }
+}
+
+/// A press with at most [`MAX_FRAMES`] frames.
+fn thin(press: &Press) -> Press {
+    let stride = press.time_s.len().div_ceil(MAX_FRAMES).max(1);
+    fn every<T: Clone>(values: &[T], stride: usize) -> Vec<T> {
+        values.iter().step_by(stride).cloned().collect()
+    }
+    Press {
+        time_s: every(&press.time_s, stride),
+        gel_from_indenter: every(&press.gel_from_indenter, stride),
+        force_n: press.force_n.as_ref().map(|force_n| every(force_n, stride)),
+        taxels_kpa: every(&press.taxels_kpa, stride),
+        taxels_raw: Vec::new(),
+        valid: every(&press.valid, stride),
+        ..press.clone()
+    }
+}

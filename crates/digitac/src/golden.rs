@@ -1,0 +1,39 @@
+//! Golden-section search (Kiefer, Proc. AMS 4, 1953).
+
+/// The place of the smallest value between two bounds, to a tolerance, and the value. Of several valleys it finds one.
+pub(crate) fn minimize(
+    mut low: f64,
+    mut high: f64,
+    tolerance: f64,
+    mut value: impl FnMut(f64) -> f64,
+) -> (f64, f64) {
+    let share = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let (mut left, mut right) = (high - share * (high - low), low + share * (high - low));
+    let (mut at_left, mut at_right) = (value(left), value(right));
+    while high - low > tolerance {
+        if at_left <= at_right {
+            (high, right, at_right) = (right, left, at_left);
+            left = high - share * (high - low);
+            at_left = value(left);
+        } else {
+            (low, left, at_left) = (left, right, at_right);
+            right = low + share * (high - low);
+            at_right = value(right);
+        }
+    }
+    if at_left <= at_right {
+        (left, at_left)
+    } else {
+        (right, at_right)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_valley_is_found() {
+        let (at, value) = super::minimize(-3.0, 5.0, 1e-6, |x| (x - 1.3).abs() + 2.0);
+        assert!((at - 1.3).abs() < 1e-6 && (value - 2.0).abs() < 1e-6);
+        assert!((super::minimize(-3.0, 5.0, 1e-6, |x| x).0 + 3.0).abs() < 1e-5);
+    }
+}

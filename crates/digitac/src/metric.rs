@@ -1,0 +1,218 @@
+//! How wrong a prediction is, in percent of the largest reading.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use crate::PairedPress;
+
+/// The definition that goes with every score.
+pub const DEFINITION: &str = "Errors are mean absolute differences between predicted and measured readings over the largest \
+    reading of the same file, in percent. 'Nearest, in contact' (the headline) takes, of the frames with depth > 0 whose largest \
+    reading exceeds 3 % of the file's largest, the taxel with the largest reading. 'All' takes every taxel in every frame. 'Peak' \
+    compares, press by press, the largest reading of the press with the largest prediction of the same taxel. Taxels left out count in \
+    neither; frames nearest to one are left out of the headline.";
+
+/// Frames whose largest reading is below this fraction of the file's largest are not in contact.
+const CONTACT_FRACTION: f64 = 0.03;
+
+/// Largest reading of each file, kPa, from all its presses, whether they are scored or not.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scale {
+    /// Taxels that are left out of the headline, by index.
+    pub left_out: BTreeSet<usize>,
+    /// Largest reading of each file, kPa.
+    pub largest_kpa: BTreeMap<String, f64>,
+}
+
+impl Scale {
+    /// Looks through the presses of whole files.
+    #[must_use]
+    pub fn of<'a>(presses: impl IntoIterator<Item = &'a PairedPress>, left_out: BTreeSet<usize>) -> Self {
+        let mut largest_kpa: BTreeMap<String, f64> = BTreeMap::new();
+        for press in presses {
+            let largest = largest_kpa.entry(press.file.clone()).or_insert(0.0);
+            for frame in 0..press.readings_kpa.len() {
+                if let Some((taxel, reading)) = nearest(press, frame)
+                    && !left_out.contains(&taxel)
+                {
+                    *largest = largest.max(reading);
+                }
+            }
+        }
+        Self {
+            left_out,
+            largest_kpa,
+        }
+    }
+}
+
+/// A mean and what it is the mean of, %.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mean {
+    /// The mean, %; zero if nothing was counted.
+    pub percent: f64,
+    /// How many values.
+    pub count: usize,
+}
+
+/// Errors of some presses.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Nearest taxel, frames in contact: the headline.
+    pub nearest_in_contact: Mean,
+    /// All taxels, all frames.
+    pub all: Mean,
+    /// Largest reading of each press.
+    pub peak: Mean,
+}
+
+/// Errors of presses, taken apart.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// What the numbers mean.
+    pub definition: String,
+    /// All presses.
+    pub overall: Errors,
+    /// By file.
+    pub by_file: BTreeMap<String, Errors>,
+    /// By taxel, left out or not; its headline takes the frames to which it is the nearest; `[n_taxels]`.
+    pub by_taxel: Vec<Errors>,
+    /// Frames that could not be judged because the simulation ended above them.
+    pub n_frames_not_simulated: usize,
+}
+
+/// Scores predictions, `[n_presses][n_frames][n_taxels]`, kPa.
+#[must_use]
+pub fn score<'a>(
+    presses: impl IntoIterator<Item = &'a PairedPress>,
+    predictions: &[Vec<Vec<f64>>],
+    scale: &Scale,
+) -> Score {
+    let mut overall = Sums::default();
+    let mut by_file: BTreeMap<String, Sums> = BTreeMap::new();
+    let mut by_taxel: Vec<Sums> = Vec::new();
+    let mut n_frames_not_simulated = 0;
+    for (press, prediction) in presses.into_iter().zip(predictions) {
+        let largest_kpa = scale.largest_kpa.get(&press.file).copied().unwrap_or(0.0);
+        if largest_kpa <= 0.0 {
+            continue;
+        }
+        let file = by_file.entry(press.file.clone()).or_default();
+        by_taxel.resize_with(
+            by_taxel.len().max(press.readings_kpa.first().map_or(0, Vec::len)),
+            Sums::default,
+        );
+        n_frames_not_simulated += press
+            .features
+            .simulated
+            .iter()
+            .filter(|simulated| !**simulated)
+            .count();
+        let error = |frame: usize, taxel: usize| {
+            100.0 * (prediction[frame][taxel] - press.readings_kpa[frame][taxel]).abs() / largest_kpa
+        };
+        let mut peak: Option<(usize, f64)> = None;
+        for frame in 0..press.readings_kpa.len() {
+            for (taxel, valid) in press.valid[frame].iter().enumerate() {
+                if *valid {
+                    let error = error(frame, taxel);
+                    by_taxel[taxel].all.add(error);
+                    if !scale.left_out.contains(&taxel) {
+                        overall.all.add(error);
+                        file.all.add(error);
+                    }
+                }
+            }
+            let Some((taxel, reading)) = nearest(press, frame) else {
+                continue;
+            };
+            if press.features.depth_mm[frame] > 0.0 && reading > CONTACT_FRACTION * largest_kpa {
+                let error = error(frame, taxel);
+                by_taxel[taxel].nearest.add(error);
+                if !scale.left_out.contains(&taxel) {
+                    overall.nearest.add(error);
+                    file.nearest.add(error);
+                    if peak.is_none_or(|(_, highest)| reading > highest) {
+                        peak = Some((taxel, reading));
+                    }
+                }
+            }
+        }
+        if let Some((taxel, reading)) = peak {
+            let frames = prediction
+                .iter()
+                .zip(&press.valid)
+                .filter(|(_, valid)| valid[taxel]);
+            let predicted = frames
+                .map(|(row, _)| row[taxel])
+                .fold(f64::NEG_INFINITY, f64::max);
+            let error = 100.0 * (predicted - reading).abs() / largest_kpa;
+            overall.peak.add(error);
+            file.peak.add(error);
+            by_taxel[taxel].peak.add(error);
+        }
+    }
+    Score {
+        definition: DEFINITION.to_owned(),
+        overall: overall.errors(),
+        by_file: by_file
+            .into_iter()
+            .map(|(file, sums)| (file, sums.errors()))
+            .collect(),
+        by_taxel: by_taxel.iter().map(Sums::errors).collect(),
+        n_frames_not_simulated,
+    }
+}
+
+/// The taxel with the largest usable reading of a frame, and the reading, kPa.
+pub(crate) fn nearest(press: &PairedPress, frame: usize) -> Option<(usize, f64)> {
+    let row = press.readings_kpa[frame]
+        .iter()
+        .zip(&press.valid[frame])
+        .enumerate();
+    row.filter(|(_, (_, valid))| **valid)
+        .map(|(taxel, (reading, _))| (taxel, *reading))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+#[derive(Clone, Debug, Default)]
+struct Sum {
+    total: f64,
+    count: usize,
+}
+
+impl Sum {
+    fn add(&mut self, value: f64) {
+        self.total += value;
+        self.count += 1;
+    }
+
+    fn mean(&self) -> Mean {
+        Mean {
+            percent: if self.count > 0 {
+                self.total / self.count as f64
+            } else {
+                0.0
+            },
+            count: self.count,
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
+struct Sums {
+    nearest: Sum,
+    all: Sum,
+    peak: Sum,
+}
+
+impl Sums {
+    fn errors(&self) -> Errors {
+        Errors {
+            nearest_in_contact: self.nearest.mean(),
+            all: self.all.mean(),
+            peak: self.peak.mean(),
+        }
+    }
+}

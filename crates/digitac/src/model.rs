@@ -1,0 +1,103 @@
+//! A twin with all that is needed to use it, and to know where it comes from.
+
+use serde::{Deserialize, Serialize};
+use twintac_recording::Provenance;
+
+use crate::{Bench, Evaluation, Gains, Normalization, Score, Split, TrainSettings, Twin, Variant};
+
+/// A twin and its record.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Where it comes from.
+    pub record: ModelRecord,
+    /// What it does.
+    pub twin: Twin,
+}
+
+/// Everything about a twin but its weights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelRecord {
+    /// Which model it is.
+    pub variant: Variant,
+    /// Names of the taxels, in the order of every row of readings.
+    pub taxels: Vec<String>,
+    /// The sensor description, as text.
+    pub sensor: String,
+    /// Settings of the mesh and the simulation.
+    pub simulation: serde_json::Value,
+    /// What was found about the bench.
+    pub bench: Bench,
+    /// Gains and memory as learned.
+    pub gains: Gains,
+    /// Settings of the training.
+    pub settings: TrainSettings,
+    /// Where the training data come from.
+    pub provenance: Provenance,
+    /// Files that the training presses were read from.
+    pub files: Vec<String>,
+    /// Which presses taught, decided and judged.
+    pub split: Split,
+    /// Errors on validation presses.
+    pub validation: Score,
+    /// Errors on test presses at training.
+    pub test: Option<Score>,
+    /// What the weights are changes of; needed to read them.
+    pub(crate) start: Start,
+}
+
+/// What the weights are changes of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Start {
+    pub(crate) gains: Gains,
+    pub(crate) normalization: Normalization,
+    pub(crate) correction_limit: f64,
+    pub(crate) hidden: Vec<usize>,
+}
+
+/// Where a model comes from: what [`Model::new`] cannot read off the twin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origin {
+    /// The sensor description, as text.
+    pub sensor: String,
+    /// Settings of the mesh and the simulation.
+    pub simulation: serde_json::Value,
+    /// What was found about the bench.
+    pub bench: Bench,
+    /// Settings of the training.
+    pub settings: TrainSettings,
+    /// Where the training data come from.
+    pub provenance: Provenance,
+    /// Files that the training presses were read from.
+    pub files: Vec<String>,
+    /// Which presses taught, decided and judged.
+    pub split: Split,
+}
+
+impl Model {
+    /// Puts a trained twin on record.
+    #[must_use]
+    pub fn new(twin: Twin, origin: Origin, validation: Score, test: Option<&Evaluation>) -> Self {
+        let physics = twin.physics();
+        let record = ModelRecord {
+            variant: twin.variant(),
+            taxels: twin.taxels().to_vec(),
+            sensor: origin.sensor,
+            simulation: origin.simulation,
+            bench: origin.bench,
+            gains: twin.gains().clone(),
+            settings: origin.settings,
+            provenance: origin.provenance,
+            files: origin.files,
+            split: origin.split,
+            validation,
+            test: test.map(|evaluation| evaluation.twin.clone()),
+            start: Start {
+                gains: physics.gains.clone(),
+                normalization: physics.normalization.clone(),
+                correction_limit: physics.correction_limit,
+                hidden: twin.hidden().to_vec(),
+            },
+        };
+        Self { record, twin }
+    }
+}

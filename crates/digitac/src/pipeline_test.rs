@@ -1,0 +1,300 @@
+//! From a recording to a twin, against formulas whose truth is known.
+
+use std::collections::BTreeSet;
+
+use crate::synthetic::{Formula, Truth};
+use crate::*;
+
+struct Made {
+    recording: twintac_recording::Recording,
+    places: Places,
+    sweeps: Vec<twintac_simulate::Sweep>,
+    bench: Bench,
+    presses: Vec<PairedPress>,
+    split: Split,
+    scale: Scale,
+}
+
+/// The numbers of the split do not depend on the bench, so it is drawn first and the bench sees training presses only.
+fn make(truth: &Truth, n_places: usize) -> Made {
+    let recording = truth.recording(n_places);
+    let places = Places::of(&recording, &Formula, &PlaceSettings::default()).unwrap();
+    let sweeps = Formula.sweeps(&places.requests).unwrap();
+    let first = pair(
+        &recording,
+        &places,
+        &sweeps,
+        &Bench::nominal(),
+        &PairSettings::default(),
+    )
+    .unwrap();
+    let split = Split::new(&first, &SplitSettings::default()).unwrap();
+    let bench = fit_bench(
+        &recording,
+        &places,
+        &split.train,
+        &Formula,
+        &BenchSettings::default(),
+    )
+    .unwrap();
+    let radius_mm = bench.tip_radius_mm.unwrap().value;
+    let places = places.with_tip_radius(Some(radius_mm));
+    let sweeps = Formula.sweeps(&places.requests).unwrap();
+    let presses = pair(&recording, &places, &sweeps, &bench, &PairSettings::default()).unwrap();
+    let scale = Scale::of(&presses, BTreeSet::new());
+    Made {
+        recording,
+        places,
+        sweeps,
+        bench,
+        presses,
+        split,
+        scale,
+    }
+}
+
+fn settings(variants: &[Variant], epochs: usize) -> TrainSettings {
+    TrainSettings {
+        variants: variants.to_vec(),
+        epochs,
+        ..TrainSettings::default()
+    }
+}
+
+fn train_quietly(made: &Made, settings: &TrainSettings) -> Vec<Trained> {
+    train(
+        &made.presses,
+        &made.recording.taxels,
+        &made.split,
+        &made.scale,
+        settings,
+        &mut |_| {},
+    )
+    .unwrap()
+}
+
+#[test]
+fn the_bench_and_the_gains_are_found_and_the_twin_predicts_unseen_places() {
+    let truth = Truth::new();
+    let made = make(&truth, 21);
+    let radius = made.bench.tip_radius_mm.unwrap();
+    assert!(
+        (radius.value - truth.radius_mm).abs() < 0.03 * truth.radius_mm,
+        "{:?}",
+        made.bench
+    );
+    assert!(
+        (radius.value - truth.radius_mm).abs() < 5.0 * radius.uncertainty + 0.02,
+        "{radius:?}"
+    );
+    for (file, offset_mm) in truth.offsets_mm.iter().enumerate() {
+        let found = made.bench.contact_offset_mm(&format!("file{file}"));
+        assert!((found - offset_mm).abs() < 0.01, "{found}, expected {offset_mm}");
+    }
+    assert!(made.bench.doubts.is_empty(), "{:?}", made.bench.doubts);
+
+    let trained = train_quietly(
+        &made,
+        &settings(&[Variant::Pressure, Variant::PressureMemory], 10),
+    );
+    let best = choose(&trained).unwrap();
+    assert_eq!(best.twin.variant(), Variant::PressureMemory);
+    for (found, expected) in best.twin.gains().gain.iter().zip(&truth.gains.gain) {
+        assert!((found / expected - 1.0).abs() < 0.02, "{:?}", best.twin.gains());
+    }
+    let test: Vec<&PairedPress> = made
+        .split
+        .test
+        .iter()
+        .map(|&index| &made.presses[index])
+        .collect();
+    let teachers: Vec<&PairedPress> = made
+        .split
+        .train
+        .iter()
+        .map(|&index| &made.presses[index])
+        .collect();
+    let polynomial = StaticPolynomial::fit(&teachers);
+    let evaluation = evaluate(&best.twin, &test, &made.scale, Some(&polynomial));
+    let headline = |score: &Score| score.overall.nearest_in_contact.percent;
+    assert!(headline(&evaluation.twin) < 1.0, "{:?}", evaluation.twin);
+    assert!(headline(evaluation.polynomial.as_ref().unwrap()) > 3.0 * headline(&evaluation.twin));
+    assert!(headline(&evaluation.zero) > 20.0);
+}
+
+#[test]
+fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
+    let mut truth = Truth::new();
+    truth.offsets_mm.truncate(1);
+    let mut made = make(&truth, 21);
+    // A barometer that saturates.
+    for press in &mut made.presses {
+        press
+            .readings_kpa
+            .iter_mut()
+            .flatten()
+            .for_each(|r| *r -= 0.002 * *r * r.abs());
+    }
+    made.scale = Scale::of(&made.presses, BTreeSet::new());
+    let trained = train_quietly(
+        &made,
+        &settings(&[Variant::PressureMemory, Variant::PressureMemoryMlp], 60),
+    );
+    let error = |t: &Trained| t.validation.overall.nearest_in_contact.percent;
+    assert!(
+        error(&trained[1]) < 0.8 * error(&trained[0]),
+        "{} {}",
+        error(&trained[0]),
+        error(&trained[1])
+    );
+    // Ten times the load: no worse than the bound allows.
+    let mut features = made.presses[5].features.clone();
+    features
+        .pressure_kpa
+        .iter_mut()
+        .flatten()
+        .for_each(|p| *p *= 10.0);
+    let (plain, corrected) = (
+        trained[0].twin.predict(&features),
+        trained[1].twin.predict(&features),
+    );
+    for (plain, corrected) in plain.iter().zip(&corrected) {
+        let size: f64 = plain.iter().map(|p| p * p).sum::<f64>().sqrt();
+        for (p, c) in plain.iter().zip(corrected) {
+            assert!((p - c).abs() < 0.6 * size + 1.0, "{p} {c}");
+        }
+    }
+}
+
+#[test]
+fn a_seed_gives_the_same_bits_on_one_thread_and_on_two() {
+    let mut truth = Truth::new();
+    truth.offsets_mm.truncate(1);
+    let made = make(&truth, 12);
+    let settings = settings(&[Variant::PressureMemoryMlp, Variant::Paper], 4);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let trained = train_quietly(&made, &settings);
+            trained
+                .iter()
+                .map(|t| t.twin.weights().clone())
+                .collect::<Vec<_>>()
+        })
+    };
+    let bits = |weights: &[network::Weights]| -> Vec<u32> {
+        weights
+            .iter()
+            .flat_map(|w| w.values().flat_map(|(_, data)| data.iter().map(|x| x.to_bits())))
+            .collect()
+    };
+    let (one, two) = (run(1), run(2));
+    assert_eq!(bits(&one), bits(&two));
+    let other = train_quietly(
+        &made,
+        &TrainSettings {
+            seed: 2,
+            ..settings.clone()
+        },
+    );
+    assert_ne!(
+        bits(&one)[..],
+        bits(&other.iter().map(|t| t.twin.weights().clone()).collect::<Vec<_>>())[..]
+    );
+}
+
+#[test]
+fn a_new_file_gives_three_presses_for_its_contact_height() {
+    let mut truth = Truth::new();
+    let made = make(&truth, 21);
+    let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 5))
+        .remove(0)
+        .twin;
+    truth.offsets_mm = vec![0.12];
+    let mut new = truth.recording(21);
+    new.presses.iter_mut().for_each(|press| press.file = "new".into());
+    let places = Places::of(&new, &Formula, &PlaceSettings::default()).unwrap();
+    let places = places.with_tip_radius(made.bench.tip_radius_mm.map(|radius| radius.value));
+    let sweeps = Formula.sweeps(&places.requests).unwrap();
+    let found = recalibrate(
+        &new,
+        (&places, &sweeps),
+        &made.bench,
+        &twin,
+        "new",
+        0.25,
+        &BTreeSet::new(),
+    )
+    .unwrap()
+    .unwrap();
+    assert!((found.contact_offset_mm.value - 0.12).abs() < 0.015, "{found:?}");
+    assert_eq!(found.used, [0, 1, 2]);
+    assert!(
+        recalibrate(
+            &new,
+            (&places, &sweeps),
+            &made.bench,
+            &twin,
+            "none",
+            0.25,
+            &BTreeSet::new()
+        )
+        .unwrap()
+        .is_none()
+    );
+}
+
+#[test]
+fn a_model_survives_its_folder_and_notices_damage() {
+    let mut truth = Truth::new();
+    truth.offsets_mm.truncate(1);
+    let made = make(&truth, 12);
+    let settings = settings(&[Variant::PressureMemoryMlp], 3);
+    let trained = train_quietly(&made, &settings).remove(0);
+    let origin = Origin {
+        sensor: "name = \"formula\"".into(),
+        simulation: serde_json::json!({"edge_mm": 1.0}),
+        bench: made.bench.clone(),
+        settings,
+        provenance: made.recording.provenance,
+        files: vec!["file0".into()],
+        split: made.split.clone(),
+    };
+    let model = Model::new(trained.twin, origin, trained.validation, None);
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("twin");
+    model.save(&folder).unwrap();
+    model.save(&folder).unwrap();
+    let again = Model::load(&folder).unwrap();
+    assert_eq!(again.record, model.record);
+    for press in &made.presses {
+        assert_eq!(
+            again.twin.predict(&press.features),
+            model.twin.predict(&press.features)
+        );
+    }
+    let message = |folder: &std::path::Path| Model::load(folder).unwrap_err().to_string();
+    for name in ["weights.safetensors", "twin.json", "checksums.json"] {
+        let path = folder.join(name);
+        let whole = std::fs::read(&path).unwrap();
+        let mut flipped = whole.clone();
+        let middle = flipped.len() / 2;
+        flipped[middle] ^= 4;
+        std::fs::write(&path, flipped).unwrap();
+        assert!(Model::load(&folder).is_err(), "{name}");
+        std::fs::remove_file(&path).unwrap();
+        assert!(
+            message(&folder).contains(name) && message(&folder).contains("missing"),
+            "{}",
+            message(&folder)
+        );
+        std::fs::write(&path, whole).unwrap();
+    }
+    let path = folder.join("checksums.json");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("\"version\": 1", "\"version\": 7")).unwrap();
+    assert!(message(&folder).contains("version 7"), "{}", message(&folder));
+}

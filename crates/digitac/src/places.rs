@@ -1,0 +1,118 @@
+//! Which places a recording presses, so that each is simulated once.
+
+use glam::{DQuat, DVec2};
+use twintac_recording::{Control, Press, Recording};
+use twintac_shape::Pose;
+
+use crate::{DigitacError, SweepRequest, SweepSource};
+
+/// Places closer than this are one, mm.
+const SAME_PLACE_MM: f64 = 0.01;
+/// Turns closer than this are one, radians.
+const SAME_TURN_RAD: f64 = 0.001;
+
+/// How deep places are to be simulated.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PlaceSettings {
+    /// How much deeper to simulate than was pressed, mm: room for the contact height to be corrected.
+    pub margin_mm: f64,
+    /// Depth of places where the force was prescribed instead of the pose, mm.
+    pub force_control_depth_mm: f64,
+}
+
+impl Default for PlaceSettings {
+    fn default() -> Self {
+        Self {
+            margin_mm: 0.4,
+            force_control_depth_mm: 3.0,
+        }
+    }
+}
+
+/// The distinct places of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Places {
+    /// What to simulate, in the order in which the recording comes to it.
+    pub requests: Vec<SweepRequest>,
+    /// For each press of the recording, its place in `requests`; `[n_presses]`.
+    pub of_press: Vec<usize>,
+}
+
+impl Places {
+    /// Gathers the places. Presses at one place share a request that reaches the deepest of them.
+    pub fn of(
+        recording: &Recording,
+        source: &dyn SweepSource,
+        settings: &PlaceSettings,
+    ) -> Result<Self, DigitacError> {
+        let mut index_of_key = std::collections::BTreeMap::new();
+        let mut places = Self {
+            requests: Vec::new(),
+            of_press: Vec::with_capacity(recording.presses.len()),
+        };
+        for press in &recording.presses {
+            let deepest = deepest_pose(press)?;
+            let next = places.requests.len();
+            let index = *index_of_key.entry(key(&press.indenter, &deepest)).or_insert(next);
+            if index == next {
+                let touch = source
+                    .touch(&press.indenter, &deepest)
+                    .map_err(DigitacError::Sweeps)?;
+                places.requests.push(SweepRequest {
+                    indenter: press.indenter.clone(),
+                    gel_from_indenter_at_touch: touch,
+                    max_depth_mm: 0.0,
+                    tip_radius_mm: None,
+                });
+            }
+            let request = &mut places.requests[index];
+            let touch_z_mm = request.gel_from_indenter_at_touch.position_mm.z;
+            let depth_mm = match press.control {
+                Control::Pose => (touch_z_mm - deepest.position_mm.z).max(0.0) + settings.margin_mm,
+                Control::Force => settings.force_control_depth_mm,
+            };
+            request.max_depth_mm = request.max_depth_mm.max(depth_mm);
+            places.of_press.push(index);
+        }
+        Ok(places)
+    }
+
+    /// The same requests with a tip of another radius.
+    #[must_use]
+    pub fn with_tip_radius(mut self, tip_radius_mm: Option<f64>) -> Self {
+        for request in &mut self.requests {
+            request.tip_radius_mm = tip_radius_mm;
+        }
+        self
+    }
+}
+
+/// Where the indenter is lowest; its place in the gel's plane stands for the press.
+pub(crate) fn deepest_pose(press: &Press) -> Result<Pose, DigitacError> {
+    let lowest = press
+        .gel_from_indenter
+        .iter()
+        .min_by(|a, b| a.position_mm.z.total_cmp(&b.position_mm.z));
+    lowest
+        .copied()
+        .ok_or_else(|| DigitacError::press(&press.name, "has no frames"))
+}
+
+type Key = (String, [i64; 2], [i64; 4]);
+
+fn key(indenter: &str, pose: &Pose) -> Key {
+    let DVec2 { x, y } = pose.position_mm.truncate();
+    let turn: DQuat = if pose.rotation.w < 0.0 {
+        -pose.rotation
+    } else {
+        pose.rotation
+    };
+    let cell = |value: f64, size: f64| (value / size).round() as i64;
+    let place = [cell(x, SAME_PLACE_MM), cell(y, SAME_PLACE_MM)];
+    (
+        indenter.to_owned(),
+        place,
+        turn.to_array().map(|part| cell(part, SAME_TURN_RAD)),
+    )
+}

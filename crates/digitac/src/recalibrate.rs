@@ -1,0 +1,126 @@
+//! Where a new recording touches the gel.
+//!
+//! Contact heights differ from one mounting to the next by some hundredths of a millimetre, which costs percents, and no model can know them.
+//! So a file that the bench was not fitted to gives its first presses away: its height is fitted to them against the twin as it is, by a rule
+//! fixed beforehand, and they are not scored.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+use twintac_recording::{Control, Press, Recording};
+use twintac_simulate::Sweep;
+
+use crate::golden::minimize;
+use crate::paired::tables;
+use crate::{Bench, DigitacError, Estimate, Features, Places, Twin};
+
+/// Presses of a file that are given away.
+const N_PRESSES: usize = 3;
+/// A press that would put the contact farther from the file's than this is worth a warning, mm.
+const SUSPICIOUS_MM: f64 = 0.08;
+/// Tolerance of heights, mm.
+const TOLERANCE_MM: f64 = 2e-3;
+
+/// The contact height of one file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Recalibration {
+    /// The file.
+    pub file: String,
+    /// By how much the tip is deeper than the file says, mm; the uncertainty is what the presses disagree by.
+    pub contact_offset_mm: Estimate,
+    /// The presses it was fitted to, by number: not to be scored.
+    pub used: Vec<usize>,
+    /// Presses whose own height is far from the file's.
+    pub doubts: Vec<String>,
+}
+
+/// Fits the contact height of a file to its first three presses by least absolute deviations from the twin, within `limit_mm` of the
+/// bench's median. Taxels in `left_out` do not count. `None` if the file has no presses of prescribed pose, or none to spare.
+pub fn recalibrate(
+    recording: &Recording,
+    (places, sweeps): (&Places, &[Sweep]),
+    bench: &Bench,
+    twin: &Twin,
+    file: &str,
+    limit_mm: f64,
+    left_out: &BTreeSet<usize>,
+) -> Result<Option<Recalibration>, DigitacError> {
+    let of_file = recording
+        .presses
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| p.file == file && p.control == Control::Pose);
+    let of_file: Vec<usize> = of_file.map(|(index, _)| index).collect();
+    if of_file.len() <= N_PRESSES {
+        return Ok(None);
+    }
+    let used = of_file[..N_PRESSES].to_vec();
+    let tables = tables(places, sweeps, recording.taxels.len())?;
+    let deviation_kpa = |index: usize, offset_mm: f64| -> Result<f64, DigitacError> {
+        let press = &recording.presses[index];
+        let place = places.of_press[index];
+        let mut bench = bench.clone();
+        bench.contact_offset_mm.insert(
+            file.to_owned(),
+            Estimate {
+                value: offset_mm,
+                uncertainty: 0.0,
+            },
+        );
+        let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
+        let features = Features::along(&tables[place], press, touch_z_mm, &bench)?;
+        Ok(mean_deviation_kpa(press, &twin.predict(&features), left_out))
+    };
+    let center = bench.contact_offset_elsewhere_mm;
+    let fit = |presses: &[usize]| -> Result<f64, DigitacError> {
+        let mut failure = None;
+        let value = |offset_mm: f64| {
+            let sum: Result<f64, _> = presses.iter().map(|&press| deviation_kpa(press, offset_mm)).sum();
+            sum.unwrap_or_else(|error| {
+                failure = Some(error);
+                f64::INFINITY
+            })
+        };
+        let (offset_mm, _) = minimize(center - limit_mm, center + limit_mm, TOLERANCE_MM, value);
+        failure.map_or(Ok(offset_mm), Err)
+    };
+    let value = fit(&used)?;
+    let own: Vec<f64> = used
+        .iter()
+        .map(|&press| fit(&[press]))
+        .collect::<Result<_, _>>()?;
+    let spread = own.iter().map(|o| (o - value).powi(2)).sum::<f64>() / (own.len() * (own.len() - 1)) as f64;
+    let doubts = used
+        .iter()
+        .zip(&own)
+        .filter(|(_, own)| (*own - value).abs() > SUSPICIOUS_MM)
+        .map(|(&press, own)| {
+            let name = &recording.presses[press].name;
+            format!(
+                "press {name} touches {:.2} mm deeper than its file says, the others {value:.2} mm",
+                own
+            )
+        })
+        .collect();
+    let contact_offset_mm = Estimate {
+        value,
+        uncertainty: spread.sqrt(),
+    };
+    Ok(Some(Recalibration {
+        file: file.to_owned(),
+        contact_offset_mm,
+        used,
+        doubts,
+    }))
+}
+
+fn mean_deviation_kpa(press: &Press, predicted: &[Vec<f64>], left_out: &BTreeSet<usize>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for ((measured, predicted), valid) in press.taxels_kpa.iter().zip(predicted).zip(&press.valid) {
+        for taxel in (0..measured.len()).filter(|taxel| valid[*taxel] && !left_out.contains(taxel)) {
+            sum += (measured[taxel] - predicted[taxel]).abs();
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { sum / count } else { 0.0 }
+}

@@ -1,0 +1,118 @@
+//! How well the same press repeats: what no twin that knows only the press can be expected to beat by much.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Errors, PairedPress, Scale, Warp, score};
+
+/// The definition that goes with the numbers.
+const DEFINITION: &str = "Two presses of one indenter at one place (within 0.05 mm) are compared from first touch for as long as both were \
+    driven alike (depths within 0.05 mm), in contact for at least 0.5 s. Errors are those of taking one's readings for the other's, so a \
+    twin that predicts their mean has half of them.";
+
+/// Places closer than this are one, mm.
+const SAME_PLACE_MM: f64 = 0.05;
+/// Depths closer than this are one, mm.
+const SAME_DEPTH_MM: f64 = 0.05;
+/// Shortest common stretch that counts, s.
+const SHORTEST_S: f64 = 0.5;
+
+/// How well presses repeat.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Repeatability {
+    /// What the numbers mean.
+    pub definition: String,
+    /// Pairs of presses that repeat each other.
+    pub n_pairs: usize,
+    /// Errors of taking one for the other.
+    pub errors: Errors,
+}
+
+/// Compares all presses that repeat each other. `None` if none do.
+#[must_use]
+pub fn repeatability(presses: &[PairedPress], scale: &Scale) -> Option<Repeatability> {
+    let mut compared = Vec::new();
+    let mut predictions = Vec::new();
+    for (index, first) in presses.iter().enumerate() {
+        for second in &presses[index + 1..] {
+            let close = |axis: usize| (first.place_mm[axis] - second.place_mm[axis]).abs() < SAME_PLACE_MM;
+            if first.indenter == second.indenter
+                && close(0)
+                && close(1)
+                && let Some((common, other)) = common_stretch(first, second)
+            {
+                compared.push(common);
+                predictions.push(other);
+            }
+        }
+    }
+    (!compared.is_empty()).then(|| Repeatability {
+        definition: DEFINITION.to_owned(),
+        n_pairs: compared.len(),
+        errors: score(&compared, &predictions, scale).overall,
+    })
+}
+
+/// The first press from first touch for as long as the second was driven alike, and the second's readings at its frames.
+fn common_stretch(first: &PairedPress, second: &PairedPress) -> Option<(PairedPress, Vec<Vec<f64>>)> {
+    let (touch_s, other_touch_s) = (touch_time_s(first)?, touch_time_s(second)?);
+    let (f, g) = (&first.features, &second.features);
+    let start = f.time_s.partition_point(|t| *t < touch_s);
+    let at = |frame: usize| index_at(&g.time_s, f.time_s[frame] - touch_s + other_touch_s);
+    let mut frames = Vec::new();
+    for frame in start..f.n_frames() {
+        let Some(index) = at(frame) else { break };
+        let warp = Warp {
+            measured_index: vec![index],
+            cost: 0.0,
+            largest_shift_s: 0.0,
+        };
+        let depth_mm = warp.apply(&g.depth_mm.iter().map(|d| vec![*d]).collect::<Vec<_>>())[0][0];
+        if (depth_mm - f.depth_mm[frame]).abs() > SAME_DEPTH_MM {
+            break;
+        }
+        frames.push((frame, index));
+    }
+    let (&(from, _), &(to, _)) = (frames.first()?, frames.last()?);
+    if f.time_s[to] - f.time_s[from] < SHORTEST_S {
+        return None;
+    }
+    let indices = frames.iter().map(|(_, index)| *index).collect();
+    let warp = Warp {
+        measured_index: indices,
+        cost: 0.0,
+        largest_shift_s: 0.0,
+    };
+    let other_valid = warp.apply_valid(&second.valid);
+    let mut common = first.clone();
+    let c = &mut common.features;
+    c.time_s = f.time_s[from..=to].to_vec();
+    c.depth_mm = f.depth_mm[from..=to].to_vec();
+    c.simulated = vec![true; c.time_s.len()];
+    common.readings_kpa = first.readings_kpa[from..=to].to_vec();
+    common.valid = first.valid[from..=to].to_vec();
+    for (row, other) in common.valid.iter_mut().zip(&other_valid) {
+        row.iter_mut()
+            .zip(other)
+            .for_each(|(valid, other)| *valid &= *other);
+    }
+    Some((common, warp.apply(&second.readings_kpa)))
+}
+
+/// When the tip first passes the surface, between frames, s.
+fn touch_time_s(press: &PairedPress) -> Option<f64> {
+    let f = &press.features;
+    let after = f.depth_mm.iter().position(|depth| *depth > 0.0)?;
+    let before = after.checked_sub(1)?;
+    let share = f.depth_mm[before] / (f.depth_mm[before] - f.depth_mm[after]);
+    Some(f.time_s[before] + share * (f.time_s[after] - f.time_s[before]))
+}
+
+/// The index, between frames, of a time.
+fn index_at(time_s: &[f64], at_s: f64) -> Option<f64> {
+    let after = time_s.partition_point(|t| *t <= at_s);
+    if after == 0 || after == time_s.len() {
+        return None;
+    }
+    let (low, high) = (time_s[after - 1], time_s[after]);
+    Some((after - 1) as f64 + (at_s - low) / (high - low))
+}

@@ -1,0 +1,173 @@
+//! Which presses teach, which decide, and which judge.
+//!
+//! Whole presses are held out, by place: presses that repeat a place are never on both sides. The places are walked in order and one of
+//! each few is drawn, so that what is held out lies between what is known and covers the whole gel. The outermost places of each indenter
+//! always teach: a twin is not asked to extrapolate beyond where it was pressed.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rand::Rng;
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+
+use crate::{DigitacError, PairedPress, seed};
+
+/// How presses are divided.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SplitSettings {
+    /// Presses whose places fall into the same square of this side belong together, mm. Dense grids want several of their steps.
+    pub block_mm: f64,
+    /// One of so many places is held out for testing.
+    pub test_one_in: usize,
+    /// One of so many of the remaining places is held out for validation.
+    pub validation_one_in: usize,
+    /// Files that are held out for testing as a whole; if there are any, no places are.
+    pub test_files: BTreeSet<String>,
+    /// Seed.
+    pub seed: u64,
+}
+
+impl Default for SplitSettings {
+    fn default() -> Self {
+        Self {
+            block_mm: 0.1,
+            test_one_in: 4,
+            validation_one_in: 5,
+            test_files: BTreeSet::new(),
+            seed: 1,
+        }
+    }
+}
+
+/// Indices of presses, each in order; together they are all presses.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Split {
+    /// Presses that the twin is fitted to.
+    pub train: Vec<usize>,
+    /// Presses that stop the training and choose the variant.
+    pub validation: Vec<usize>,
+    /// Presses that nothing is fitted to.
+    pub test: Vec<usize>,
+}
+
+type Place<'a> = (&'a str, i64, i64);
+
+impl Split {
+    /// Divides presses by place.
+    pub fn new(presses: &[PairedPress], settings: &SplitSettings) -> Result<Self, DigitacError> {
+        if settings.test_one_in < 2 || settings.validation_one_in < 2 {
+            return Err(DigitacError::Setting {
+                setting: "test_one_in, validation_one_in",
+                expected: "2 or more",
+                found: format!("{}, {}", settings.test_one_in, settings.validation_one_in),
+            });
+        }
+        let mut groups: BTreeMap<Place<'_>, Vec<usize>> = BTreeMap::new();
+        let mut split = Self {
+            train: Vec::new(),
+            validation: Vec::new(),
+            test: Vec::new(),
+        };
+        for (index, press) in presses.iter().enumerate() {
+            if settings.test_files.contains(&press.file) {
+                split.test.push(index);
+            } else {
+                groups
+                    .entry(place(press, settings.block_mm))
+                    .or_default()
+                    .push(index);
+            }
+        }
+        let n_places = groups.len();
+        let outermost = outermost(&groups.keys().copied().collect::<Vec<_>>());
+        let (outer, inner): (Vec<_>, Vec<_>) = groups
+            .into_iter()
+            .partition(|(place, _)| outermost.contains(place));
+        let mut inner: Vec<Vec<usize>> = inner.into_iter().map(|(_, presses)| presses).collect();
+        if settings.test_files.is_empty() {
+            split.test = draw(&mut inner, settings.test_one_in, settings.seed, "test");
+        }
+        split.validation = draw(
+            &mut inner,
+            settings.validation_one_in,
+            settings.seed,
+            "validation",
+        );
+        split.train = inner
+            .into_iter()
+            .chain(outer.into_iter().map(|(_, presses)| presses))
+            .flatten()
+            .collect();
+        for part in [&mut split.train, &mut split.validation, &mut split.test] {
+            part.sort_unstable();
+        }
+        if split.train.is_empty() || split.validation.is_empty() || split.test.is_empty() {
+            return Err(DigitacError::TooFew {
+                expected: "inner places to train, to validate and to test with".into(),
+                found: format!("{} presses in {n_places} places", presses.len()),
+            });
+        }
+        Ok(split)
+    }
+}
+
+fn place(press: &PairedPress, block_mm: f64) -> Place<'_> {
+    let [x, y] = press.place_mm.map(|mm| (mm / block_mm).round() as i64);
+    (&press.indenter, y, x)
+}
+
+/// Places with the smallest or largest x or y of their indenter, along axes on which it was moved.
+fn outermost<'a>(places: &[Place<'a>]) -> BTreeSet<Place<'a>> {
+    let mut limits: BTreeMap<&str, [i64; 4]> = BTreeMap::new();
+    for &(indenter, y, x) in places {
+        let [low_x, high_x, low_y, high_y] = limits.entry(indenter).or_insert([x, x, y, y]);
+        (*low_x, *high_x, *low_y, *high_y) = (
+            (*low_x).min(x),
+            (*high_x).max(x),
+            (*low_y).min(y),
+            (*high_y).max(y),
+        );
+    }
+    places
+        .iter()
+        .copied()
+        .filter(|(indenter, y, x)| {
+            let [low_x, high_x, low_y, high_y] = limits[indenter];
+            (low_x < high_x && (*x == low_x || *x == high_x))
+                || (low_y < high_y && (*y == low_y || *y == high_y))
+        })
+        .collect()
+}
+
+/// Takes one group at random out of each run of `one_in`, and its presses with it. A last, shorter run gives one as well if it is at least
+/// half as long.
+fn draw(groups: &mut Vec<Vec<usize>>, one_in: usize, seed_number: u64, name: &str) -> Vec<usize> {
+    let mut random = seed::stream(seed_number, &format!("split/{name}"));
+    let mut drawn = BTreeSet::new();
+    for start in (0..groups.len()).step_by(one_in) {
+        let length = one_in.min(groups.len() - start);
+        if 2 * length >= one_in {
+            drawn.insert(start + random.random_range(0..length));
+        }
+    }
+    let (mut taken, mut left) = (Vec::new(), Vec::new());
+    for (index, group) in std::mem::take(groups).into_iter().enumerate() {
+        if drawn.contains(&index) {
+            taken.extend(group)
+        } else {
+            left.push(group)
+        }
+    }
+    *groups = left;
+    taken
+}
+
+/// Cuts indices into shuffled batches of about the same size.
+pub(crate) fn batches(indices: &[usize], size: usize, seed_number: u64) -> Vec<Vec<usize>> {
+    let mut shuffled = indices.to_vec();
+    shuffled.shuffle(&mut seed::stream(seed_number, "batches"));
+    let count = shuffled.len().div_ceil(size.max(1)).max(1);
+    let size = shuffled.len().div_ceil(count).max(1);
+    shuffled.chunks(size).map(<[usize]>::to_vec).collect()
+}

@@ -1,0 +1,162 @@
+//! A sweep, read at any depth or any force.
+
+use twintac_simulate::{Pchip, Sweep};
+
+use crate::DigitacError;
+
+/// Smallest step of depth, mm, or force, N, that counts as an increase.
+const STEP: f64 = 1e-9;
+
+/// Monotone cubics through a sweep: zero above the surface, the end of the table beyond it.
+#[derive(Clone, Debug)]
+pub(crate) struct SweepTable {
+    force_n: Pchip,
+    depth_mm: Pchip,
+    /// Port pressures, then stress features; `[2 * n_taxels]`.
+    features: Vec<Pchip>,
+    max_depth_mm: f64,
+    max_force_n: f64,
+}
+
+impl SweepTable {
+    /// Tabulates the sweep up to its first frame that did not converge.
+    pub(crate) fn new(index: usize, sweep: &Sweep, n_taxels: usize) -> Result<Self, DigitacError> {
+        let wrong = |expected: String, found: String| DigitacError::WrongSweep {
+            index,
+            expected,
+            found,
+        };
+        let frames: Vec<_> = sweep.frames.iter().take_while(|f| f.honesty.converged).collect();
+        let mut knots = vec![Knot {
+            depth_mm: 0.0,
+            force_n: 0.0,
+            features: vec![0.0; 2 * n_taxels],
+        }];
+        for frame in frames.iter().filter(|frame| frame.depth_mm > STEP) {
+            let features = [&frame.port_pressure_kpa[..], &frame.stress_feature_kpa_per_mm[..]].concat();
+            if features.len() != 2 * n_taxels {
+                return Err(wrong(
+                    format!("features of {n_taxels} taxels"),
+                    format!("{} numbers", features.len()),
+                ));
+            }
+            if !features
+                .iter()
+                .chain([&frame.force_n, &frame.depth_mm])
+                .all(|value| value.is_finite())
+            {
+                return Err(wrong(
+                    "finite features".into(),
+                    format!("none at {:.3} mm", frame.depth_mm),
+                ));
+            }
+            knots.push(Knot {
+                depth_mm: frame.depth_mm,
+                force_n: frame.force_n,
+                features,
+            });
+        }
+        if knots.len() < 2 {
+            let why = sweep
+                .failure
+                .clone()
+                .unwrap_or_else(|| "no frame below the surface converged".into());
+            return Err(wrong("a press into the gel".into(), why));
+        }
+        Self::from_knots(&knots).ok_or_else(|| wrong("increasing depth".into(), "another order".into()))
+    }
+
+    fn from_knots(knots: &[Knot]) -> Option<Self> {
+        let depth_mm: Vec<f64> = knots.iter().map(|knot| knot.depth_mm).collect();
+        let last = knots.last()?;
+        let mut loading: Vec<&Knot> = Vec::with_capacity(knots.len());
+        for knot in knots {
+            if loading
+                .last()
+                .is_none_or(|before| knot.force_n > before.force_n + STEP)
+            {
+                loading.push(knot);
+            }
+        }
+        let curve =
+            |value: &dyn Fn(&Knot) -> f64| Pchip::new(depth_mm.clone(), knots.iter().map(value).collect());
+        Some(Self {
+            force_n: curve(&|knot| knot.force_n)?,
+            depth_mm: Pchip::new(
+                loading.iter().map(|knot| knot.force_n).collect(),
+                loading.iter().map(|knot| knot.depth_mm).collect(),
+            )?,
+            features: (0..last.features.len())
+                .map(|k| curve(&|knot| knot.features[k]))
+                .collect::<Option<_>>()?,
+            max_depth_mm: last.depth_mm,
+            max_force_n: loading.last()?.force_n,
+        })
+    }
+
+    /// The weighted mean of tables of the same press, resampled at `n_knots` depths.
+    pub(crate) fn blend(tables: &[&Self], weights: &[f64], n_knots: usize) -> Option<Self> {
+        let max_depth_mm = tables
+            .iter()
+            .map(|table| table.max_depth_mm)
+            .fold(f64::INFINITY, f64::min);
+        let n_features = tables.first()?.features.len();
+        let mean =
+            |value: &dyn Fn(&Self) -> f64| tables.iter().zip(weights).map(|(t, w)| w * value(t)).sum::<f64>();
+        let knots: Vec<Knot> = (0..n_knots)
+            .map(|i| {
+                let depth_mm = max_depth_mm * i as f64 / (n_knots - 1) as f64;
+                Knot {
+                    depth_mm,
+                    force_n: mean(&|t| t.force_n.at(depth_mm)),
+                    features: (0..n_features)
+                        .map(|k| mean(&|t| t.features[k].at(depth_mm)))
+                        .collect(),
+                }
+            })
+            .collect();
+        Self::from_knots(&knots)
+    }
+
+    /// Force of the indenter at a depth, N.
+    pub(crate) fn force_n(&self, depth_mm: f64) -> f64 {
+        self.force_n.at(depth_mm)
+    }
+
+    /// Depth at a force, mm.
+    pub(crate) fn depth_mm(&self, force_n: f64) -> f64 {
+        self.depth_mm.at(force_n)
+    }
+
+    /// Port pressure of each taxel at a depth, kPa; `[n_taxels]`.
+    pub(crate) fn pressure_kpa(&self, depth_mm: f64) -> Vec<f64> {
+        self.features[..self.features.len() / 2]
+            .iter()
+            .map(|curve| curve.at(depth_mm))
+            .collect()
+    }
+
+    /// Stress feature of each taxel at a depth, kPa/mm; `[n_taxels]`.
+    pub(crate) fn stress_kpa_per_mm(&self, depth_mm: f64) -> Vec<f64> {
+        self.features[self.features.len() / 2..]
+            .iter()
+            .map(|curve| curve.at(depth_mm))
+            .collect()
+    }
+
+    /// Depth at which the table ends, mm.
+    pub(crate) fn max_depth_mm(&self) -> f64 {
+        self.max_depth_mm
+    }
+
+    /// Force at which the table ends, N.
+    pub(crate) fn max_force_n(&self) -> f64 {
+        self.max_force_n
+    }
+}
+
+struct Knot {
+    depth_mm: f64,
+    force_n: f64,
+    features: Vec<f64>,
+}
