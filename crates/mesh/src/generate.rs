@@ -4,12 +4,15 @@ use twintac_shape::{SignedDistance, Solid, Surfaces};
 
 use crate::footprint::Footprint;
 use crate::lattice::Lattice;
-use crate::quality::check_volumes;
+use crate::quality::{check_volumes, least_dihedral_deg};
 use crate::region::Region;
 use crate::{Cuboid, MeshError, MeshSettings, TetMesh, grid, stuffing};
 
 /// Part of the volume of a regular tetrahedron with the same longest edge that every tetrahedron has.
 const LEAST_VOLUME_SHARE: f64 = 1e-3;
+
+/// Smallest dihedral angle of a stuffed mesh that needs no second try, degrees.
+const GOOD_DIHEDRAL_DEG: f64 = 9.0;
 
 /// How far the base of a triangle surface may be from z = 0, mm.
 const OFF_BOARD_MM: f64 = 0.01;
@@ -73,11 +76,25 @@ fn stuff(
     for (index, inclusion) in inclusions.iter().enumerate() {
         inclusion.check(index, [low_mm, high_mm], high_mm.z)?;
     }
-    // The lattice has two points a cell.
-    let settings = settings.scaled(2_f64.cbrt());
-    let lattice = Lattice::new([low_mm, high_mm], inclusions, &settings, 0.0)?;
-    let tolerance_mm = 1e-4 * settings.smallest_edge_mm();
-    stuffing::mesh(&lattice, &Region::new(surface, inclusions, 0.0, tolerance_mm))
+    // Where a surface happens to graze lattice points, a slightly different lattice does better.
+    let mut best: Option<(f64, TetMesh)> = None;
+    for factor in [1.0, 0.97, 1.03, 0.94, 1.06] {
+        // The lattice has two points a cell.
+        let settings = settings.scaled(factor * 2_f64.cbrt());
+        let lattice = Lattice::new([low_mm, high_mm], inclusions, &settings, 0.0)?;
+        let tolerance_mm = 1e-4 * settings.smallest_edge_mm();
+        let mesh = stuffing::mesh(&lattice, &Region::new(surface, inclusions, 0.0, tolerance_mm))?;
+        let least_deg = least_dihedral_deg(&mesh);
+        if best.as_ref().is_none_or(|&(best_deg, _)| least_deg > best_deg) {
+            best = Some((least_deg, mesh));
+        }
+        if least_deg > GOOD_DIHEDRAL_DEG {
+            break;
+        }
+    }
+    best.map(|(_, mesh)| mesh).ok_or_else(|| MeshError::Empty {
+        reason: "no lattice fits".to_owned(),
+    })
 }
 
 /// Meshes a solid with about `n_nodes` nodes (± 10 %): all edge lengths of the settings are multiplied by one factor. Also returns the

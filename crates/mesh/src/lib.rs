@@ -1,4 +1,55 @@
-//! Tetrahedral meshes: generated from a solid, imported from Gmsh, exported to VTK and STL. Lengths in mm.
+//! Tetrahedral meshes of gels: generated from a solid, imported from Gmsh, exported to VTK and STL. Lengths in mm.
+//!
+//! The gel stands on a board, the plane z = 0, and may have boxes of something rigid in it (sensor chips). It is glued to both: the
+//! nodes there are [`NodeSets::bonded`]. It is pressed from above: on [`NodeSets::top`].
+//!
+//! - [`generate`] meshes a [`twintac_shape::Solid`]. A [`Focus`] makes the mesh fine where a press and the taxels need it;
+//!   the pattern of nodes around the first focus does not depend on where it stands, so that presses at different places
+//!   are discretised alike. Inclusions are left out, exactly.
+//! - [`generate_with_node_count`] finds the edge length for a budget of nodes.
+//! - [`gmsh::read`] imports what Gmsh and fTetWild write, [`gmsh::write`] keeps a mesh for later.
+//! - [`vtk::write`] shows it and fields on it in ParaView, [`stl::write`] its surface anywhere.
+//! - [`Quality`] says how good it is.
+//!
+//! Meshes are the same bit for bit on every run.
+//!
+//! # Example
+//! A strip of gel over two chips, fine where a tip of 2 mm radius is going to press it:
+//! ```
+//! use glam::DVec3;
+//! use twintac_mesh::{Cuboid, Focus, MeshSettings, Quality, gel_volume_mm3, generate, gmsh};
+//! use twintac_shape::{Solid, Surfaces};
+//!
+//! let strip = Solid::Block { size_mm: [40.0, 6.0, 6.0], center_mm: [0.0, 0.0], edge_radius_mm: 0.0 };
+//! let chips = [-8.0, 8.0].map(|x_mm| Cuboid {
+//!     min_mm: DVec3::new(x_mm - 1.0, -1.25, 0.0),
+//!     max_mm: DVec3::new(x_mm + 1.0, 1.25, 1.1),
+//! });
+//! let tip = Focus { center_mm: DVec3::new(3.0, 0.5, 6.0), radius_mm: 2.0, edge_mm: 0.5 };
+//! let settings = MeshSettings { edge_mm: 1.5, focuses: vec![tip], ..MeshSettings::default() };
+//!
+//! let mesh = generate(&strip, &Surfaces::new(), &chips, &settings)?;
+//!
+//! let expected_mm3 = gel_volume_mm3(&strip, &Surfaces::new(), &chips);
+//! let quality = Quality::of(&mesh, Some(expected_mm3));
+//! assert!(quality.volume_error.is_some_and(|error| error.abs() < 1e-12));
+//! assert!(quality.dihedral_deg.min > 10.0);
+//!
+//! // The pressure at a chip's port is that of the tetrahedron above it.
+//! let port_mm = DVec3::new(8.0, 0.0, 1.1);
+//! let (tet, weights) = mesh.locate(port_mm, 0.01).expect("the port touches the gel");
+//! assert!(mesh.tets[tet].iter().zip(weights).any(|(node, weight)| {
+//!     weight > 0.0 && mesh.sets.bonded.contains(node)
+//! }));
+//!
+//! assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes())?, mesh);
+//! # Ok::<(), twintac_mesh::MeshError>(())
+//! ```
+//!
+//! # How
+//! Blocks and domes: a graded tensor grid, bent into the solid, each cell cut into six tetrahedra (`grid.rs` says why six). Its lines
+//! lean from where the inclusions want them at the board to where the contact wants them at the top. Triangle surfaces:
+//! isosurface stuffing on the body-centred version of the same lattice (`stuffing.rs`).
 
 mod axis;
 mod boundary;

@@ -129,6 +129,14 @@ fn edge_lengths_mm(mesh: &TetMesh) -> Vec<f64> {
         .collect()
 }
 
+/// Smallest dihedral angle, degrees; zero if any tetrahedron is inverted or flat.
+pub(crate) fn least_dihedral_deg(mesh: &TetMesh) -> f64 {
+    if (0..mesh.tets.len()).any(|tet| mesh.tet_volume_mm3(tet) <= 0.0) {
+        return 0.0;
+    }
+    dihedral_angles_deg(mesh).into_iter().fold(180.0, f64::min)
+}
+
 fn dihedral_angles_deg(mesh: &TetMesh) -> Vec<f64> {
     let angles = |tet: usize| {
         let corners = mesh.corners_mm(tet);

@@ -67,11 +67,10 @@ impl<'a> Region<'a> {
 
     /// Distance to the nearest inclusion, negative inside; infinite without any.
     fn inclusion_distance_mm(&self, point_mm: DVec3) -> f64 {
-        let to_box = |c: &Cuboid| {
-            let beyond = (c.min_mm - point_mm).max(point_mm - c.max_mm);
-            beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
-        };
-        self.inclusions.iter().map(to_box).fold(f64::INFINITY, f64::min)
+        self.inclusions
+            .iter()
+            .map(|inclusion| inclusion.distance_mm(point_mm))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The point of the boundary between a point inside and one outside (the Illinois method).
@@ -103,13 +102,13 @@ impl<'a> Region<'a> {
         at(share)
     }
 
-    /// The point of the boundary near a point, in its horizontal plane; none if there is none within a distance.
-    pub(crate) fn level_foot_mm(&self, point_mm: DVec3, farthest_mm: f64) -> Option<DVec3> {
+    /// The point of the boundary near a point, in its horizontal plane, if one is found.
+    pub(crate) fn level_foot_mm(&self, point_mm: DVec3) -> Option<DVec3> {
         let mut foot = point_mm;
         for _ in 0..10 {
             let value = self.outside_mm(foot);
             if value.abs() <= 0.1 * self.tolerance_mm {
-                return (foot.distance(point_mm) <= farthest_mm).then_some(foot);
+                return Some(foot);
             }
             let step_mm = self.tolerance_mm;
             let slope = DVec3::new(

@@ -90,6 +90,12 @@ impl MeshSettings {
 }
 
 impl Cuboid {
+    /// Distance from a point to the surface, negative inside, mm.
+    pub(crate) fn distance_mm(&self, point_mm: DVec3) -> f64 {
+        let beyond = (self.min_mm - point_mm).max(point_mm - self.max_mm);
+        beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
+    }
+
     /// Checks that this is a box that overlaps a solid and has gel above it, where the solid is whole up to some height.
     pub(crate) fn check(
         &self,

@@ -219,6 +219,7 @@ fn move_points(
             }
         }
     }
+    let reach_mm = board_reach_mm(background);
     for (node, _, place) in near {
         let [a, b] = edges[place];
         let other = if node == a { b } else { a };
@@ -232,8 +233,9 @@ fn move_points(
             background.points_mm[node] = cut_mm;
         } else {
             let level_mm = cut_mm.with_z(background.points_mm[node].z);
+            let foot = region.level_foot_mm(level_mm);
             let Some(foot_mm) =
-                region.level_foot_mm(level_mm, 2.0 * cut_mm.distance(background.points_mm[node]))
+                foot.filter(|foot| foot.distance(background.points_mm[node]) <= reach_mm[node])
             else {
                 continue;
             };
@@ -241,6 +243,23 @@ fn move_points(
         }
         sides[node] = Side::On;
     }
+}
+
+/// How far points may move along the board, mm: three of them that move onto a wall must not end up in line.
+fn board_reach_mm(background: &Background) -> Vec<f64> {
+    let mut reach_mm = vec![f64::INFINITY; background.points_mm.len()];
+    for nodes in &background.tets {
+        // The last two are corners of the same cell.
+        let [p, q] = [nodes[2], nodes[3]].map(|node| node as usize);
+        if background.on_board[p] && background.on_board[q] {
+            let side_mm = background.points_mm[p].distance(background.points_mm[q]);
+            for &node in nodes {
+                let reach = &mut reach_mm[node as usize];
+                *reach = reach.min(0.2 * side_mm);
+            }
+        }
+    }
+    reach_mm
 }
 
 /// A mesh of the nodes that are used, numbered in the order of the positions.

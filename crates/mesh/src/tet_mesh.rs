@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::Cuboid;
 use crate::boundary::outward_triangles;
 
 /// Linear tetrahedra with positive volume: for each, `(b - a) × (c - a) · (d - a) > 0`.
@@ -88,6 +89,21 @@ impl TetMesh {
     pub fn area_vector_mm2(&self, triangle: &[u32; 3]) -> DVec3 {
         let [a, b, c] = triangle.map(|node| self.nodes_mm[node as usize]);
         0.5 * (b - a).cross(c - a)
+    }
+
+    /// Also bonds the boundary nodes within a tolerance of an inclusion, as an imported mesh does not say which those are.
+    pub fn bond_to(&mut self, inclusions: &[Cuboid], tolerance_mm: f64) {
+        let bonded = std::mem::take(&mut self.sets.bonded);
+        let is_near: Vec<bool> = self
+            .nodes_mm
+            .iter()
+            .map(|&node| {
+                inclusions
+                    .iter()
+                    .any(|inclusion| inclusion.distance_mm(node) <= tolerance_mm)
+            })
+            .collect();
+        self.name_nodes(|node| is_near[node as usize] || bonded.binary_search(&node).is_ok());
     }
 
     /// Sets the node sets: of the boundary's nodes, those that are bonded, and the rest.

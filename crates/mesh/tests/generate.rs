@@ -1,5 +1,7 @@
 //! What every generated mesh must be.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
@@ -14,8 +16,8 @@ use twintac_shape::{Dome, SignedDistance, Solid, Surfaces, TriangleSurface};
 
 /// The closed surface of the part of a ball above the board, of fine facets.
 fn sunk_ball(radius_mm: f64, center_mm: DVec3) -> TriangleSurface {
-    const AROUND: usize = 64;
-    const UP: usize = 32;
+    const AROUND: usize = 40;
+    const UP: usize = 20;
     let lowest = (-center_mm.z / radius_mm).asin();
     let ring = |step: usize| {
         let height = lowest + (FRAC_PI_2 - lowest) * step as f64 / UP as f64;
@@ -161,6 +163,18 @@ fn chips_leave_holes_with_bonded_walls() {
         assert!(found.distance(point) < 1e-9);
     }
     assert_eq!(mesh.locate(DVec3::new(-12.0, 0.0, 0.5), 0.05), None);
+}
+
+#[test]
+fn an_imported_mesh_can_be_bonded_to_its_inclusions() {
+    let chips = chips(&[-4.0, 4.0], [1.0, 1.25]);
+    let mesh = mesh_of(&block([20.0, 6.0, 6.0], 0.0), &chips, &MeshSettings::default());
+    let text = gmsh::write(&mesh);
+    let without_data = &text[..text.find("$NodeData").unwrap()];
+    let mut imported = gmsh::read(without_data.as_bytes()).unwrap();
+    assert!(imported.sets.bonded.len() < mesh.sets.bonded.len());
+    imported.bond_to(&chips, 1e-6);
+    assert_eq!(imported, mesh);
 }
 
 #[test]
@@ -438,7 +452,7 @@ fn any_settings() -> impl Strategy<Value = MeshSettings> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(48) })]
 
     #[test]
     fn meshes_are_sound_and_conserve_volume(solid in any_solid(), chips in any_chips(), settings in any_settings()) {

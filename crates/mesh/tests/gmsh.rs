@@ -1,5 +1,7 @@
 //! Gmsh files: every version and encoding, and damage of every kind.
 
+#![allow(clippy::unwrap_used)]
+
 use proptest::prelude::*;
 use twintac_mesh::{MeshError, TetMesh, gmsh};
 
@@ -218,6 +220,8 @@ fn assert_sound(mesh: &TetMesh) {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
+
     #[test]
     fn cut_files_are_refused(which in 0..6_usize, share in 0.0..1.0) {
         let (name, file) = all_files().swap_remove(which);

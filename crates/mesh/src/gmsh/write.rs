@@ -48,11 +48,11 @@ fn write_to(text: &mut String, mesh: &TetMesh) -> std::fmt::Result {
     }
     writeln!(
         text,
-        "$EndElements\n$NodeData\n1\n\"{BONDED}\"\n1\n0\n3\n0\n1\n{}",
-        mesh.sets.bonded.len()
+        "$EndElements\n$NodeData\n1\n\"{BONDED}\"\n1\n0\n3\n0\n1\n{n_nodes}"
     )?;
-    for node in &mesh.sets.bonded {
-        writeln!(text, "{} 1", node + 1)?;
+    for node in 0..n_nodes as u32 {
+        let is_bonded = mesh.sets.bonded.binary_search(&node).is_ok();
+        writeln!(text, "{} {}", node + 1, u8::from(is_bonded))?;
     }
     writeln!(text, "$EndNodeData")
 }
