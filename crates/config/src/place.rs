@@ -81,12 +81,11 @@ pub(crate) fn of_serde_error(text: &str, table: &DeTable<'_>, error: &toml::de::
     (line_of(text, start), field)
 }
 
+/// Takes a span, a dotted path and, unless the span is a key's, the value.
+type Visit<'a> = dyn FnMut(Range<usize>, &str, Option<&DeValue<'_>>) + 'a;
+
 /// Visits every key (without a value) and every value with its span and dotted path.
-fn walk_table(
-    table: &DeTable<'_>,
-    path: &str,
-    visit: &mut dyn FnMut(Range<usize>, &str, Option<&DeValue<'_>>),
-) {
+fn walk_table(table: &DeTable<'_>, path: &str, visit: &mut Visit<'_>) {
     for (key, value) in table {
         let path = join(path, key.get_ref());
         visit(key.span(), &path, None);
@@ -94,12 +93,7 @@ fn walk_table(
     }
 }
 
-fn walk_value(
-    span: Range<usize>,
-    value: &DeValue<'_>,
-    path: &str,
-    visit: &mut dyn FnMut(Range<usize>, &str, Option<&DeValue<'_>>),
-) {
+fn walk_value(span: Range<usize>, value: &DeValue<'_>, path: &str, visit: &mut Visit<'_>) {
     visit(span, path, Some(value));
     match value {
         DeValue::Table(table) => walk_table(table, path, visit),

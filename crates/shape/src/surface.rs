@@ -272,14 +272,14 @@ fn neighbours(vertices_mm: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<[usiz
     }
     let mut open = Vec::new();
     let mut neighbours = vec![[0; 3]; triangles.len()];
-    for (index, triangle) in triangles.iter().enumerate() {
-        for corner in 0..3 {
+    for (triangle, across) in triangles.iter().zip(&mut neighbours) {
+        for (corner, neighbour) in across.iter_mut().enumerate() {
             let (from, to) = edge(triangle, corner);
             match (
                 owners.get(&(from, to)).map(Vec::as_slice),
                 owners.get(&(to, from)).map(Vec::as_slice),
             ) {
-                (Some([_]), Some([other])) => neighbours[index][corner] = *other,
+                (Some([_]), Some([other])) => *neighbour = *other,
                 _ => open.push((from, to)),
             }
         }
