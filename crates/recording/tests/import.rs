@@ -4,6 +4,7 @@
 
 use std::path::PathBuf;
 
+use proptest::prelude::*;
 use tempfile::TempDir;
 use twintac_recording::{Control, Import, ImportSummary, Recording, RecordingError};
 
@@ -354,4 +355,54 @@ fn descriptions_that_make_no_sense_are_refused_with_their_field() {
         error.contains("override[0]") && error.contains("depth_mm"),
         "{error}"
     );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn no_file_makes_the_import_panic(
+        mut bytes in proptest::collection::vec(any::<u8>(), 0..200),
+        cells in proptest::collection::vec("(-?[0-9]{1,4}|1e300|[,\n\"]|nan|é){0,12}", 0..12),
+        kind in 0..3,
+    ) {
+        if kind > 0 {
+            bytes = format!("ms,a,b,x,steps\n{}", cells.join(if kind == 1 { "," } else { "\n" })).into_bytes();
+        }
+        let bench = Bench::with(&[("run.csv", "")]);
+        std::fs::write(bench.path("run.csv"), bytes).unwrap();
+        let import = Import::parse("bench.toml", BENCH).unwrap();
+        if let Ok((recording, _)) = import.read_csv(&bench.path("run.csv")) {
+            recording.check().unwrap();
+        }
+    }
+
+    #[test]
+    fn no_numbers_make_the_import_panic(
+        rows in proptest::collection::vec((prop_oneof![0.0..500.0, Just(1e-300), Just(1e300)], -1e5..2e5, -50..400), 0..40),
+        split in 0..3_usize,
+        buffered in any::<bool>(),
+    ) {
+        let mut time_ms = 0.0;
+        let mut csv = "ms,a,b,x,steps\n".to_owned();
+        for (step_ms, reading, steps) in rows {
+            time_ms += step_ms;
+            csv += &format!("{time_ms},{reading},{reading},0,{steps}\n");
+        }
+        let split = ["split = \"return-to-rest\"", "split = \"column\", column = \"steps\"", "split = \"row\""][split];
+        let mut description = BENCH.replace("split = \"return-to-rest\"", split);
+        if split.contains("row") {
+            description = description.replace(", lag_s = 0.05", "").replace("zero =", "# zero =");
+        }
+        if let Ok((recording, _)) = read(&format!("drop_buffered = {buffered}\n{description}"), &csv) {
+            recording.check().unwrap();
+        }
+    }
+
+    #[test]
+    fn no_description_makes_the_parser_panic(text in "\\PC{0,80}", place in 0..900_usize) {
+        prop_assert!(Import::parse("bench.toml", &text).is_err());
+        let at = place.min(BENCH.len());
+        let _ = Import::parse("bench.toml", &format!("{}{text}{}", &BENCH[..at], &BENCH[at..]));
+    }
 }

@@ -46,8 +46,8 @@ use track::Track;
 ///     { name = "S0", column = "p", lag_s = 0.112 },       # p(t + lag) belongs to z(t); also scale, offset_kpa
 /// ]
 ///
-/// # "return-to-rest": the tip leaves and returns to rest; "column" (with `column = "..."`): a column's number changes;
-/// # "row": each row is a static press.
+/// ## "return-to-rest": the tip leaves and returns to rest; "column" (with `column = "..."`): a column's number changes;
+/// ## "row": each row is a static press.
 /// presses = { split = "return-to-rest", rest_mm = 0.0, tolerance_mm = 0.005, keep_rest_s = 1.0 }
 /// zero = { above_contact_mm = 0.5, window_s = 1.0 }       # zeroes each taxel before each press
 /// ## outliers = { within_mm = 0.8, jump = 0.15 }           # static presses: marks what leaps out of its neighbours
