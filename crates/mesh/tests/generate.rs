@@ -519,6 +519,14 @@ proptest! {
                 };
                 prop_assert!(mesh.sets.free.iter().map(off_mm).all(|off_mm| off_mm < 1e-3));
                 if sunk > 0.0 && radius_mm > 6.0 {
+                    // Chips of one height, as on a board.
+                    let chips: Vec<Cuboid> = chips
+                        .iter()
+                        .map(|c| Cuboid {
+                            min_mm: c.min_mm.with_z(0.0),
+                            max_mm: c.max_mm.with_z(1.1),
+                        })
+                        .collect();
                     let with_chips = generate(&solid, &surfaces, &chips, &settings).unwrap();
                     assert_sound(&with_chips);
                 }
