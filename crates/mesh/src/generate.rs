@@ -150,9 +150,11 @@ fn search(
         factor *= (n_nodes as f64 / target.max(1) as f64).powf(exponent);
     }
     // Between two jumps of one axis there may be a narrow step of another.
-    let (_, (_, middle)) = attempt(factor)?;
-    for step in -80..=80 {
-        attempt(middle * 1.002_f64.powi(step))?;
+    let (_, (nearest, middle)) = attempt(factor)?;
+    if 10 * away(nearest) > target {
+        for step in -80..=80 {
+            attempt(middle * 1.002_f64.powi(step))?;
+        }
     }
     match best {
         (nearest, factor) if 10 * away(nearest) <= target => Ok(settings.scaled(factor)),
