@@ -1,5 +1,7 @@
 //! Every way in which a file can be wrong names file, line and field.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use serde::Deserialize;
 use twintac_config::{ConfigError, parse, read};
 

@@ -8,6 +8,9 @@ use twintac_config::{ConfigError, Document};
 
 use crate::PressPlan;
 
+/// Most presses that one indenter can be planned to do.
+const MOST_PRESSES: u64 = 1_000_000;
+
 /// A protocol of presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -39,7 +42,7 @@ pub struct Protocol {
 
 /// Which indenters press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a list of names or \"all\"")]
 pub enum Indenters {
     /// Those named, in this order.
     Named(Vec<String>),
@@ -88,7 +91,7 @@ pub struct Area {
 
 /// One number, or two between which a press's value is drawn evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number or [from, to]")]
 pub enum Range {
     /// Always the same.
     Fixed(f64),
@@ -131,7 +134,10 @@ pub struct PlanError {
 }
 
 impl Protocol {
-    /// Reads a protocol from the text of a TOML file; errors name file, line and field.
+    /// Reads a protocol from the text of a TOML file.
+    ///
+    /// # Errors
+    /// The first field that is wrong, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         let document = twintac_config::parse::<Self>(file, text)?;
         document.value.check(&document)?;
@@ -160,9 +166,20 @@ impl Protocol {
         if tilt_rad > 1.0 {
             return Err(document.error("tilt_rad", format!("is {tilt_rad}"), "keep the tilt at 1 rad or below"));
         }
+        if let Indenters::Named(names) = &self.indenters {
+            if names.is_empty() {
+                return Err(document.error("indenters", "names none", "name at least one, or give \"all\""));
+            }
+            for (index, name) in names.iter().enumerate() {
+                if names[..index].contains(name) {
+                    let problem = format!("is `{name}` again");
+                    return Err(document.error(&format!("indenters[{index}]"), problem, "name each indenter once"));
+                }
+            }
+        }
         let (area, n_places) = match &self.places {
-            Places::Grid { area, count } => (area, count[0] * count[1]),
-            Places::Random { area, count } => (area, *count),
+            Places::Grid { area, count } => (area, u64::from(count[0]) * u64::from(count[1])),
+            Places::Random { area, count } => (area, u64::from(*count)),
         };
         for (field, [low, high]) in [("places.x_mm", area.x_mm), ("places.y_mm", area.y_mm)] {
             if low > high {
@@ -175,10 +192,17 @@ impl Protocol {
         if self.repeats == 0 {
             return Err(document.error("repeats", "is zero", "press at least once"));
         }
+        if n_places.saturating_mul(u64::from(self.repeats)) > MOST_PRESSES {
+            let problem = format!("makes {n_places} places, pressed {} times", self.repeats);
+            return Err(document.error("places.count", problem, format!("keep to {MOST_PRESSES} presses an indenter")));
+        }
         Ok(())
     }
 
-    /// The presses, for a sensor with these indenters.
+    /// The presses, for a sensor with these indenters: for each indenter, the whole list of places as often as it is repeated.
+    ///
+    /// # Errors
+    /// An indenter that the sensor does not have.
     pub fn plan(&self, known: &[String], seed: u64) -> Result<Vec<PressPlan>, PlanError> {
         let indenters = match &self.indenters {
             Indenters::All(_) => known,
@@ -289,6 +313,20 @@ mod tests {
         let error = Protocol::parse("demo.toml", &text).unwrap_err();
         assert_eq!(error.field, "clearance_mm");
         assert!(text.lines().nth(error.line - 1).unwrap().starts_with("clearance_mm"), "{error}");
+        let wrong = |old: &str, new: &str| {
+            assert!(DEMO.contains(old), "{old}");
+            Protocol::parse("demo.toml", &DEMO.replace(old, new)).unwrap_err().field
+        };
+        assert_eq!(wrong("count = 8", "count = 8, margin_mm = 1"), "places.margin_mm");
+        assert_eq!(wrong("count = 8", "count = 0"), "places.count");
+        assert_eq!(wrong("count = 8", "count = 4000000000"), "places.count");
+        assert_eq!(wrong("count = 8", "number = 8"), "places.count");
+        assert_eq!(wrong("x_mm = [-9.0, 9.0]", "x_mm = [9.0, -9.0]"), "places.x_mm");
+        assert_eq!(wrong("depth_mm = [1.0, 2.0]", "depth_mm = [2.0, 1.0]"), "depth_mm");
+        assert_eq!(wrong("depth_mm = [1.0, 2.0]", "depth_mm = \"deep\""), "depth_mm");
+        assert_eq!(wrong("speed_mm_per_s = [1.5, 4.0]", "speed_mm_per_s = 0.0"), "speed_mm_per_s");
+        assert_eq!(wrong("hold_s = [0.5, 1.5]", "hold_s = inf"), "hold_s");
+        assert_eq!(wrong("indenters = [", "indenters = [\"cube\", "), "indenters[2]");
         let protocol = Protocol::parse("demo.toml", DEMO).unwrap();
         assert!(protocol.plan(&["needle".to_owned()], 1).is_err());
     }

@@ -11,15 +11,13 @@ use crate::{Model, Sensor};
 const MARK: &str = " *";
 
 impl Sensor {
-    /// Whether a field, or something that it is part of, is inferred rather than stated by the source. Lists count as wholes or by
-    /// entry: `taxels` covers `taxels[2].position_mm`.
+    /// Whether a field, a part of it or something that it is part of is inferred rather than stated by the source: `taxels` covers
+    /// `taxels[2].position_mm`, and `gel.solid.size_mm[2]` tells of `gel.solid`.
     #[must_use]
     pub fn is_inferred(&self, field: &str) -> bool {
-        self.inferred.iter().any(|path| {
-            field
-                .strip_prefix(path.as_str())
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-        })
+        self.inferred
+            .iter()
+            .any(|path| is_within(path, field) || is_within(field, path))
     }
 
     /// The description as a table for people, with units; inferred values are marked.
@@ -35,14 +33,6 @@ impl Sensor {
         if self.is_inferred(field) { MARK } else { "" }
     }
 
-    /// The mark if any of these fields is inferred.
-    fn mark_any(&self, parent: &str, names: &[&str]) -> &'static str {
-        let any = names
-            .iter()
-            .any(|name| self.is_inferred(&format!("{parent}.{name}")));
-        if any { MARK } else { "" }
-    }
-
     fn write_description(&self, out: &mut String) -> std::fmt::Result {
         writeln!(out, "{}: {}", self.name, self.summary)?;
         writeln!(out, "  source      {}", self.source)?;
@@ -56,7 +46,7 @@ impl Sensor {
             )?;
         }
         let readout = &self.readout;
-        let mark = self.mark_any("readout", &["min_kpa", "max_kpa", "resolution_kpa", "rate_hz"]);
+        let mark = self.mark("readout");
         writeln!(
             out,
             "  read-out    {} to {} kPa in steps of {} kPa, {} Hz, reported in {}{mark}",
@@ -79,16 +69,20 @@ impl Sensor {
         }
         for (index, inclusion) in self.inclusions.iter().enumerate() {
             let title = if index == 0 { "inclusions" } else { "" };
-            let mark = self.mark_any(&format!("inclusions[{index}]"), &["min_mm", "max_mm"]);
+            let mark = self.mark(&format!("inclusions[{index}]"));
             let (min, max) = (triple(inclusion.min_mm), triple(inclusion.max_mm));
-            writeln!(out, "  {title:<11} {:<8} {min} to {max} mm{mark}", inclusion.name)?;
+            writeln!(
+                out,
+                "  {title:<11} {:<12} {min} to {max} mm{mark}",
+                inclusion.name
+            )?;
         }
         for (index, indenter) in self.indenters.iter().enumerate() {
             let title = if index == 0 { "indenters" } else { "" };
-            let mark = self.mark_any(&format!("indenters[{index}].shape"), SHAPE_FIELDS);
+            let mark = self.mark(&format!("indenters[{index}].shape"));
             writeln!(
                 out,
-                "  {title:<11} {:<10} {}{mark}",
+                "  {title:<11} {:<12} {}{mark}",
                 indenter.name,
                 shape_in_words(&indenter.shape)
             )?;
@@ -109,18 +103,7 @@ impl Sensor {
             Solid::Dome(_) => "dome".to_owned(),
             Solid::Stl { path } => format!("`{path}`"),
         };
-        let mark = self.mark_any(
-            "gel.solid",
-            &[
-                "size_mm",
-                "crown_mm",
-                "drop_x_mm",
-                "drop_y_mm",
-                "x_mm",
-                "y_mm",
-                "path",
-            ],
-        );
+        let mark = self.mark("gel.solid");
         let volume_mm3 = self.gel.solid.volume_mm3(&self.surfaces);
         let (size, low, high) = (size_in_words(high - low), triple(low), triple(high));
         writeln!(
@@ -137,7 +120,7 @@ impl Sensor {
                 c30_kpa,
             } => format!(" C10 {c10_kpa} kPa, C20 {c20_kpa} kPa, C30 {c30_kpa} kPa,"),
         };
-        let mark = self.mark_any("gel.material", MATERIAL_FIELDS);
+        let mark = self.mark("gel.material");
         writeln!(
             out,
             "  material    {},{constants} E {:.2} kPa, G {:.2} kPa, ν {:.5}, K {:.0} kPa{mark}",
@@ -160,30 +143,12 @@ impl Sensor {
     }
 }
 
-const MATERIAL_FIELDS: &[&str] = &[
-    "youngs_modulus_kpa",
-    "shear_modulus_kpa",
-    "c10_kpa",
-    "c01_kpa",
-    "c20_kpa",
-    "c30_kpa",
-    "poissons_ratio",
-    "bulk_modulus_kpa",
-];
-
-const SHAPE_FIELDS: &[&str] = &[
-    "radius_mm",
-    "height_mm",
-    "size_mm",
-    "length_mm",
-    "width_mm",
-    "outer_radius_mm",
-    "inner_radius_mm",
-    "side_mm",
-    "angle_rad",
-    "edge_radius_mm",
-    "path",
-];
+/// Whether a field is the whole or a part of another.
+fn is_within(whole: &str, field: &str) -> bool {
+    field
+        .strip_prefix(whole)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
 
 fn triple(place_mm: DVec3) -> String {
     // Adding zero makes -0 a plain 0.

@@ -1,5 +1,7 @@
 //! Every way in which a description can be wrong names file, line and field.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use std::io;
 
 use twintac_sensor::{Sensor, SensorError};

@@ -1,5 +1,7 @@
 //! The descriptions that are shipped are right, and read as people expect.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use std::path::{Path, PathBuf};
 
 use twintac_sensor::Sensor;

@@ -1,5 +1,7 @@
 //! Distances of indenters: closed forms, and what every distance has to obey.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use twintac_shape::{Shape, SignedDistance, Surfaces};

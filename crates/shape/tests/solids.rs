@@ -1,5 +1,7 @@
 //! Gels and the shell around them: what their distances, tops and volumes have to obey.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use twintac_shape::{Cavity, Dome, SignedDistance, Solid, Surfaces};

@@ -1,5 +1,7 @@
 //! Triangle surfaces against the shapes that they are made after.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use std::f64::consts::{PI, TAU};
 use std::sync::{Arc, LazyLock};
 
