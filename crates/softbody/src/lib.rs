@@ -8,6 +8,7 @@ mod body;
 mod contact;
 mod element;
 mod error;
+mod krylov;
 mod material;
 mod newton;
 mod ordering;

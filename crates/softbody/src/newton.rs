@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 
 use crate::body::SoftBody;
 use crate::contact::{RigidBody, Touch};
+use crate::krylov::{ConjugateGradients, Outcome};
 use crate::material::{Memory, Relaxation};
 use crate::system::Factors;
 
@@ -19,6 +20,15 @@ const ROUND_OFF: f64 = 1e-11;
 
 /// Loads below this part of the shear modulus times the squared size of the body count as none.
 const NEGLIGIBLE_LOAD: f64 = 1e-7;
+
+/// Accuracy of a direction: the part of the right-hand side, in the norm of the preconditioner, that may be left.
+const FORCING: f64 = 1e-2;
+
+/// Conjugate gradient iterations that cost less than new factors.
+const MAX_STALE_ITERATIONS: u32 = 12;
+
+/// Conjugate gradient iterations with new factors: a few make up for single precision.
+const MAX_FRESH_ITERATIONS: u32 = 50;
 
 /// A step to solve: everything that stays fixed while the displacements are sought.
 pub(crate) struct Step<'a> {
@@ -72,13 +82,15 @@ impl Clone for Workspace {
 
 pub(crate) struct Buffers {
     factors: Factors,
+    has_factors: bool,
+    gradients: ConjugateGradients,
     pressure_scratch: MemBuffer,
     /// Gradient of the energy at each node, N; at bonded nodes the force of what holds them. `[n_nodes]`
     pub(crate) gradient_n: Vec<DVec3>,
     direction_mm: Vec<DVec3>,
     unbalanced_n: Vec<DVec3>,
     start_mm: Vec<DVec3>,
-    unknowns: Vec<f64>,
+    volume_changes: Vec<f64>,
     /// Constant stresses of the step. `[n_tets]`, or empty for an elastic material.
     offsets: Vec<DMat3>,
 }
@@ -89,12 +101,14 @@ impl Workspace {
             let n_nodes = body.mesh().nodes_mm.len();
             Box::new(Buffers {
                 factors: body.system.factors(),
+                has_factors: false,
+                gradients: ConjugateGradients::new(&body.system),
                 pressure_scratch: body.compressibility.scratch(),
                 gradient_n: vec![DVec3::ZERO; n_nodes],
                 direction_mm: vec![DVec3::ZERO; n_nodes],
                 unbalanced_n: vec![DVec3::ZERO; n_nodes],
                 start_mm: vec![DVec3::ZERO; n_nodes],
-                unknowns: vec![0.0; body.system.n_unknowns()],
+                volume_changes: vec![0.0; n_nodes],
                 offsets: Vec::new(),
             })
         })
@@ -180,11 +194,11 @@ impl Buffers {
         if !(evaluation.smallest_volume_ratio > 0.0) {
             return None;
         }
-        self.unknowns[..x.pressures_mpa.len()].copy_from_slice(x.pressures_mpa);
+        self.volume_changes.copy_from_slice(x.pressures_mpa);
         body.compressibility
             .solve(x.pressures_mpa, &mut self.pressure_scratch);
         let volumetric: f64 = self
-            .unknowns
+            .volume_changes
             .iter()
             .zip(x.pressures_mpa.iter())
             .map(|(g, p)| g * p)
@@ -231,8 +245,53 @@ impl Buffers {
         for (unbalanced, gradient) in self.unbalanced_n.iter_mut().zip(&self.gradient_n) {
             *unbalanced = -*gradient;
         }
-        let mut is_convex = false;
-        // First the true tangent, then without the curvature of the shapes, then ever stiffer.
+        let mut is_fresh = false;
+        if self.has_factors {
+            self.assemble(body, step, x, None);
+        } else {
+            self.factorise(body, step, x)?;
+            is_fresh = true;
+        }
+        let mut target = None;
+        body.system
+            .put_forces(&self.unbalanced_n, &mut self.gradients.residual);
+        self.gradients.solution.fill(0.0);
+        loop {
+            let limit = if is_fresh {
+                MAX_FRESH_ITERATIONS
+            } else {
+                MAX_STALE_ITERATIONS
+            };
+            let (factors, scratch) = (&mut self.factors, &mut self.pressure_scratch);
+            let (system, compressibility) = (&body.system, &body.compressibility);
+            let outcome = self.gradients.iterate(
+                system,
+                compressibility,
+                factors,
+                scratch,
+                FORCING,
+                &mut target,
+                limit,
+            );
+            if outcome == Outcome::Converged || is_fresh {
+                break;
+            }
+            // The factors are too old: start afresh, as the tangent may have been stiffened as well.
+            self.factorise(body, step, x)?;
+            is_fresh = true;
+            target = None;
+            body.system
+                .put_forces(&self.unbalanced_n, &mut self.gradients.residual);
+            self.gradients.solution.fill(0.0);
+        }
+        body.system
+            .take_displacements(&self.gradients.solution, &mut self.direction_mm);
+        Ok(())
+    }
+
+    /// Factorises the tangent: the true one if it is convex, else without the curvature of the shapes, else ever stiffer.
+    fn factorise(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
+        self.has_factors = false;
         for shift in [None, Some(0.0), Some(0.01), Some(0.1), Some(1.0), Some(10.0)] {
             self.assemble(body, step, x, shift);
             if body
@@ -240,20 +299,11 @@ impl Buffers {
                 .factorise(&mut self.factors)
                 .map_err(|_| Failure::Singular)?
             {
-                is_convex = true;
-                break;
+                self.has_factors = true;
+                return Ok(());
             }
         }
-        if !is_convex {
-            return Err(Failure::Singular);
-        }
-        body.system.solve(
-            &mut self.factors,
-            &self.unbalanced_n,
-            &mut self.unknowns,
-            &mut self.direction_mm,
-        );
-        Ok(())
+        Err(Failure::Singular)
     }
 
     fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns, shift: Option<f64>) {

@@ -28,9 +28,9 @@ impl Default for SolverSettings {
             tolerance: 1e-6,
             max_iterations: 30,
             min_substep: 1.0 / 64.0,
-            contact_stiffness: 200.0,
+            contact_stiffness: 100.0,
             penetration_mm: 0.002,
-            stabilisation: 1.0,
+            stabilisation: 0.25,
         }
     }
 }
