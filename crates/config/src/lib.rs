@@ -1,7 +1,7 @@
 //! Reads the TOML files that people write; every error names the file, the line and the field.
 //!
-//! Parse once into a serde type, keep the [`Document`], and report what validation finds through [`Document::error`], which
-//! looks up the line of the field:
+//! Parse once into a serde type, keep the [`Document`], and report what validation finds through
+//! [`Document::error`], which looks up the line of the field:
 //!
 //! ```
 //! #[derive(serde::Deserialize)]
@@ -36,8 +36,8 @@ pub struct ConfigError {
     pub file: String,
     /// Line, from 1; 0 if the file as a whole could not be read.
     pub line: usize,
-    /// Dotted path of the field, with array indices from 0: `taxels[3].x_mm`. Text that is not TOML stands for itself; empty if the
-    /// file as a whole could not be read.
+    /// Dotted path of the field, with array indices from 0: `taxels[3].x_mm`. Text that is not TOML stands
+    /// for itself; empty if the file as a whole could not be read.
     pub field: String,
     /// What is wrong, read after the field's name.
     pub problem: String,
@@ -66,7 +66,8 @@ impl ConfigError {
 /// Parses a TOML text that `file` names in errors.
 ///
 /// # Errors
-/// Text that is not TOML, unknown and missing fields, wrong types, and numbers that are not finite (`nan`, `inf`, `1e999`).
+/// Text that is not TOML, unknown and missing fields, wrong types, and numbers that are not finite (`nan`,
+/// `inf`, `1e999`).
 pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<Document<T>, ConfigError> {
     let error = |line: usize, field: String, problem: String, hint: &str| ConfigError {
         file: file.to_owned(),

@@ -65,7 +65,8 @@ pub(crate) fn of_serde_error(text: &str, table: &DeTable<'_>, error: &toml::de::
         }
     });
     let mut field = closest.map(|(_, field)| field).unwrap_or_default();
-    // A missing field has no place, and an unknown one inside a tagged table only its table's: serde's message names it.
+    // A missing field has no place, and an unknown one inside a tagged table only its table's: serde's
+    // message names it.
     let names = |start: &str| {
         error
             .message()

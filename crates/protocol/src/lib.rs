@@ -1,7 +1,7 @@
 //! The press protocol: which indenter, where, how deep, how fast.
 //!
-//! A protocol is a TOML file that people write; [`Protocol::plan`] turns it into presses. What is drawn at random in a press depends on the
-//! seed and the press's number alone.
+//! A protocol is a TOML file that people write; [`Protocol::plan`] turns it into presses. What is drawn at
+//! random in a press depends on the seed and the press's number alone.
 
 mod plan;
 mod protocol;

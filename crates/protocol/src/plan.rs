@@ -27,7 +27,8 @@ pub struct PressPlan {
 }
 
 impl PressPlan {
-    /// Time (s) and depth below first touch (mm, negative above) at a frame rate, from the start to the end of the press.
+    /// Time (s) and depth below first touch (mm, negative above) at a frame rate, from the start to the end
+    /// of the press.
     #[must_use]
     pub fn trajectory(&self, rate_hz: f64) -> Vec<(f64, f64)> {
         let travel_s = (self.clearance_mm + self.depth_mm) / self.speed_mm_per_s;

@@ -199,7 +199,8 @@ impl Protocol {
         Ok(())
     }
 
-    /// The presses, for a sensor with these indenters: for each indenter, the whole list of places as often as it is repeated.
+    /// The presses, for a sensor with these indenters: for each indenter, the whole list of places as often
+    /// as it is repeated.
     ///
     /// # Errors
     /// An indenter that the sensor does not have.

@@ -11,8 +11,8 @@ use crate::{Model, Sensor};
 const MARK: &str = " *";
 
 impl Sensor {
-    /// Whether a field, a part of it or something that it is part of is inferred rather than stated by the source: `taxels` covers
-    /// `taxels[2].position_mm`, and `gel.solid.size_mm[2]` tells of `gel.solid`.
+    /// Whether a field, a part of it or something that it is part of is inferred rather than stated by the
+    /// source: `taxels` covers `taxels[2].position_mm`, and `gel.solid.size_mm[2]` tells of `gel.solid`.
     #[must_use]
     pub fn is_inferred(&self, field: &str) -> bool {
         self.inferred

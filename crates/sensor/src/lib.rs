@@ -1,7 +1,7 @@
 //! The sensor description: gel, shell, taxels, read-out, indenters.
 //!
-//! A description is one TOML file that says all there is to know about a sensor before it is pressed. [`Sensor::parse`] checks it as a
-//! whole; every error names file, line and field.
+//! A description is one TOML file that says all there is to know about a sensor before it is pressed.
+//! [`Sensor::parse`] checks it as a whole; every error names file, line and field.
 //!
 //! The gel's frame has z up and z = 0 at the board. Lengths are in mm, pressures in kPa, times in s.
 

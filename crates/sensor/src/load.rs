@@ -10,8 +10,8 @@ use crate::file::SensorFile;
 use crate::{Gel, Sensor, SensorError};
 
 impl Sensor {
-    /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file by the path that the description
-    /// has for it.
+    /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file by the path that
+    /// the description has for it.
     ///
     /// # Errors
     /// The first field that is wrong, or a surface that cannot be had.

@@ -78,7 +78,8 @@ pub struct Taxel {
     pub port_radius_mm: f64,
     /// Which channel of the bus it is read through.
     pub channel: u8,
-    /// Why its readings are not to be trusted, if they are not: it is then left out of headline figures and reported beside them.
+    /// Why its readings are not to be trusted, if they are not: it is then left out of headline figures and
+    /// reported beside them.
     #[serde(default)]
     pub doubtful: Option<String>,
 }

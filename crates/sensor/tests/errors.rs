@@ -63,7 +63,8 @@ fn error(text: &str) -> SensorError {
     Sensor::parse("small.toml", text, &no_files).unwrap_err()
 }
 
-/// Replaces one line of the good file and expects an error about `field` there, or at the line of `at` if that stands elsewhere.
+/// Replaces one line of the good file and expects an error about `field` there, or at the line of `at` if
+/// that stands elsewhere.
 #[track_caller]
 fn expect_at(old: &str, new: &str, at: &str, field: &str, says: &str) {
     assert_eq!(GOOD.matches(old).count(), 1, "`{old}` must be there once");

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::Distance;
 use crate::profile::PlaneDistance;
 
-/// A block standing on z = 0 about the z axis: the common part of an arch along x and an arch along y, so that two rounded edges meet
-/// in a mitre.
+/// A block standing on z = 0 about the z axis: the common part of an arch along x and an arch along y, so
+/// that two rounded edges meet in a mitre.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Block {
     pub(crate) size_mm: DVec3,
@@ -14,7 +14,8 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Exact inside and beside faces and edges' roundings; outside, next to the corners' ridges, a lower bound.
+    /// Exact inside and beside faces and edges' roundings; outside, next to the corners' ridges, a lower
+    /// bound.
     pub(crate) fn signed_distance(&self, point_mm: DVec3) -> Distance {
         let along_x = self.arch(0.5 * self.size_mm.x, DVec2::new(point_mm.x, point_mm.z));
         let along_y = self.arch(0.5 * self.size_mm.y, DVec2::new(point_mm.y, point_mm.z));
@@ -48,7 +49,8 @@ impl Block {
         let DVec3 { x, y, z } = self.size_mm;
         let r = self.edge_radius_mm;
         let quarter = std::f64::consts::FRAC_PI_4;
-        // A rounding takes (1 - π/4) r² off each length of edge; the mitres at the four corners are counted twice.
+        // A rounding takes (1 - π/4) r² off each length of edge; the mitres at the four corners are counted
+        // twice.
         x * y * z - 2.0 * (x + y) * r.powi(2) * (1.0 - quarter) + 8.0 * r.powi(3) * (5.0 / 6.0 - quarter)
     }
 

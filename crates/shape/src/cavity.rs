@@ -9,8 +9,8 @@ use crate::{Distance, SignedDistance};
 /// Largest rounding of the shell's inner rim, mm.
 const RIM_RADIUS_MM: f64 = 0.5;
 
-/// A rigid shell seen from the gel in it: a rectangular hole with walls of endless thickness up to a height, their rim rounded. The
-/// distance is positive in free space, negative in the walls, and exact.
+/// A rigid shell seen from the gel in it: a rectangular hole with walls of endless thickness up to a height,
+/// their rim rounded. The distance is positive in free space, negative in the walls, and exact.
 #[derive(Clone, Debug)]
 pub struct Cavity {
     center_mm: DVec2,
@@ -21,8 +21,8 @@ pub struct Cavity {
 }
 
 impl Cavity {
-    /// The shell around a gel whose footprint spans `low_mm` to `high_mm`, `gap_mm` away from it on all four sides, with walls from
-    /// below the board up to `height_mm`.
+    /// The shell around a gel whose footprint spans `low_mm` to `high_mm`, `gap_mm` away from it on all four
+    /// sides, with walls from below the board up to `height_mm`.
     #[must_use]
     pub fn around(low_mm: DVec2, high_mm: DVec2, gap_mm: f64, height_mm: f64) -> Self {
         let rim_radius_mm = RIM_RADIUS_MM.min(0.5 * height_mm);

@@ -8,8 +8,8 @@ use crate::Distance;
 /// Halvings of an interval until it is as narrow as the numbers allow.
 const HALVINGS: usize = 100;
 
-/// A rectangular footprint whose top falls off quadratically from a crown: with `s` the fraction of the way from the crown to
-/// an edge, the top stands at `crown - drop_x s_x² - drop_y s_y²`.
+/// A rectangular footprint whose top falls off quadratically from a crown: with `s` the fraction of the way
+/// from the crown to an edge, the top stands at `crown - drop_x s_x² - drop_y s_y²`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Dome {
@@ -122,9 +122,11 @@ impl Dome {
         self.crown_mm - x.drop_mm(at_mm.x) - y.drop_mm(at_mm.y)
     }
 
-    /// Exact outside. Inside it is exact as long as the point is not further below the top than the top's smallest radius of curvature.
+    /// Exact outside. Inside it is exact as long as the point is not further below the top than the top's
+    /// smallest radius of curvature.
     ///
-    /// The closest point of a convex set bounded by a separable quadratic depends on one multiplier only, found by halving.
+    /// The closest point of a convex set bounded by a separable quadratic depends on one multiplier only,
+    /// found by halving.
     pub(crate) fn signed_distance(&self, point_mm: DVec3) -> Distance {
         let (low, high) = self.corners();
         let clamped = point_mm.clamp(low, high.with_z(f64::INFINITY));

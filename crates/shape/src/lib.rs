@@ -1,8 +1,8 @@
 //! Rigid and gel shapes: signed distances, triangle surfaces, poses.
 //!
-//! Lengths are in mm. A signed distance is negative inside. An indenter's own frame has its origin at the point of the
-//! indenter that touches a flat gel first, and z pointing up, away from the gel: the untilted sphere of radius `r` has its
-//! centre at `(0, 0, r)`.
+//! Lengths are in mm. A signed distance is negative inside. An indenter's own frame has its origin at the
+//! point of the indenter that touches a flat gel first, and z pointing up, away from the gel: the untilted
+//! sphere of radius `r` has its centre at `(0, 0, r)`.
 
 mod block;
 mod bvh;

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::profile::{PlaneDistance, Profile};
 use crate::{Distance, SignedDistance};
 
-/// A profile, extruded to both sides of its plane and then grown by a radius in all directions. What is wanted round is made
-/// smaller by the radius first.
+/// A profile, extruded to both sides of its plane and then grown by a radius in all directions. What is
+/// wanted round is made smaller by the radius first.
 #[derive(Clone, Debug)]
 pub(crate) struct Prism {
     pub(crate) profile: Profile,
@@ -99,8 +99,8 @@ fn slab(height_mm: f64, half_mm: f64) -> (f64, f64) {
     )
 }
 
-/// Distance to the common part of a cylinder set (any profile, extruded along z without end) and a set between levels. Exact, as the
-/// two are orthogonal.
+/// Distance to the common part of a cylinder set (any profile, extruded along z without end) and a set
+/// between levels. Exact, as the two are orthogonal.
 pub(crate) fn extrude(profile: PlaneDistance, (level_mm, level_sign): (f64, f64)) -> Distance {
     let aside = profile.gradient.extend(0.0);
     let along = DVec3::Z * level_sign;
@@ -125,7 +125,8 @@ pub(crate) fn extrude(profile: PlaneDistance, (level_mm, level_sign): (f64, f64)
     }
 }
 
-/// Several shapes as one: exact outside; inside, where they overlap, it is the larger depth of theirs, never more than the true one.
+/// Several shapes as one: exact outside; inside, where they overlap, it is the larger depth of theirs, never
+/// more than the true one.
 pub(crate) struct Union(pub(crate) Vec<Prism>);
 
 impl SignedDistance for Union {

@@ -10,8 +10,9 @@ use crate::prism::{Placement, Prism, Union};
 use crate::profile::Profile;
 use crate::{Distance, SignedDistance, Surfaces, TriangleSurface};
 
-/// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp shape is made smaller by the radius and
-/// then grown by it in all directions. Prismatic shapes have their profile in the xy plane and stand on z = 0, `height_mm` tall.
+/// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp shape is
+/// made smaller by the radius and then grown by it in all directions. Prismatic shapes have their profile in
+/// the xy plane and stand on z = 0, `height_mm` tall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Shape {
@@ -78,7 +79,8 @@ pub enum Shape {
         /// Rounding of the ridge and edges, mm.
         edge_radius_mm: f64,
     },
-    /// A closed triangle surface in an STL file, path relative to the file that names it; its lowest point is moved to the origin's z.
+    /// A closed triangle surface in an STL file, path relative to the file that names it; its lowest point is
+    /// moved to the origin's z.
     Stl {
         /// Path of the STL file.
         path: String,
@@ -234,8 +236,8 @@ impl Shape {
         }
     }
 
-    /// The shape as a signed distance, exact everywhere but inside the crossing of an X, with its origin at the point of first touch
-    /// (for triangle surfaces: at the height of their lowest point).
+    /// The shape as a signed distance, exact everywhere but inside the crossing of an X, with its origin at
+    /// the point of first touch (for triangle surfaces: at the height of their lowest point).
     ///
     /// # Errors
     /// Those of [`Shape::validate`], and an STL file that is not among the surfaces.

@@ -9,7 +9,8 @@ use crate::{Distance, Dome, ShapeError, SignedDistance, Surfaces, TriangleSurfac
 
 /// The undeformed gel.
 ///
-/// What a [`Solid::Stl`] looks like stands in the [`Surfaces`] that its methods take; one whose surface is not among them is empty.
+/// What a [`Solid::Stl`] looks like stands in the [`Surfaces`] that its methods take; one whose surface is
+/// not among them is empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Solid {
@@ -79,8 +80,8 @@ impl Solid {
 
     /// Signed distance to the gel's surface, mm; `None` for an empty solid.
     ///
-    /// Exact, but for a lower bound at the outside of a block's corner ridges, and for domes further below their top than its radius
-    /// of curvature.
+    /// Exact, but for a lower bound at the outside of a block's corner ridges, and for domes further below
+    /// their top than its radius of curvature.
     #[must_use]
     pub fn signed_distance(&self, point_mm: DVec3, surfaces: &Surfaces) -> Option<Distance> {
         match self {

@@ -60,8 +60,8 @@ pub enum SurfaceError {
 
 /// A closed surface of triangles with an inside.
 ///
-/// The sign of the distance comes from angle-weighted pseudonormals (Bærentzen and Aanæs, Signed Distance Computation Using the Angle
-/// Weighted Pseudonormal, IEEE TVCG 2005), which is exact for any closed surface.
+/// The sign of the distance comes from angle-weighted pseudonormals (Bærentzen and Aanæs, Signed Distance
+/// Computation Using the Angle Weighted Pseudonormal, IEEE TVCG 2005), which is exact for any closed surface.
 #[derive(Clone, Debug)]
 pub struct TriangleSurface {
     vertices_mm: Vec<DVec3>,
@@ -83,8 +83,8 @@ enum Part {
 }
 
 impl TriangleSurface {
-    /// Reads an STL file's bytes, binary or ASCII, in mm. Equal corners become one vertex; triangles that have lost a corner by that
-    /// are left out.
+    /// Reads an STL file's bytes, binary or ASCII, in mm. Equal corners become one vertex; triangles that
+    /// have lost a corner by that are left out.
     ///
     /// # Errors
     /// Truncated files, text that is no STL, and surfaces that are not closed or face inwards.
@@ -174,7 +174,8 @@ impl TriangleSurface {
         self.volume_mm3
     }
 
-    /// Height of the highest point of the surface above or below a place in the xy plane, mm; `None` beside the surface.
+    /// Height of the highest point of the surface above or below a place in the xy plane, mm; `None` beside
+    /// the surface.
     #[must_use]
     pub fn top_height_mm(&self, at_mm: DVec2) -> Option<f64> {
         let mut highest: Option<f64> = None;
@@ -216,7 +217,8 @@ impl SignedDistance for TriangleSurface {
         let away = point_mm - closest;
         let length_mm = square_mm2.sqrt();
         let sign = if away.dot(normal) < 0.0 { -1.0 } else { 1.0 };
-        // Next to the surface rounding spoils the direction, but not the normal; a face's normal is exact anyway.
+        // Next to the surface rounding spoils the direction, but not the normal; a face's normal is exact
+        // anyway.
         let near = length_mm < 1e-9 || matches!(part, Part::Face);
         let gradient = if near && normal != DVec3::ZERO {
             normal
@@ -239,7 +241,8 @@ impl SignedDistance for TriangleSurface {
     }
 }
 
-/// Makes equal corners one vertex, numbered in order of appearance, and leaves out triangles that lose a corner by it.
+/// Makes equal corners one vertex, numbered in order of appearance, and leaves out triangles that lose a
+/// corner by it.
 fn weld(corners_mm: &[[DVec3; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut numbers = BTreeMap::new();
     let mut vertices_mm = Vec::new();

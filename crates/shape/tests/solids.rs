@@ -59,7 +59,8 @@ proptest! {
         let solid = &solids()[which];
         let found = distance(solid, p);
         let rest = distance(solid, p - found.gradient * found.distance_mm).distance_mm;
-        // Outside a block's ridges the distance is a lower bound: the step may end before the surface, never beyond.
+        // Outside a block's ridges the distance is a lower bound: the step may end before the surface, never
+        // beyond.
         let is_exact = found.distance_mm <= 0.0 || which == 2;
         prop_assert!(rest > -1e-7 && (rest < 1e-7 || !is_exact), "{:?} leaves {}", found, rest);
     }
@@ -127,7 +128,8 @@ fn a_domes_inside_is_as_deep_as_a_dense_sampling_of_its_top_says() {
             .map(|sample| sample.distance(p))
             .fold(f64::INFINITY, f64::min);
         let found_mm = -distance(solid, p).distance_mm;
-        // A lattice of 0.02 mm misses the closest point by at most 0.015 mm, which is 0.0003 mm in the distance.
+        // A lattice of 0.02 mm misses the closest point by at most 0.015 mm, which is 0.0003 mm in the
+        // distance.
         assert!(
             found_mm <= sampled_mm + 1e-9 && sampled_mm - found_mm < 3e-4,
             "{found_mm}, sampled {sampled_mm}, at {p}"
