@@ -262,6 +262,27 @@ fn array8_rows_are_presses_under_one_weight() {
             (0.95 * largest_kpa..1.15 * largest_kpa).contains(&found_kpa),
             "{found_kpa} kPa"
         );
+        // The taxels of opposite corners of the array read most where they are.
+        let centres_mm = match sensor {
+            "array8-ds10" => [(0, 3.29, -9.415), (4, -3.98, 10.965)],
+            _ => [(0, 5.29, -14.015), (4, -5.05, 15.645)],
+        };
+        for (taxel, x_mm, y_mm) in centres_mm {
+            let mut presses: Vec<&Press> = recording
+                .presses
+                .iter()
+                .filter(|press| press.valid[0][taxel])
+                .collect();
+            presses.sort_by(|a, b| b.taxels_kpa[0][taxel].total_cmp(&a.taxels_kpa[0][taxel]));
+            let places_mm = presses[..20]
+                .iter()
+                .map(|press| press.gel_from_indenter[0].position_mm.truncate());
+            let place_mm = places_mm.sum::<glam::DVec2>() / 20.0;
+            assert!(
+                place_mm.distance(glam::DVec2::new(x_mm, y_mm)) < 1.0,
+                "s{taxel} reads most at {place_mm}"
+            );
+        }
         // The footprint is centred on the gel, so that no place lies outside of it.
         let (half_x_mm, half_y_mm) = if sensor == "array8-ds10" {
             (14.25, 15.625)
