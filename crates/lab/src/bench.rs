@@ -70,7 +70,7 @@ impl Bench {
         let offsets_kpa =
             drawing.taxels.iter().map(|_| chance.normal(reality.readout.offset_deviation_kpa)).collect();
         let settings = SimulateSettings {
-            edge_mm: reality.gel.edge_mm,
+            edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
             ..SimulateSettings::default()
         };

@@ -23,8 +23,8 @@ pub struct Reality {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GelReality {
-    /// Edge length of the lab's own mesh, mm.
-    pub edge_mm: f64,
+    /// Edges of the lab's own mesh over the gel's height.
+    pub edges_per_height: f64,
     /// Edges across the contact's radius.
     pub edges_per_contact_radius: f64,
     /// Yeoh constants C10, C20, C30 of the instantaneous response, kPa.
@@ -96,7 +96,7 @@ impl Reality {
     fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
         let (gel, readout, robot) = (&self.gel, &self.readout, &self.robot);
         let positive = [
-            ("gel.edge_mm", gel.edge_mm),
+            ("gel.edges_per_height", gel.edges_per_height),
             ("gel.edges_per_contact_radius", gel.edges_per_contact_radius),
             ("gel.yeoh_kpa[0]", gel.yeoh_kpa[0]),
             ("gel.bulk_modulus_kpa", gel.bulk_modulus_kpa),

@@ -38,7 +38,7 @@ impl std::fmt::Display for Control {
 }
 
 /// One press. All per-frame vectors have the same length, `n_frames`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Press {
     /// Unique in its recording: `<file stem>#<number>`, the number from 1.
     pub name: String,

@@ -3,31 +3,34 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use rayon::prelude::*;
+use serde::Serialize;
 use twintac_mesh::{Cuboid, Focus, MeshSettings, TetMesh};
-use twintac_sensor::Sensor;
-use twintac_shape::{Cavity, Pose, SignedDistance};
-use twintac_softbody::{Frame, SoftBody, State};
+use twintac_sensor::{Model, Sensor};
+use twintac_shape::{Cavity, Pose, Shape, SignedDistance};
+use twintac_softbody::{Frame, Isochoric, Material, PronyTerm, SoftBody};
 
 use crate::readout::{PortReadout, StressCluster};
 use crate::touch::{contact_radius_mm, first_touch};
 use crate::{Honesty, SimulateError, SimulateSettings, Sweep, SweepFrame};
+
+/// Part of the depth at which the indenter is about as wide as its contact: half, exactly so for a sphere by Hertz's theory.
+const CONTACT_DEPTH: f64 = 0.5;
 
 /// A gel and how finely it is to be simulated. Shared by many presses.
 #[derive(Clone, Debug)]
 pub struct Gel {
     sensor: Arc<Sensor>,
     settings: SimulateSettings,
-    material: twintac_softbody::Material,
+    material: Material,
 }
 
 /// Where, with what and how deep to press.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PressPlace {
     /// The indenter's name, for the record.
     pub indenter: String,
     /// The indenter's shape.
-    pub shape: twintac_shape::Shape,
+    pub shape: Shape,
     /// Place of the indenter's origin in the gel's plane, mm.
     pub x_mm: f64,
     /// Place of the indenter's origin in the gel's plane, mm.
@@ -66,14 +69,14 @@ impl Gel {
 
     /// The same gel of another material.
     #[must_use]
-    pub fn with_material(mut self, material: twintac_softbody::Material) -> Self {
+    pub fn with_material(mut self, material: Material) -> Self {
         self.material = material;
         self
     }
 
     /// The material that is simulated.
     #[must_use]
-    pub fn material(&self) -> &twintac_softbody::Material {
+    pub fn material(&self) -> &Material {
         &self.material
     }
 
@@ -83,21 +86,38 @@ impl Gel {
         &self.sensor
     }
 
+    /// Height of the gel, mm.
+    #[must_use]
+    pub fn height_mm(&self) -> f64 {
+        self.sensor.gel.solid.bounds_mm(&self.sensor.surfaces).1.z
+    }
+
+    /// Lowers an indenter, at a pose whose z is ignored, until it touches the undeformed gel.
+    pub fn touch(&self, shape: &Shape, above: &Pose) -> Result<Pose, SimulateError> {
+        let indenter = shape.signed_distance_field(&self.sensor.surfaces)?;
+        Ok(self.first_touch(indenter.as_ref(), above)?.0)
+    }
+
+    fn first_touch(&self, indenter: &dyn SignedDistance, above: &Pose) -> Result<(Pose, DVec3), SimulateError> {
+        let (solid, surfaces) = (&self.sensor.gel.solid, &self.sensor.surfaces);
+        let top_height_mm = |x_mm: f64, y_mm: f64| solid.top_height_mm(x_mm, y_mm, surfaces);
+        first_touch(indenter, above, &top_height_mm)
+            .ok_or(SimulateError::NoTouch { x_mm: above.position_mm.x, y_mm: above.position_mm.y })
+    }
+
     /// Meshes the gel for a press: fine under the indenter, coarser elsewhere.
     pub fn mesh(&self, place: &PressPlace) -> Result<GelMesh, SimulateError> {
         let sensor = &*self.sensor;
         let solid = &sensor.gel.solid;
         let indenter = place.shape.signed_distance_field(&sensor.surfaces)?;
         let above = Pose { position_mm: DVec3::new(place.x_mm, place.y_mm, 0.0), rotation: place.rotation };
-        let top_height_mm = |x_mm: f64, y_mm: f64| solid.top_height_mm(x_mm, y_mm, &sensor.surfaces);
-        let (touch, touched) = first_touch(indenter.as_ref(), &above, &top_height_mm)
-            .ok_or(SimulateError::NoTouch { x_mm: place.x_mm, y_mm: place.y_mm })?;
-        let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, place.depth_mm);
-        let edge_mm = (radius_mm / self.settings.edges_per_contact_radius)
-            .clamp(self.settings.smallest_edge_mm.min(self.settings.edge_mm), self.settings.edge_mm);
+        let (touch, touched) = self.first_touch(indenter.as_ref(), &above)?;
+        let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, CONTACT_DEPTH * place.depth_mm);
+        let coarse_mm = self.height_mm() / self.settings.edges_per_height;
+        let fine_mm = (radius_mm / self.settings.edges_per_contact_radius).min(coarse_mm);
         let settings = MeshSettings {
-            edge_mm: self.settings.edge_mm,
-            focuses: vec![Focus { center_mm: touched, radius_mm, edge_mm }],
+            edge_mm: coarse_mm,
+            focuses: vec![Focus { center_mm: touched, radius_mm, edge_mm: fine_mm }],
             ..MeshSettings::default()
         };
         let inclusions: Vec<Cuboid> =
@@ -108,20 +128,20 @@ impl Gel {
 
     /// Presses a place to increasing depths. A table that ends early says why in [`Sweep::failure`].
     pub fn sweep(&self, place: &PressPlace) -> Result<Sweep, SimulateError> {
+        self.press(place, &self.depths(place))
+    }
+
+    /// The depths of a table: closer together near the surface, where the contact grows fastest.
+    #[must_use]
+    pub fn depths(&self, place: &PressPlace) -> Vec<Keyframe> {
         let n_frames = self.settings.sweep_frames.max(1);
-        let keyframes: Vec<Keyframe> = (0..=n_frames)
-            .map(|i| {
-                // Closer together near the surface, where the contact grows fastest.
-                let fraction = (f64::from(i) / f64::from(n_frames)).powf(1.25);
-                Keyframe { time_s: 0.0, depth_mm: fraction * place.depth_mm }
-            })
-            .collect();
-        self.press(place, &keyframes)
+        let fraction = |i: u32| (f64::from(i) / f64::from(n_frames)).powf(1.25);
+        (0..=n_frames).map(|i| Keyframe { time_s: 0.0, depth_mm: fraction(i) * place.depth_mm }).collect()
     }
 
     /// Follows a trajectory in time; the material remembers what it is made to remember.
     pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Result<Sweep, SimulateError> {
-        self.mesh(place)?.press(place, keyframes)
+        Ok(self.mesh(place)?.press(place, keyframes))
     }
 }
 
@@ -129,7 +149,7 @@ impl GelMesh {
     fn new(
         sensor: &Sensor,
         mesh: TetMesh,
-        material: twintac_softbody::Material,
+        material: Material,
         settings: &SimulateSettings,
         indenter: Box<dyn SignedDistance>,
         touch: Pose,
@@ -152,8 +172,15 @@ impl GelMesh {
         &self.body
     }
 
-    /// Presses along the keyframes. Gaps above the gel are not simulated unless the gel remembers.
-    pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Result<Sweep, SimulateError> {
+    /// Presses along the keyframes.
+    #[must_use]
+    pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Sweep {
+        self.press_with(place, keyframes, &mut |_| ())
+    }
+
+    /// Presses along the keyframes and shows the gel at each.
+    #[must_use]
+    pub fn press_with(&self, place: &PressPlace, keyframes: &[Keyframe], show: &mut dyn FnMut(&Fields<'_>)) -> Sweep {
         let mut state = self.body.rest();
         let mut frames: Vec<SweepFrame> = Vec::with_capacity(keyframes.len());
         let mut failure = None;
@@ -163,33 +190,40 @@ impl GelMesh {
             let time_step_s = keyframe.time_s - previous_s;
             previous_s = keyframe.time_s;
             match self.body.advance(&mut state, self.indenter.as_ref(), &pose, time_step_s) {
-                Ok(frame) => frames.push(self.read(&state, &frame, keyframe)),
+                Ok(frame) => {
+                    let fields = Fields {
+                        mesh: self.body.mesh(),
+                        displacements_mm: state.displacements_mm(),
+                        pressure_kpa: self.body.pressure_kpa(&state),
+                        von_mises_kpa: self.body.von_mises_kpa(&state),
+                    };
+                    frames.push(self.read(&fields, &frame, keyframe));
+                    show(&fields);
+                }
                 Err(error) => {
                     failure = Some(format!("at {:.3} mm: {error}", keyframe.depth_mm));
                     break;
                 }
             }
         }
-        Ok(Sweep {
+        Sweep {
             indenter: place.indenter.clone(),
             gel_from_indenter_at_touch: self.touch,
             n_nodes: self.body.mesh().nodes_mm.len(),
             frames,
             failure,
-        })
+        }
     }
 
-    fn read(&self, state: &State, frame: &Frame, keyframe: &Keyframe) -> SweepFrame {
-        let pressure_kpa = self.body.pressure_kpa(state);
-        let von_mises_kpa = self.body.von_mises_kpa(state);
-        let rest = &self.body.mesh().nodes_mm;
-        let positions = |node: usize| rest[node] + state.displacement_mm(node);
+    fn read(&self, fields: &Fields<'_>, frame: &Frame, keyframe: &Keyframe) -> SweepFrame {
+        let positions = |node: usize| fields.mesh.nodes_mm[node] + fields.displacements_mm[node];
+        let feature = |cluster: &StressCluster| cluster.read(&fields.von_mises_kpa, &positions);
         SweepFrame {
             time_s: keyframe.time_s,
             depth_mm: keyframe.depth_mm,
             force_n: -frame.indenter_force_n.z,
-            port_pressure_kpa: self.ports.iter().map(|port| port.read(&pressure_kpa)).collect(),
-            stress_feature_kpa_per_mm: self.clusters.iter().map(|c| c.read(&von_mises_kpa, &positions)).collect(),
+            port_pressure_kpa: self.ports.iter().map(|port| port.read(&fields.pressure_kpa)).collect(),
+            stress_feature_kpa_per_mm: self.clusters.iter().map(feature).collect(),
             honesty: Honesty {
                 converged: frame.converged,
                 iterations: frame.iterations,
@@ -202,25 +236,25 @@ impl GelMesh {
     }
 }
 
-/// Sweeps many places over all cores, in the order of the places. `done` is called as each finishes, from any thread.
-pub fn sweeps(
-    gel: &Gel,
-    places: &[PressPlace],
-    done: &(dyn Fn(usize, &Sweep) + Sync),
-) -> Result<Vec<Sweep>, SimulateError> {
-    places
-        .par_iter()
-        .enumerate()
-        .with_max_len(1)
-        .map(|(index, place)| {
-            let sweep = gel.sweep(place)?;
-            done(index, &sweep);
-            Ok(sweep)
-        })
-        .collect()
+/// The gel at one moment.
+#[derive(Clone, Debug)]
+pub struct Fields<'a> {
+    /// The mesh at rest.
+    pub mesh: &'a TetMesh,
+    /// How far each node has moved, mm; `[n_nodes]`.
+    pub displacements_mm: &'a [DVec3],
+    /// Hydrostatic pressure -tr(σ)/3 at each node, kPa; `[n_nodes]`.
+    pub pressure_kpa: Vec<f64>,
+    /// Von Mises stress at each node, kPa; `[n_nodes]`.
+    pub von_mises_kpa: Vec<f64>,
 }
 
-fn soft_material(material: &twintac_sensor::Material) -> twintac_softbody::Material {
-    let _ = material;
-    todo!()
+fn soft_material(material: &twintac_sensor::Material) -> Material {
+    let isochoric = match material.model {
+        Model::NeoHookean { shear_modulus_kpa } => Isochoric::NeoHookean { shear_modulus_kpa },
+        Model::MooneyRivlin { c10_kpa, c01_kpa } => Isochoric::MooneyRivlin { c10_kpa, c01_kpa },
+        Model::Yeoh { c10_kpa, c20_kpa, c30_kpa } => Isochoric::Yeoh { c10_kpa, c20_kpa, c30_kpa },
+    };
+    let prony = material.prony.iter().map(|term| PronyTerm { weight: term.weight, time_s: term.time_s }).collect();
+    Material { isochoric, bulk_modulus_kpa: material.bulk_modulus_kpa, prony }
 }

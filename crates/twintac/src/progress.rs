@@ -13,3 +13,12 @@ pub(crate) fn bar(stage: &str, n_steps: u64) -> ProgressBar {
     bar.enable_steady_tick(Duration::from_millis(500));
     bar
 }
+
+/// A line about what happened, on a terminal only.
+pub(crate) fn note(line: &str) {
+    use std::io::{IsTerminal, Write};
+    let mut out = std::io::stderr();
+    if out.is_terminal() {
+        let _ = writeln!(out, "{line}");
+    }
+}

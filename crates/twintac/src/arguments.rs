@@ -1,0 +1,210 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Barometric touch sensors and their digital twin.
+///
+/// `demo` needs neither hardware nor data; `reproduce` does the same on recordings of a real sensor. Both run the stages below, which are
+/// commands of their own: mesh, simulate, record or import, align, train, evaluate, report.
+#[derive(Debug, Parser)]
+#[command(name = "twintac", version)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Threads to compute with; the results do not depend on it [default: one per core].
+    #[arg(long, global = true, value_name = "N")]
+    pub(crate) threads: Option<usize>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// The whole road on the emulated bench: no hardware, no data, three minutes.
+    Demo(Demo),
+    /// The whole road on recordings of a real sensor.
+    Reproduce(Reproduce),
+    /// Look at a sensor description.
+    #[command(subcommand)]
+    Sensor(SensorCommand),
+    /// Mesh a sensor's gel, or check a Gmsh mesh.
+    Mesh(Mesh),
+    /// Press the simulated gel along a protocol.
+    Simulate(Simulate),
+    /// Record presses on the emulated bench.
+    Record(Record),
+    /// Read recordings of a real sensor.
+    Import(Import),
+    /// Pair recorded presses with simulated ones.
+    Align(Align),
+    /// Train a twin on paired frames.
+    Train(Train),
+    /// Judge a twin on recordings.
+    Evaluate(Evaluate),
+    /// Write the report of a run.
+    Report(Report),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Demo {
+    /// Folder of the run.
+    #[arg(long, value_name = "DIR", default_value = "runs/demo")]
+    pub(crate) out: PathBuf,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Reproduce {
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Recordings: CSV files or patterns like 'data/*.csv'.
+    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
+    pub(crate) recordings: Vec<String>,
+    /// How to read the recordings [default: the file that the sensor description names].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Folder of the run [default: runs/<sensor>].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum SensorCommand {
+    /// Print a sensor description with units, and draw it.
+    Show(SensorShow),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct SensorShow {
+    /// Sensor description (TOML).
+    pub(crate) file: PathBuf,
+    /// Draw it, top and section, into this PNG or SVG file.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) draw: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Mesh {
+    /// Sensor description (TOML) whose gel to mesh.
+    #[arg(long, value_name = "FILE", conflicts_with = "check", required_unless_present = "check")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Edge length, mm [default: a sixth of the gel's height].
+    #[arg(long, value_name = "MM", conflicts_with_all = ["nodes", "check"])]
+    pub(crate) edge_mm: Option<f64>,
+    /// Number of nodes, met within a tenth.
+    #[arg(long, value_name = "N", conflicts_with = "check")]
+    pub(crate) nodes: Option<usize>,
+    /// Read a Gmsh file instead and say how good it is.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) check: Option<PathBuf>,
+    /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Simulate {
+    /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out"])]
+    pub(crate) run: Option<PathBuf>,
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE", requires = "protocol")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Press protocol (TOML).
+    #[arg(long, value_name = "FILE", requires = "out")]
+    pub(crate) protocol: Option<PathBuf>,
+    /// Folder to write one table over depth per press to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Also write the pressed gel of every frame for ParaView.
+    #[arg(long)]
+    pub(crate) vtk: bool,
+    /// Seed of the protocol's random places.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Record {
+    /// The emulated bench's reality (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) lab: PathBuf,
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Press protocol (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) protocol: PathBuf,
+    /// Folder of the run.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Import {
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// How to read the recordings (TOML) [default: the file that the sensor description names].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Recordings: CSV files or patterns like 'data/*.csv'.
+    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
+    pub(crate) recordings: Vec<String>,
+    /// Folder of the run.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Align {
+    /// Folder of a run with its recordings and simulations.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Train {
+    /// Folder of a run with its paired frames.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Evaluate {
+    /// Folder of a run: judge its twin on the presses that it held back.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["model", "recordings", "import"], required_unless_present = "model")]
+    pub(crate) run: Option<PathBuf>,
+    /// Folder of a model to judge on other recordings of its sensor.
+    #[arg(long, value_name = "DIR", requires = "recordings")]
+    pub(crate) model: Option<PathBuf>,
+    /// Recordings: CSV files, presses.parquet files, or patterns.
+    #[arg(long, value_name = "FILES", num_args = 1..)]
+    pub(crate) recordings: Vec<String>,
+    /// How to read CSV recordings (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Print the figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Report {
+    /// Folder of an evaluated run.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}

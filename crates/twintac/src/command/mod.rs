@@ -1,0 +1,41 @@
+//! What each command does.
+
+mod demo;
+mod files;
+mod mesh;
+mod reproduce;
+mod sensor;
+mod simulate;
+mod stages;
+
+use anyhow::Result;
+
+use crate::arguments::{Command, SensorCommand};
+
+pub(crate) use mesh::{mesh_of, write_mesh};
+
+/// Does what was asked for.
+pub(crate) fn run(command: Command) -> Result<()> {
+    match command {
+        Command::Demo(arguments) => demo::run(&arguments),
+        Command::Reproduce(arguments) => reproduce::run(&arguments),
+        Command::Sensor(SensorCommand::Show(arguments)) => sensor::show(&arguments),
+        Command::Mesh(arguments) => mesh::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Record(arguments) => stages::record(&arguments),
+        Command::Import(arguments) => stages::import(&arguments),
+        Command::Align(arguments) => stages::align(&arguments),
+        Command::Train(arguments) => stages::train(&arguments),
+        Command::Evaluate(arguments) => stages::evaluate(&arguments),
+        Command::Report(arguments) => stages::report(&arguments),
+    }
+}
+
+/// Prints a line of data to standard output; a closed pipe is no error.
+pub(crate) fn print(text: &str) -> Result<()> {
+    use std::io::{ErrorKind, Write};
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,17 @@
+//! `twintac sensor show`.
+
+use anyhow::Result;
+
+use crate::arguments::SensorShow;
+use crate::drawing;
+use crate::sensor_file::read_sensor;
+
+/// Prints a description with units, and draws it.
+pub(crate) fn show(arguments: &SensorShow) -> Result<()> {
+    let sensor = read_sensor(&arguments.file)?.sensor;
+    super::print(sensor.describe().trim_end())?;
+    if let Some(path) = &arguments.draw {
+        drawing::drawing(&sensor).scene().write(path)?;
+    }
+    Ok(())
+}

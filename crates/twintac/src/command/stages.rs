@@ -1,0 +1,154 @@
+//! The stages as commands of their own.
+
+use anyhow::{Context, Result};
+use twintac_lab::Reality;
+use twintac_recording::Recording;
+
+use super::files::expand;
+use crate::arguments::{Align, Evaluate, Import, Record, Report, Train};
+use crate::run::{Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan};
+use crate::sensor_file::read_sensor;
+
+/// Everything after the recordings; prints the headline.
+pub(crate) fn finish(run: &Run) -> Result<()> {
+    run.mesh()?;
+    run.simulate()?;
+    run.pair()?;
+    run.train()?;
+    run.evaluate()?;
+    run.report()?;
+    print_headline(run)
+}
+
+/// `twintac record`: starts a run with presses on the emulated bench.
+pub(crate) fn record(arguments: &Record) -> Result<()> {
+    let sensor = read_sensor(&arguments.sensor)?;
+    let text = std::fs::read_to_string(&arguments.lab).with_context(|| format!("reading {}", arguments.lab.display()))?;
+    let reality = Reality::parse(&arguments.lab.display().to_string(), &text)?;
+    let plans = plan(&arguments.protocol, &sensor.sensor, arguments.seed)?;
+    let source = format!("{} presses on the emulated bench", plans.len());
+    Run::start(&arguments.out, sensor, source, arguments.seed, RunSettings::default())?.record(&reality, &plans)
+}
+
+/// `twintac import`: starts a run with a lab's files.
+pub(crate) fn import(arguments: &Import) -> Result<()> {
+    let sensor = read_sensor(&arguments.sensor)?;
+    let files = expand(&arguments.recordings)?;
+    let import = arguments.import.clone().or_else(|| sensor.import()).with_context(|| {
+        format!("{} names no import description; give one with --import", arguments.sensor.display())
+    })?;
+    let source = files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
+    Run::start(&arguments.out, sensor, source, arguments.seed, RunSettings::default())?.import(&import, &files)
+}
+
+/// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
+pub(crate) fn align(arguments: &Align) -> Result<()> {
+    let run = Run::open(&arguments.run)?;
+    run.simulate()?;
+    run.pair()
+}
+
+/// `twintac train`.
+pub(crate) fn train(arguments: &Train) -> Result<()> {
+    Run::open(&arguments.run)?.train()
+}
+
+/// `twintac evaluate`: a run's held-out presses, or a model on recordings from elsewhere.
+pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
+    if let Some(folder) = &arguments.run {
+        let run = Run::open(folder)?;
+        run.evaluate()?;
+        if arguments.json {
+            let (_, metrics) = run.evaluation()?;
+            return super::print(&serde_json::to_string_pretty(&metrics)?);
+        }
+        return print_headline(&run);
+    }
+    let model = arguments.model.as_ref().context("give a model with --model, or a run with --run")?;
+    let files = expand(&arguments.recordings)?;
+    let recording = match &arguments.import {
+        Some(import) => import_files(import, &files)?.0,
+        None => read_presses(&files)?,
+    };
+    let found = evaluate_elsewhere(model, &recording)?;
+    if arguments.json {
+        return super::print(&serde_json::to_string_pretty(&found)?);
+    }
+    super::print(&unseen(&found))
+}
+
+/// `twintac report`.
+pub(crate) fn report(arguments: &Report) -> Result<()> {
+    Run::open(&arguments.run)?.report()
+}
+
+fn read_presses(files: &[std::path::PathBuf]) -> Result<Recording> {
+    let mut recordings = files.iter().map(|file| {
+        if file.extension().is_some_and(|extension| extension == "parquet") {
+            Ok(Recording::read_parquet(file)?)
+        } else {
+            anyhow::bail!("{} is no Parquet file; say with --import how to read it", file.display())
+        }
+    });
+    let mut first = recordings.next().context("there are no recordings")??;
+    for next in recordings {
+        first.presses.extend(next?.presses);
+    }
+    Ok(first)
+}
+
+fn print_headline(run: &Run) -> Result<()> {
+    let (_, metrics) = run.evaluation()?;
+    super::print(&headline(&metrics))?;
+    super::print(&format!("report  {}", run.folder.join("report.html").display()))?;
+    super::print(&format!("model   {}", run.folder.join("model").display()))
+}
+
+fn headline(metrics: &Metrics) -> String {
+    let line = |name: &str, figures: &crate::run::Figures| {
+        format!("{name:<18} {:6.2} %  {:6.2} %", figures.nearest_in_contact_percent, figures.all_percent)
+    };
+    let mut lines = vec![
+        format!(
+            "{} ({} data), {} presses that the twin never saw, `{}`",
+            metrics.sensor, metrics.provenance, metrics.held_out_presses, metrics.variant
+        ),
+        format!("{:<18} {:>8}  {:>8}", "", "nearest", "all"),
+        line("twin", &metrics.twin.overall),
+    ];
+    lines.extend(metrics.twin.by_file.iter().map(|(file, figures)| line(&format!("  {}", shortened(file)), figures)));
+    lines.extend(metrics.twin_all_taxels.as_ref().map(|figures| line("twin, every taxel", figures)));
+    lines.extend(metrics.baselines.polynomial.as_ref().map(|figures| line("static polynomial", figures)));
+    lines.push(line("zero", &metrics.baselines.zero));
+    lines.extend(metrics.repeatability.as_ref().map(|figures| line("repeatability", figures)));
+    lines.push(metrics.definition.clone());
+    lines.join("\n")
+}
+
+fn unseen(found: &UnseenEvaluation) -> String {
+    let figures = &found.twin.overall;
+    let mut lines = vec![
+        format!("{} presses ({} data), `{}`", found.presses, found.provenance, found.variant),
+        format!("nearest in contact {:6.2} %, all {:6.2} %", figures.nearest_in_contact_percent, figures.all_percent),
+        format!(
+            "with contact heights as at training: nearest in contact {:6.2} %",
+            found.uncalibrated.nearest_in_contact_percent
+        ),
+    ];
+    for contact in &found.contact {
+        let height = &contact.contact_offset_mm;
+        let n_used = contact.used.len();
+        lines.push(format!(
+            "{}: contact {:+.3} mm ± {:.3}, from its first {n_used} presses, which are not scored",
+            contact.file, height.value, height.uncertainty
+        ));
+        lines.extend(contact.doubts.iter().cloned());
+    }
+    lines.push(found.definition.clone());
+    lines.join("\n")
+}
+
+/// A file's name, cut to fit a column.
+fn shortened(name: &str) -> String {
+    name.chars().take(15).collect()
+}

@@ -1,0 +1,65 @@
+//! Settings of every stage of a run.
+
+use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings};
+use serde::{Deserialize, Serialize};
+use twintac_recording::{Control, Recording};
+use twintac_sensor::Sensor;
+use twintac_shape::Shape;
+use twintac_simulate::SimulateSettings;
+
+/// From this many places on, presses are told apart for the split by squares of the gel, not by place: neighbours on a dense grid
+/// know too much of each other.
+const DENSE_FROM: usize = 150;
+
+/// Side of those squares, mm.
+const DENSE_BLOCK_MM: f64 = 3.0;
+
+/// What `--settings FILE` may hold; each field has a default.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct RunSettings {
+    /// How finely the gel is simulated.
+    pub(crate) simulate: SimulateSettings,
+    /// How deep places are simulated.
+    pub(crate) places: PlaceSettings,
+    /// What is fitted about the bench.
+    pub(crate) bench: BenchSettings,
+    /// Which presses are held out.
+    pub(crate) split: SplitSettings,
+    /// How clocks are aligned.
+    pub(crate) pair: PairSettings,
+    /// How twins are trained.
+    pub(crate) train: TrainSettings,
+}
+
+impl RunSettings {
+    /// The settings with all that depends on the seed, the sensor and the presses filled in.
+    pub(crate) fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
+        let mut resolved = self.clone();
+        resolved.split.seed = seed;
+        resolved.train.seed = seed;
+        resolved.bench.left_out = super::left_out(sensor);
+        if !has_unknown_tip(sensor, recording) {
+            resolved.bench.tip_radii_mm.clear();
+        }
+        if n_places >= DENSE_FROM {
+            resolved.split.block_mm = DENSE_BLOCK_MM;
+        }
+        resolved
+    }
+}
+
+/// Whether all presses were made with one ball whose radius the sensor's description only infers.
+fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
+    let Some(first) = recording.presses.first() else { return false };
+    let one = recording.presses.iter().all(|press| press.indenter == first.indenter);
+    let is_inferred = |index: usize| sensor.is_inferred(&format!("indenters[{index}].shape.radius_mm"));
+    one && sensor.indenters.iter().enumerate().any(|(index, indenter)| {
+        indenter.name == first.indenter && matches!(indenter.shape, Shape::Sphere { .. }) && is_inferred(index)
+    })
+}
+
+/// Whether the presses are static: one frame each, under a prescribed force.
+pub(crate) fn is_static(recording: &Recording) -> bool {
+    recording.presses.iter().all(|press| press.control == Control::Force && press.time_s.len() == 1)
+}

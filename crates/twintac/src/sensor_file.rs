@@ -1,0 +1,58 @@
+//! Sensor descriptions as files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use twintac_sensor::Sensor;
+
+use crate::stage::write_file;
+
+/// A sensor description with its text.
+#[derive(Clone, Debug)]
+pub(crate) struct SensorFile {
+    pub(crate) sensor: Arc<Sensor>,
+    pub(crate) text: String,
+    folder: PathBuf,
+}
+
+/// Reads a description; surfaces that it names lie relative to it.
+pub(crate) fn read_sensor(path: &Path) -> Result<SensorFile> {
+    let text = fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
+    let sensor = parse_sensor(path, &text)?;
+    Ok(SensorFile { sensor: Arc::new(sensor), text, folder: folder_of(path) })
+}
+
+/// Reads a description from its text, as if it stood in `path`.
+pub(crate) fn parse_sensor(path: &Path, text: &str) -> Result<Sensor> {
+    let folder = folder_of(path);
+    let load = |name: &str| fs::read(folder.join(name));
+    Ok(Sensor::parse(&path.display().to_string(), text, &load)?)
+}
+
+impl SensorFile {
+    /// A description that the program carries with it.
+    pub(crate) fn built_in(name: &str, text: &str) -> Result<Self> {
+        let path = Path::new(name);
+        Ok(Self { sensor: Arc::new(parse_sensor(path, text)?), text: text.to_owned(), folder: PathBuf::new() })
+    }
+
+    /// Puts the description, and the surfaces that it names, into a folder.
+    pub(crate) fn copy_to(&self, folder: &Path) -> Result<()> {
+        for name in self.sensor.surfaces.keys() {
+            let bytes = fs::read(self.folder.join(name)).with_context(|| format!("reading {name}"))?;
+            write_file(&folder.join(name), &bytes)?;
+        }
+        write_file(&folder.join("sensor.toml"), self.text.as_bytes())
+    }
+
+    /// The import description that the sensor names, if it names one.
+    pub(crate) fn import(&self) -> Option<PathBuf> {
+        self.sensor.import.as_ref().map(|path| self.folder.join(path))
+    }
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).to_owned()
+}

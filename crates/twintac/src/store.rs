@@ -1,0 +1,125 @@
+//! Simulated presses, each computed once and kept as a file.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use digitac::{SourceError, SweepRequest, SweepSource};
+use glam::DVec2;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use twintac_shape::{Pose, Shape};
+use twintac_simulate::{Gel, Lattice, PressPlace, Sweep};
+
+use crate::stage::{read_json, sha256, write_json};
+
+/// From this many different places on, a lattice of places is simulated and interpolated.
+const LATTICE_FROM: usize = 150;
+
+/// Spacing of that lattice over the gel's height.
+const LATTICE_SPACING: f64 = 0.25;
+
+/// Sweeps of one gel, kept in a folder: what is there is not computed again.
+pub(crate) struct SweepStore<'a> {
+    gel: &'a Gel,
+    folder: PathBuf,
+    progress: ProgressBar,
+}
+
+impl<'a> SweepStore<'a> {
+    /// Keeps the gel's sweeps in `folder`, which holds sweeps of no other gel.
+    pub(crate) fn new(gel: &'a Gel, folder: PathBuf, progress: ProgressBar) -> Self {
+        Self { gel, folder, progress }
+    }
+
+    fn place(&self, request: &SweepRequest) -> Result<PressPlace, SourceError> {
+        let shape = self.shape(&request.indenter)?.clone();
+        let shape = match (shape, request.tip_radius_mm) {
+            (Shape::Sphere { .. }, Some(radius_mm)) => Shape::Sphere { radius_mm },
+            (shape, _) => shape,
+        };
+        let at = request.gel_from_indenter_at_touch;
+        Ok(PressPlace {
+            indenter: request.indenter.clone(),
+            shape,
+            x_mm: at.position_mm.x,
+            y_mm: at.position_mm.y,
+            rotation: at.rotation,
+            depth_mm: request.max_depth_mm,
+        })
+    }
+
+    fn shape(&self, indenter: &str) -> Result<&Shape, SourceError> {
+        let found = self.gel.sensor().indenters.iter().find(|candidate| candidate.name == indenter);
+        Ok(&found.ok_or_else(|| format!("the sensor's description has no indenter `{indenter}`"))?.shape)
+    }
+
+    /// The sweeps at places, from their files or computed now, in order.
+    fn compute(&self, places: &[PressPlace]) -> Result<Vec<Sweep>, SourceError> {
+        self.progress.inc_length(places.len() as u64);
+        places
+            .par_iter()
+            .with_max_len(1)
+            .map(|place| {
+                let path = self.path(place)?;
+                let sweep = match read_json(&path) {
+                    Ok(sweep) => sweep,
+                    Err(_) => {
+                        let sweep = self.gel.sweep(place)?;
+                        write_json(&path, &sweep)?;
+                        sweep
+                    }
+                };
+                self.progress.inc(1);
+                Ok(sweep)
+            })
+            .collect()
+    }
+
+    fn path(&self, place: &PressPlace) -> Result<PathBuf, SourceError> {
+        let hash = sha256(&serde_json::to_vec(place)?);
+        let name = format!("{}_x{:+.2}_y{:+.2}_{}.json", place.indenter, place.x_mm, place.y_mm, &hash[..12]);
+        Ok(self.folder.join(name))
+    }
+}
+
+impl SweepSource for SweepStore<'_> {
+    fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
+        Ok(self.gel.touch(self.shape(indenter)?, above)?)
+    }
+
+    fn sweeps(&self, requests: &[SweepRequest]) -> Result<Vec<Sweep>, SourceError> {
+        let places = requests.iter().map(|request| self.place(request)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(lattice) = lattice(self.gel, &places) {
+            let nodes: Vec<PressPlace> = lattice
+                .places_mm()
+                .into_iter()
+                .map(|at| PressPlace { x_mm: at.x, y_mm: at.y, ..places[0].clone() })
+                .collect();
+            let sweeps = self.compute(&nodes)?;
+            return Ok(places.iter().map(|p| lattice.at(&sweeps, DVec2::new(p.x_mm, p.y_mm))).collect());
+        }
+        let mut distinct: Vec<PressPlace> = Vec::new();
+        let mut index_of = BTreeMap::new();
+        let mut indices = Vec::with_capacity(places.len());
+        for place in places {
+            let key = self.path(&place)?;
+            indices.push(*index_of.entry(key).or_insert_with(|| {
+                distinct.push(place);
+                distinct.len() - 1
+            }));
+        }
+        let sweeps = self.compute(&distinct)?;
+        Ok(indices.into_iter().map(|index| sweeps[index].clone()).collect())
+    }
+}
+
+/// A lattice over the places, if they are many and differ in nothing but where they are.
+fn lattice(gel: &Gel, places: &[PressPlace]) -> Option<Lattice> {
+    let first = places.first()?;
+    let alike = |place: &PressPlace| PressPlace { x_mm: first.x_mm, y_mm: first.y_mm, ..place.clone() } == *first;
+    let low = places.iter().map(|p| DVec2::new(p.x_mm, p.y_mm)).reduce(DVec2::min)?;
+    let high = places.iter().map(|p| DVec2::new(p.x_mm, p.y_mm)).reduce(DVec2::max)?;
+    let lattice = Lattice::covering(low, high, LATTICE_SPACING * gel.height_mm());
+    let pays = places.len() >= LATTICE_FROM && lattice.places_mm().len() < places.len();
+    (pays && places.iter().all(alike)).then_some(lattice)
+}
