@@ -190,3 +190,33 @@ fn solve_symmetric(mut l: Vec<f64>, mut x: Vec<f64>) -> Vec<f64> {
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::by_hand;
+
+    #[test]
+    fn a_polynomial_is_recovered_between_its_places() {
+        let press = |x: f64| {
+            let value = |d: f64| (1.0 + 0.3 * x - 0.1 * x * x) * d * d;
+            let frames: Vec<(f64, [f64; 2])> = (-2..12)
+                .map(|i| 0.2 * f64::from(i))
+                .map(|d| (d, [value(d.max(0.0)), -d.max(0.0)]))
+                .collect();
+            by_hand("", "file", [x, 0.0], &frames)
+        };
+        let presses: Vec<PairedPress> = (0..12).map(|i| press(0.5 * f64::from(i))).collect();
+        let fit = StaticPolynomial::fit(&presses.iter().collect::<Vec<_>>());
+        let unseen = press(2.2);
+        for (predicted, measured) in fit.predict(&unseen).iter().zip(&unseen.readings_kpa) {
+            assert!(
+                predicted.iter().zip(measured).all(|(p, m)| (p - m).abs() < 0.02),
+                "{predicted:?} {measured:?}"
+            );
+        }
+        let mut other = unseen.clone();
+        other.indenter = "cube".into();
+        assert_eq!(fit.predict(&other), zero(&other));
+    }
+}

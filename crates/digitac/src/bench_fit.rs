@@ -2,19 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use twintac_recording::{Control, Press, Recording};
+use twintac_recording::{Control, Recording};
 
-use crate::gains::Sample;
+use crate::bench_problem::{Guess, Problem, exactly};
 use crate::golden::minimize;
-use crate::paired::tables;
-use crate::source::request;
-use crate::table::SweepTable;
-use crate::{Bench, BenchSettings, DigitacError, Estimate, Features, Gains, Places, SweepSource};
+use crate::{Bench, BenchSettings, DigitacError, Estimate, Places, SweepSource};
 
-/// Frames of a press that the fit looks at.
-const MAX_FRAMES: usize = 96;
-/// Knots of tables between two radii.
-const KNOTS: usize = 40;
 /// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
 const TOLERANCE: f64 = 2e-3;
 /// Reach around the best values in fits that leave a block out, in the same units.
@@ -102,14 +95,6 @@ fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usi
         .collect()
 }
 
-/// Values of all unknowns.
-#[derive(Clone, Debug)]
-struct Guess {
-    ln_radius: f64,
-    offsets_mm: BTreeMap<String, f64>,
-    ln_stiffness: f64,
-}
-
 /// Where to look for them.
 #[derive(Clone, Debug)]
 struct Bounds {
@@ -119,78 +104,7 @@ struct Bounds {
     ln_stiffness: [f64; 2],
 }
 
-struct Thinned {
-    press: Press,
-    place: usize,
-    touch_z_mm: f64,
-}
-
-struct Problem<'a> {
-    presses: Vec<Thinned>,
-    /// `[n_radii][n_places]`; a single row if the indenter is as described.
-    tables: Vec<Vec<SweepTable>>,
-    ln_radii: Vec<f64>,
-    settings: &'a BenchSettings,
-}
-
-impl<'a> Problem<'a> {
-    fn new(
-        recording: &Recording,
-        places: &Places,
-        chosen: &[usize],
-        source: &dyn SweepSource,
-        settings: &'a BenchSettings,
-    ) -> Result<Self, DigitacError> {
-        let used: Vec<usize> = chosen
-            .iter()
-            .map(|&p| places.of_press[p])
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .collect();
-        let here = Places {
-            requests: used.iter().map(|&i| places.requests[i].clone()).collect(),
-            of_press: Vec::new(),
-        };
-        let radii: Vec<Option<f64>> = match &settings.tip_radii_mm[..] {
-            [] => vec![None],
-            radii => radii.iter().copied().map(Some).collect(),
-        };
-        // All radii in one request: the source may work on them side by side.
-        let requests: Vec<_> = radii
-            .iter()
-            .flat_map(|&radius| here.clone().with_tip_radius(radius).requests)
-            .collect();
-        let sweeps = request(source, &requests)?;
-        let tables = sweeps
-            .chunks(used.len())
-            .map(|sweeps| tables(&here, sweeps, recording.taxels.len()))
-            .collect::<Result<_, _>>()?;
-        let presses = chosen.iter().map(|&index| {
-            let place = places.of_press[index];
-            Thinned {
-                press: thin(&recording.presses[index]),
-                place: used.partition_point(|&other| other < place),
-                touch_z_mm: places.requests[place].gel_from_indenter_at_touch.position_mm.z,
-            }
-        });
-        let ln_radii = settings.tip_radii_mm.iter().map(|radius| radius.ln()).collect();
-        Ok(Self {
-            presses: presses.collect(),
-            tables,
-            ln_radii,
-            settings,
-        })
-    }
-
-    fn n_places(&self) -> usize {
-        self.tables[0].len()
-    }
-
-    fn n_blocks(&self) -> usize {
-        let n = self.settings.n_blocks.min(self.n_places());
-        if n < 2 { 0 } else { n }
-    }
-
+impl Problem<'_> {
     fn start(&self) -> Bounds {
         let files = self
             .presses
@@ -319,83 +233,11 @@ impl<'a> Problem<'a> {
         Ok((guess, value))
     }
 
-    /// The gains that fit best, and the mean over taxels of the mean absolute deviation, kPa.
-    fn deviation(
-        &self,
-        tables: &[SweepTable],
-        guess: &Guess,
-        without_block: Option<usize>,
-    ) -> Result<(Gains, f64), DigitacError> {
-        let bench = Bench {
-            contact_offset_mm: guess
-                .offsets_mm
-                .iter()
-                .map(|(file, mm)| (file.clone(), exactly(*mm)))
-                .collect(),
-            stiffness: Some(exactly(guess.ln_stiffness.exp())),
-            ..Bench::nominal()
-        };
-        let kept: Vec<&Thinned> = self
-            .presses
-            .iter()
-            .filter(|p| without_block.is_none_or(|block| p.place % self.n_blocks() != block))
-            .collect();
-        let features: Vec<Features> = kept
-            .iter()
-            .map(|p| Features::along(&tables[p.place], &p.press, p.touch_z_mm, &bench))
-            .collect::<Result<_, _>>()?;
-        let samples: Vec<Sample<'_>> = kept
-            .iter()
-            .zip(&features)
-            .map(|(p, features)| Sample {
-                features,
-                readings_kpa: &p.press.taxels_kpa,
-                valid: &p.press.valid,
-            })
-            .collect();
-        let memory = if features.iter().any(|f| f.n_frames() > 1) {
-            &self.settings.time_constants_s[..]
-        } else {
-            &[]
-        };
-        let (gains, deviations_kpa) = Gains::fit(&samples, memory);
-        let counted: Vec<f64> = deviations_kpa
-            .iter()
-            .enumerate()
-            .filter(|(taxel, _)| !self.settings.left_out.contains(taxel))
-            .map(|(_, deviation)| *deviation)
-            .collect();
-        let mean = counted.iter().sum::<f64>() / counted.len().max(1) as f64;
-        Ok((gains, mean))
-    }
-
-    /// Tables of a radius between those simulated, by the polynomial in ln radius through all of them.
-    fn tables_at(&self, ln_radius: f64) -> Result<Vec<SweepTable>, DigitacError> {
-        if self.ln_radii.len() < 2 {
-            return Ok(self.tables[0].clone());
-        }
-        let weights: Vec<f64> = (0..self.ln_radii.len())
-            .map(|i| {
-                let others = self.ln_radii.iter().enumerate().filter(|(j, _)| *j != i);
-                others
-                    .map(|(_, other)| (ln_radius - other) / (self.ln_radii[i] - other))
-                    .product()
-            })
-            .collect();
-        (0..self.n_places())
-            .map(|place| {
-                let tables: Vec<&SweepTable> = self.tables.iter().map(|row| &row[place]).collect();
-                SweepTable::blend(&tables, &weights, KNOTS).ok_or_else(|| DigitacError::WrongSweep {
-                    index: place,
-                    expected: "tables that can be interpolated between radii".into(),
-                    found: "a table of no depth".into(),
-                })
-            })
-            .collect()
-    }
-
     fn bench(&self, best: &Guess, without: &[Guess]) -> Result<Bench, DigitacError> {
-        let (gains, deviation_kpa) = self.deviation(&self.tables_at(best.ln_radius)?, best, None)?;
+        let tables = self.tables_at(best.ln_radius)?;
+        let (gains, deviation_kpa) = self.deviation(&tables, best, None)?;
+        let mut doubts = doubts(best, &self.start());
+        doubts.extend(self.odd_presses(&tables, best, &gains)?);
         let readings = self
             .presses
             .iter()
@@ -427,15 +269,8 @@ impl<'a> Problem<'a> {
             } else {
                 0.0
             },
-            doubts: doubts(best, &start),
+            doubts,
         })
-    }
-}
-
-fn exactly(value: f64) -> Estimate {
-    Estimate {
-        value,
-        uncertainty: 0.0,
     }
 }
 
@@ -465,22 +300,5 @@ fn median(mut values: Vec<f64>) -> f64 {
         0.0
     } else {
         0.5 * (values[(n - 1) / 2] + values[n / 2])
-    }
-}
-
-/// A press with at most [`MAX_FRAMES`] frames.
-fn thin(press: &Press) -> Press {
-    let stride = press.time_s.len().div_ceil(MAX_FRAMES).max(1);
-    fn every<T: Clone>(values: &[T], stride: usize) -> Vec<T> {
-        values.iter().step_by(stride).cloned().collect()
-    }
-    Press {
-        time_s: every(&press.time_s, stride),
-        gel_from_indenter: every(&press.gel_from_indenter, stride),
-        force_n: press.force_n.as_ref().map(|force_n| every(force_n, stride)),
-        taxels_kpa: every(&press.taxels_kpa, stride),
-        taxels_raw: Vec::new(),
-        valid: every(&press.valid, stride),
-        ..press.clone()
     }
 }

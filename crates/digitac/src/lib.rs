@@ -8,6 +8,7 @@ pub mod baseline;
 mod batch;
 mod bench;
 mod bench_fit;
+mod bench_problem;
 mod dtw;
 mod error;
 mod estimate;

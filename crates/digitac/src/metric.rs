@@ -216,3 +216,63 @@ impl Sums {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::by_hand;
+
+    fn near(mean: Mean, percent: f64, count: usize) -> bool {
+        (mean.percent - percent).abs() < 1e-9 && mean.count == count
+    }
+
+    #[test]
+    fn the_headline_takes_the_nearest_taxel_in_contact_only() {
+        // Above the gel; touching, but below 3 %; and twice in contact, nearest to one taxel and to the other.
+        let frames = [
+            (-1.0, [9.0, 0.0]),
+            (0.1, [2.9, 0.0]),
+            (1.0, [50.0, 20.0]),
+            (2.0, [30.0, 100.0]),
+        ];
+        let press = by_hand("a", "file", [0.0, 0.0], &frames);
+        let scale = Scale::of([&press], BTreeSet::new());
+        assert_eq!(scale.largest_kpa["file"], 100.0);
+        let prediction = vec![vec![9.0, 8.0], vec![2.9, 0.0], vec![53.0, 20.0], vec![30.0, 95.0]];
+        let score = score([&press], &[prediction], &scale);
+        assert!(near(score.overall.nearest_in_contact, 4.0, 2), "{score:?}");
+        assert!(near(score.overall.all, 2.0, 8), "{score:?}");
+        assert!(near(score.overall.peak, 5.0, 1), "{score:?}");
+        assert!(near(score.by_taxel[0].nearest_in_contact, 3.0, 1), "{score:?}");
+        assert!(near(score.by_taxel[1].all, 13.0 / 4.0, 4), "{score:?}");
+    }
+
+    #[test]
+    fn unusable_readings_and_taxels_left_out_do_not_count() {
+        let mut press = by_hand(
+            "a",
+            "file",
+            [0.0, 0.0],
+            &[(1.0, [80.0, 10.0]), (1.0, [10.0, 40.0]), (1.0, [0.0, 900.0])],
+        );
+        press.valid[2][1] = false;
+        let scale = Scale::of([&press], BTreeSet::from([0]));
+        assert_eq!(scale.largest_kpa["file"], 40.0);
+        let score = score(
+            [&press],
+            &[vec![vec![0.0, 10.0], vec![10.0, 38.0], vec![0.0, 0.0]]],
+            &scale,
+        );
+        assert!(near(score.overall.nearest_in_contact, 5.0, 1), "{score:?}");
+        assert!(near(score.overall.all, 2.5, 2), "{score:?}");
+        assert!(near(score.by_taxel[0].nearest_in_contact, 200.0, 1), "{score:?}");
+    }
+
+    #[test]
+    fn a_file_without_readings_is_no_division_by_zero() {
+        let press = by_hand("a", "file", [0.0, 0.0], &[(1.0, [0.0, -1.0])]);
+        let scale = Scale::of([&press], BTreeSet::new());
+        let score = score([&press], &[vec![vec![1.0, 1.0]]], &scale);
+        assert!(near(score.overall.all, 0.0, 0), "{score:?}");
+    }
+}

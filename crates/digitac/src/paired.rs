@@ -67,6 +67,15 @@ impl Features {
         touch_z_mm: f64,
         bench: &Bench,
     ) -> Result<Self, DigitacError> {
+        let n_frames = press.time_s.len();
+        let n_forces = press.force_n.as_ref().map_or(n_frames, Vec::len);
+        if press.gel_from_indenter.len() != n_frames || n_forces != n_frames {
+            let problem = format!(
+                "has {n_frames} time stamps, {} poses and {n_forces} forces",
+                press.gel_from_indenter.len()
+            );
+            return Err(DigitacError::press(&press.name, problem));
+        }
         let stiffness = match press.control {
             Control::Pose => 1.0,
             Control::Force => bench.stiffness(),

@@ -7,28 +7,16 @@ use crate::*;
 
 struct Made {
     recording: twintac_recording::Recording,
-    places: Places,
-    sweeps: Vec<twintac_simulate::Sweep>,
     bench: Bench,
     presses: Vec<PairedPress>,
     split: Split,
     scale: Scale,
 }
 
-/// The numbers of the split do not depend on the bench, so it is drawn first and the bench sees training presses only.
 fn make(truth: &Truth, n_places: usize) -> Made {
     let recording = truth.recording(n_places);
     let places = Places::of(&recording, &Formula, &PlaceSettings::default()).unwrap();
-    let sweeps = Formula.sweeps(&places.requests).unwrap();
-    let first = pair(
-        &recording,
-        &places,
-        &sweeps,
-        &Bench::nominal(),
-        &PairSettings::default(),
-    )
-    .unwrap();
-    let split = Split::new(&first, &SplitSettings::default()).unwrap();
+    let split = Split::new(&recording, &SplitSettings::default()).unwrap();
     let bench = fit_bench(
         &recording,
         &places,
@@ -44,8 +32,6 @@ fn make(truth: &Truth, n_places: usize) -> Made {
     let scale = Scale::of(&presses, BTreeSet::new());
     Made {
         recording,
-        places,
-        sweeps,
         bench,
         presses,
         split,
@@ -297,4 +283,44 @@ fn a_model_survives_its_folder_and_notices_damage() {
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("\"version\": 1", "\"version\": 7")).unwrap();
     assert!(message(&folder).contains("version 7"), "{}", message(&folder));
+}
+
+#[test]
+fn a_twin_can_be_shared_between_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Twin>();
+    shared::<Model>();
+}
+
+#[test]
+#[ignore = "trains every variant in full: about a minute"]
+fn every_variant_trains_within_its_budget() {
+    let started = std::time::Instant::now();
+    let made = make(&Truth::new(), 30);
+    println!(
+        "bench: {:.1} s, {:?}",
+        started.elapsed().as_secs_f64(),
+        made.bench
+    );
+    let started = std::time::Instant::now();
+    let test: Vec<&PairedPress> = made
+        .split
+        .test
+        .iter()
+        .map(|&index| &made.presses[index])
+        .collect();
+    let trained = train_quietly(&made, &TrainSettings::default());
+    let seconds = started.elapsed().as_secs_f64();
+    for t in &trained {
+        let evaluation = evaluate(&t.twin, &test, &made.scale, None);
+        let headline = |score: &Score| score.overall.nearest_in_contact.percent;
+        let (validation, test) = (headline(&t.validation), headline(&evaluation.twin));
+        println!(
+            "{}: {} epochs, {validation:.2} % validation, {test:.2} % test",
+            t.twin.variant(),
+            t.history.len()
+        );
+    }
+    println!("{} training presses: {seconds:.1} s", made.split.train.len());
+    assert!(seconds < 90.0, "{seconds} s");
 }

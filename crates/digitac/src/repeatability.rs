@@ -116,3 +116,45 @@ fn index_at(time_s: &[f64], at_s: f64) -> Option<f64> {
     let (low, high) = (time_s[after - 1], time_s[after]);
     Some((after - 1) as f64 + (at_s - low) / (high - low))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::synthetic::by_hand;
+
+    /// Down at 1 mm/s from 0.5 mm above, then a hold; readings proportional to the depth.
+    fn press(place_mm: f64, deepest_mm: f64, late_s: f64, gain: f64) -> PairedPress {
+        let depth = |i: i32| (0.1 * f64::from(i) - late_s - 0.5).min(deepest_mm);
+        let frames: Vec<(f64, [f64; 2])> = (0..60)
+            .map(|i| (depth(i), [gain * depth(i).max(0.0), 0.0]))
+            .collect();
+        by_hand("", "file", [place_mm, 0.0], &frames)
+    }
+
+    #[test]
+    fn the_same_press_is_compared_whatever_its_delay_and_only_while_it_is_the_same() {
+        let presses = [
+            press(0.0, 2.0, 0.0, 10.0),
+            press(0.01, 3.0, 0.07, 10.2),
+            press(1.0, 2.0, 0.0, 15.0),
+        ];
+        let scale = Scale::of(&presses[..1], BTreeSet::new());
+        let found = repeatability(&presses, &scale).unwrap();
+        assert_eq!(found.n_pairs, 1);
+        // Two percent of the reading, which itself grows up to the largest.
+        let percent = found.errors.nearest_in_contact.percent;
+        assert!((0.8..1.3).contains(&percent), "{found:?}");
+        assert!(
+            (19..=21).contains(&found.errors.nearest_in_contact.count),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn nothing_repeats_nothing() {
+        let presses = [press(0.0, 2.0, 0.0, 10.0), press(1.0, 2.0, 0.0, 10.0)];
+        assert!(repeatability(&presses, &Scale::of(&presses, BTreeSet::new())).is_none());
+    }
+}

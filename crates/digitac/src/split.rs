@@ -10,7 +10,10 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use crate::{DigitacError, PairedPress, seed};
+use twintac_recording::{Press, Recording};
+
+use crate::places::deepest_pose;
+use crate::{DigitacError, seed};
 
 /// How presses are divided.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,8 +57,9 @@ pub struct Split {
 type Place<'a> = (&'a str, i64, i64);
 
 impl Split {
-    /// Divides presses by place.
-    pub fn new(presses: &[PairedPress], settings: &SplitSettings) -> Result<Self, DigitacError> {
+    /// Divides the presses of a recording by place.
+    pub fn new(recording: &Recording, settings: &SplitSettings) -> Result<Self, DigitacError> {
+        let presses = &recording.presses;
         if settings.test_one_in < 2 || settings.validation_one_in < 2 {
             return Err(DigitacError::Setting {
                 setting: "test_one_in, validation_one_in",
@@ -74,7 +78,7 @@ impl Split {
                 split.test.push(index);
             } else {
                 groups
-                    .entry(place(press, settings.block_mm))
+                    .entry(place(press, settings.block_mm)?)
                     .or_default()
                     .push(index);
             }
@@ -112,9 +116,13 @@ impl Split {
     }
 }
 
-fn place(press: &PairedPress, block_mm: f64) -> Place<'_> {
-    let [x, y] = press.place_mm.map(|mm| (mm / block_mm).round() as i64);
-    (&press.indenter, y, x)
+fn place(press: &Press, block_mm: f64) -> Result<Place<'_>, DigitacError> {
+    let [x, y] = deepest_pose(press)?
+        .position_mm
+        .truncate()
+        .to_array()
+        .map(|mm| (mm / block_mm).round() as i64);
+    Ok((&press.indenter, y, x))
 }
 
 /// Places with the smallest or largest x or y of their indenter, along axes on which it was moved.
@@ -170,4 +178,77 @@ pub(crate) fn batches(indices: &[usize], size: usize, seed_number: u64) -> Vec<V
     let count = shuffled.len().div_ceil(size.max(1)).max(1);
     let size = shuffled.len().div_ceil(count).max(1);
     shuffled.chunks(size).map(<[usize]>::to_vec).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Truth;
+    use proptest::prelude::*;
+
+    fn line(n_places: usize, repeats: usize) -> Recording {
+        let mut recording = Truth {
+            offsets_mm: vec![0.0; repeats],
+            ..Truth::new()
+        }
+        .recording(n_places);
+        recording
+            .presses
+            .iter_mut()
+            .for_each(|press| press.file = "file".into());
+        recording
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn every_press_is_somewhere_and_repeats_stay_together(n_places in 7_usize..60, repeats in 1_usize..4, seed in 0_u64..99) {
+            let recording = line(n_places, repeats);
+            let split = Split::new(&recording, &SplitSettings { seed, ..SplitSettings::default() }).unwrap();
+            let mut all = [&split.train[..], &split.validation, &split.test].concat();
+            all.sort_unstable();
+            prop_assert_eq!(all, (0..recording.presses.len()).collect::<Vec<_>>());
+            let places = |part: &[usize]| part.iter().map(|i| i % n_places).collect::<BTreeSet<_>>();
+            let (train, validation, test) = (places(&split.train), places(&split.validation), places(&split.test));
+            prop_assert!(train.is_disjoint(&test) && train.is_disjoint(&validation) && validation.is_disjoint(&test));
+            prop_assert!(train.contains(&0) && train.contains(&(n_places - 1)));
+            prop_assert!(test.len() * 6 >= n_places - 2 && test.len() * 3 <= n_places + 2);
+        }
+    }
+
+    #[test]
+    fn files_can_be_held_out_as_a_whole() {
+        let mut recording = line(12, 2);
+        recording.presses[12..]
+            .iter_mut()
+            .for_each(|press| press.file = "other".into());
+        let test_files = BTreeSet::from(["other".to_owned()]);
+        let split = Split::new(
+            &recording,
+            &SplitSettings {
+                test_files,
+                ..SplitSettings::default()
+            },
+        )
+        .unwrap();
+        assert_eq!(split.test, (12..24).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn too_few_places_are_an_error() {
+        assert!(Split::new(&line(3, 5), &SplitSettings::default()).is_err());
+        assert!(Split::new(&line(3, 0), &SplitSettings::default()).is_err());
+    }
+
+    #[test]
+    fn batches_hold_every_index_once() {
+        let batches = batches(&(10..45).collect::<Vec<_>>(), 8, 3);
+        assert!(
+            batches.iter().all(|batch| (5..=8).contains(&batch.len())),
+            "{batches:?}"
+        );
+        let mut all = batches.concat();
+        all.sort_unstable();
+        assert_eq!(all, (10..45).collect::<Vec<_>>());
+    }
 }

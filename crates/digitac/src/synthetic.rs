@@ -180,3 +180,31 @@ impl Truth {
         }
     }
 }
+
+/// A press of two taxels by hand; frames are (depth, readings).
+pub(crate) fn by_hand(
+    name: &str,
+    file: &str,
+    place_mm: [f64; 2],
+    frames: &[(f64, [f64; 2])],
+) -> crate::PairedPress {
+    let n_frames = frames.len();
+    crate::PairedPress {
+        name: name.into(),
+        file: file.into(),
+        indenter: "tip".into(),
+        place_mm,
+        features: Features {
+            time_s: (0..n_frames).map(|i| 0.1 * i as f64).collect(),
+            depth_mm: frames.iter().map(|f| f.0).collect(),
+            force_n: vec![0.0; n_frames],
+            pressure_kpa: vec![vec![0.0; 2]; n_frames],
+            stress_kpa_per_mm: vec![vec![0.0; 2]; n_frames],
+            simulated: vec![true; n_frames],
+        },
+        measured_force_n: None,
+        readings_kpa: frames.iter().map(|f| f.1.to_vec()).collect(),
+        valid: vec![vec![true; 2]; n_frames],
+        warp: crate::Warp::identity(n_frames),
+    }
+}

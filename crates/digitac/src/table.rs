@@ -160,3 +160,56 @@ struct Knot {
     force_n: f64,
     features: Vec<f64>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SweepSource;
+    use crate::synthetic::Formula;
+
+    fn sweep() -> Sweep {
+        let touch = twintac_shape::Pose::from_position(glam::DVec3::new(1.0, 0.0, 6.0));
+        let request = crate::SweepRequest {
+            indenter: "tip".into(),
+            gel_from_indenter_at_touch: touch,
+            max_depth_mm: 2.0,
+            tip_radius_mm: None,
+        };
+        Formula.sweeps(&[request]).unwrap().remove(0)
+    }
+
+    #[test]
+    fn depth_and_force_agree_and_nothing_is_felt_above_the_gel() {
+        let table = SweepTable::new(0, &sweep(), 4).unwrap();
+        for depth_mm in [0.1, 0.77, 1.9] {
+            let (force_n, pressure, _) =
+                Formula::at(glam::DVec3::X, depth_mm, crate::synthetic::DESCRIBED_RADIUS_MM);
+            assert!((table.force_n(depth_mm) / force_n - 1.0).abs() < 0.01);
+            assert!((table.depth_mm(force_n) - depth_mm).abs() < 0.01);
+            assert!((table.pressure_kpa(depth_mm)[1] / pressure[1] - 1.0).abs() < 0.01);
+        }
+        assert_eq!(table.pressure_kpa(-0.3), [0.0; 4]);
+        assert_eq!(table.force_n(0.0), 0.0);
+    }
+
+    #[test]
+    fn a_table_ends_where_the_solver_gave_up() {
+        let mut sweep = sweep();
+        sweep.frames[9].honesty.converged = false;
+        let table = SweepTable::new(0, &sweep, 4).unwrap();
+        assert_eq!(table.max_depth_mm(), sweep.frames[8].depth_mm);
+        sweep.frames[1].honesty.converged = false;
+        sweep.failure = Some("at 0.1 mm: no".into());
+        assert!(
+            SweepTable::new(3, &sweep, 4)
+                .unwrap_err()
+                .to_string()
+                .contains("at 0.1 mm")
+        );
+    }
+
+    #[test]
+    fn another_number_of_taxels_is_refused() {
+        assert!(SweepTable::new(0, &sweep(), 8).is_err());
+    }
+}

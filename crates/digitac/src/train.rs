@@ -163,7 +163,8 @@ pub fn train(
             };
             let (network, history) = train_variant(&physics, &parts, settings, progress)?;
             let hidden = hidden(variant, settings).to_vec();
-            let twin = Twin::new(taxels.to_vec(), physics, hidden, network);
+            let twin = Twin::with_weights(taxels.to_vec(), physics, hidden, network.weights())
+                .map_err(|problem| DigitacError::model(variant.name().as_ref(), problem))?;
             let predictions: Vec<_> = parts
                 .validation
                 .iter()

@@ -15,21 +15,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    pub(crate) fn new(taxels: Vec<String>, physics: Physics, hidden: Vec<usize>, network: Network) -> Self {
-        let weights = network.weights();
-        // Weights travel through plain numbers so that a twin predicts the same bits before and after it was saved.
-        let network = Network::with_weights(&physics, &hidden, &weights).unwrap_or(network);
-        let gains = network.gains(&physics);
-        Self {
-            taxels,
-            physics,
-            hidden,
-            weights,
-            network,
-            gains,
-        }
-    }
-
+    /// Weights travel as plain numbers, so that a twin predicts the same bits before and after it was saved.
     pub(crate) fn with_weights(
         taxels: Vec<String>,
         physics: Physics,
