@@ -12,7 +12,7 @@ use crate::{Bench, DigitacError, Places, Warp, WarpSettings};
 const BEYOND: f64 = 1e-6;
 
 /// The simulated gel along a press. All vectors have the same length, `n_frames`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// Time stamps, s.
     pub time_s: Vec<f64>,
@@ -29,7 +29,7 @@ pub struct Features {
 }
 
 /// A press, measured and simulated, on one clock.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairedPress {
     /// Name of the press in its recording.
     pub name: String,

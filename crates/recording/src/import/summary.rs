@@ -1,14 +1,14 @@
 //! What an import found and left out.
 
 /// What an import found and left out, file by file.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct ImportSummary {
     /// One for each file, in the order of their paths.
     pub files: Vec<FileSummary>,
 }
 
 /// What the import found in one file and left out of it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct FileSummary {
     /// Name of the file, without folders.
     pub file: String,

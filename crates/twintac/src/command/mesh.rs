@@ -55,7 +55,7 @@ pub(crate) fn write_mesh(folder: &Path, sensor: &Sensor, mesh: &TetMesh) -> Resu
 }
 
 fn quality(sensor: &Sensor, mesh: &TetMesh) -> Result<Quality> {
-    let volume_mm3 = gel_volume_mm3(&sensor.gel.solid, &sensor.surfaces, &inclusions(sensor))?;
+    let volume_mm3 = gel_volume_mm3(&sensor.gel.solid, &sensor.surfaces, &inclusions(sensor));
     Ok(Quality::of(mesh, Some(volume_mm3)))
 }
 

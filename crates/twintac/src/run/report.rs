@@ -114,7 +114,7 @@ pub(crate) fn warp_plot(warps: &[WarpPath]) -> Scene {
     let series = warps.iter().map(|warp| Series {
         name: String::new(),
         points: warp.time_s.iter().zip(&warp.shift_s).map(|(time_s, shift_s)| [time_s - warp.time_s[0], *shift_s]).collect(),
-        ink: Ink::Palette(0),
+        ink: Ink::Series(0),
         width_px: 0.8,
         dashed: false,
     });

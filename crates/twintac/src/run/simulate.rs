@@ -52,7 +52,7 @@ impl Run {
             let store = SweepStore::new(&gel, folder.join("sweeps"), bar.clone());
             let places = Places::of(&recording, &store, &self.record.settings.places)?;
             let settings = self.resolved(&recording, &places);
-            let split = Split::new(&recording, &places, &settings.split)?;
+            let split = Split::new(&recording, &settings.split)?;
             let bench = fit_bench(&recording, &places, &split.train, &store, &settings.bench)?;
             let places = places.with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value));
             let sweeps = store.sweeps(&places.requests).map_err(anyhow::Error::from_boxed)?;
