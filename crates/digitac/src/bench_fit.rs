@@ -10,6 +10,8 @@ use crate::{Bench, BenchSettings, DigitacError, Estimate, Places, SweepSource};
 
 /// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
 const TOLERANCE: f64 = 2e-3;
+/// Rounds over the contact heights.
+const MAX_ROUNDS: usize = 8;
 /// Reach around the best values in fits that leave a block out, in the same units.
 const JACKKNIFE_REACH: f64 = 0.2;
 
@@ -195,39 +197,8 @@ impl Problem<'_> {
             };
             guess.ln_stiffness = minimize(low, high, TOLERANCE, at).0;
         }
-        let limit_mm = bounds.offset_mm;
-        if limit_mm > 0.0 && !guess.offsets_mm.is_empty() {
-            // First all files together, then each on its own.
-            let at = |offset_mm| {
-                let offsets_mm = guess
-                    .offsets_mm
-                    .keys()
-                    .map(|file| (file.clone(), offset_mm))
-                    .collect();
-                deviation(&Guess {
-                    offsets_mm,
-                    ..guess.clone()
-                })
-            };
-            let together_mm = minimize(-limit_mm, limit_mm, TOLERANCE, at).0;
-            guess
-                .offsets_mm
-                .values_mut()
-                .for_each(|offset| *offset = together_mm);
-            for _ in 0..2 * usize::from(guess.offsets_mm.len() > 1) {
-                for file in guess.offsets_mm.keys().cloned().collect::<Vec<_>>() {
-                    let here = guess.offsets_mm[&file];
-                    let reach = 0.5 * limit_mm;
-                    let (low, high) = ((here - reach).max(-limit_mm), (here + reach).min(limit_mm));
-                    let mut trial = guess.clone();
-                    let at = |offset_mm| {
-                        trial.offsets_mm.insert(file.clone(), offset_mm);
-                        deviation(&trial)
-                    };
-                    let offset_mm = minimize(low, high, TOLERANCE, at).0;
-                    guess.offsets_mm.insert(file, offset_mm);
-                }
-            }
+        if bounds.offset_mm > 0.0 && !guess.offsets_mm.is_empty() {
+            improve_offsets(&mut guess, bounds.offset_mm, deviation);
         }
         let (_, value) = self.deviation(&tables, &guess, without_block)?;
         Ok((guess, value))
@@ -271,6 +242,43 @@ impl Problem<'_> {
             },
             doubts,
         })
+    }
+}
+
+/// Searches the contact heights: of all files together, then of each on its own, until none moves. One file's height pulls at the gains,
+/// and so at the others' heights.
+fn improve_offsets(guess: &mut Guess, limit_mm: f64, deviation: impl Fn(&Guess) -> f64) {
+    let files: Vec<String> = guess.offsets_mm.keys().cloned().collect();
+    let mut groups = vec![files.clone()];
+    if files.len() > 1 {
+        groups.extend(files.into_iter().map(|file| vec![file]));
+    }
+    let mut reach_mm = limit_mm;
+    for _ in 0..MAX_ROUNDS {
+        let mut moved_mm: f64 = 0.0;
+        for group in &groups {
+            let moved_by = |shift_mm: f64| {
+                let mut moved = guess.clone();
+                for file in group {
+                    moved
+                        .offsets_mm
+                        .entry(file.clone())
+                        .and_modify(|mm| *mm = (*mm + shift_mm).clamp(-limit_mm, limit_mm));
+                }
+                moved
+            };
+            let (shift_mm, value) = minimize(-reach_mm, reach_mm, TOLERANCE, |shift_mm| {
+                deviation(&moved_by(shift_mm))
+            });
+            if value < deviation(guess) {
+                *guess = moved_by(shift_mm);
+                moved_mm = moved_mm.max(shift_mm.abs());
+            }
+        }
+        if moved_mm < TOLERANCE {
+            break;
+        }
+        reach_mm = (2.0 * moved_mm).clamp(4.0 * TOLERANCE, limit_mm);
     }
 }
 

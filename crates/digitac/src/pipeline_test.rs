@@ -61,21 +61,24 @@ fn train_quietly(made: &Made, settings: &TrainSettings) -> Vec<Trained> {
 
 #[test]
 fn the_bench_and_the_gains_are_found_and_the_twin_predicts_unseen_places() {
-    let truth = Truth::new();
+    let truth = Truth {
+        noise: 5e-4,
+        ..Truth::new()
+    };
     let made = make(&truth, 21);
     let radius = made.bench.tip_radius_mm.unwrap();
     assert!(
-        (radius.value - truth.radius_mm).abs() < 0.03 * truth.radius_mm,
+        (radius.value - truth.radius_mm).abs() < 0.01 * truth.radius_mm,
         "{:?}",
         made.bench
     );
     assert!(
-        (radius.value - truth.radius_mm).abs() < 5.0 * radius.uncertainty + 0.02,
+        (radius.value - truth.radius_mm).abs() < 5.0 * radius.uncertainty + 0.01,
         "{radius:?}"
     );
     for (file, offset_mm) in truth.offsets_mm.iter().enumerate() {
         let found = made.bench.contact_offset_mm(&format!("file{file}"));
-        assert!((found - offset_mm).abs() < 0.01, "{found}, expected {offset_mm}");
+        assert!((found - offset_mm).abs() < 0.005, "{found}, expected {offset_mm}");
     }
     assert!(made.bench.doubts.is_empty(), "{:?}", made.bench.doubts);
 
@@ -103,7 +106,7 @@ fn the_bench_and_the_gains_are_found_and_the_twin_predicts_unseen_places() {
     let polynomial = StaticPolynomial::fit(&teachers);
     let evaluation = evaluate(&best.twin, &test, &made.scale, Some(&polynomial));
     let headline = |score: &Score| score.overall.nearest_in_contact.percent;
-    assert!(headline(&evaluation.twin) < 1.0, "{:?}", evaluation.twin);
+    assert!(headline(&evaluation.twin) < 0.3, "{:?}", evaluation.twin);
     assert!(headline(evaluation.polynomial.as_ref().unwrap()) > 3.0 * headline(&evaluation.twin));
     assert!(headline(&evaluation.zero) > 20.0);
 }
@@ -119,12 +122,12 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
             .readings_kpa
             .iter_mut()
             .flatten()
-            .for_each(|r| *r -= 0.002 * *r * r.abs());
+            .for_each(|r| *r -= 0.001 * *r * r.abs());
     }
     made.scale = Scale::of(&made.presses, BTreeSet::new());
     let trained = train_quietly(
         &made,
-        &settings(&[Variant::PressureMemory, Variant::PressureMemoryMlp], 60),
+        &settings(&[Variant::PressureMemory, Variant::PressureMemoryMlp], 400),
     );
     let error = |t: &Trained| t.validation.overall.nearest_in_contact.percent;
     assert!(
@@ -140,15 +143,19 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
         .iter_mut()
         .flatten()
         .for_each(|p| *p *= 10.0);
-    let (plain, corrected) = (
-        trained[0].twin.predict(&features),
-        trained[1].twin.predict(&features),
+    let corrected = &trained[1].twin;
+    let (physical, found) = (
+        corrected.gains().readings_kpa(&features),
+        corrected.predict(&features),
     );
-    for (plain, corrected) in plain.iter().zip(&corrected) {
-        let size: f64 = plain.iter().map(|p| p * p).sum::<f64>().sqrt();
-        for (p, c) in plain.iter().zip(corrected) {
-            assert!((p - c).abs() < 0.6 * size + 1.0, "{p} {c}");
-        }
+    let size = |row: &Vec<f64>| row.iter().map(|p| p * p).sum::<f64>().sqrt();
+    let largest = physical.iter().map(size).fold(0.0, f64::max);
+    for (physical, found) in physical.iter().flatten().zip(found.iter().flatten()) {
+        // The limit, and what the memory may make of it at most.
+        assert!(
+            (physical - found).abs() < 0.3 * 2.0 * largest,
+            "{physical} {found}"
+        );
     }
 }
 
@@ -199,7 +206,8 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
     let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 5))
         .remove(0)
         .twin;
-    truth.offsets_mm = vec![0.12];
+    let known_mm = made.bench.contact_offset_mm("file0");
+    truth.offsets_mm = vec![truth.offsets_mm[0] + 0.07];
     let mut new = truth.recording(21);
     new.presses.iter_mut().for_each(|press| press.file = "new".into());
     let places = Places::of(&new, &Formula, &PlaceSettings::default()).unwrap();
@@ -216,7 +224,11 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
     )
     .unwrap()
     .unwrap();
-    assert!((found.contact_offset_mm.value - 0.12).abs() < 0.015, "{found:?}");
+    // A radius that is a little off shifts all heights alike.
+    assert!(
+        (found.contact_offset_mm.value - known_mm - 0.07).abs() < 0.01,
+        "{found:?}"
+    );
     assert_eq!(found.used, [0, 1, 2]);
     assert!(
         recalibrate(

@@ -8,10 +8,15 @@ use crate::DigitacError;
 const STEP: f64 = 1e-9;
 
 /// Monotone cubics through a sweep: zero above the surface, the end of the table beyond it.
+///
+/// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1 under a flat punch), over which
+/// everything begins as a straight line. A table of ten depths is then as good as one of fifty.
 #[derive(Clone, Debug)]
 pub(crate) struct SweepTable {
+    growth: f64,
     force_n: Pchip,
-    depth_mm: Pchip,
+    /// From force to depth^n.
+    loading: Pchip,
     /// Port pressures, then stress features; `[2 * n_taxels]`.
     features: Vec<Pchip>,
     max_depth_mm: f64,
@@ -67,7 +72,8 @@ impl SweepTable {
     }
 
     fn from_knots(knots: &[Knot]) -> Option<Self> {
-        let depth_mm: Vec<f64> = knots.iter().map(|knot| knot.depth_mm).collect();
+        let growth = growth(knots);
+        let grown: Vec<f64> = knots.iter().map(|knot| knot.depth_mm.powf(growth)).collect();
         let last = knots.last()?;
         let mut loading: Vec<&Knot> = Vec::with_capacity(knots.len());
         for knot in knots {
@@ -79,12 +85,13 @@ impl SweepTable {
             }
         }
         let curve =
-            |value: &dyn Fn(&Knot) -> f64| Pchip::new(depth_mm.clone(), knots.iter().map(value).collect());
+            |value: &dyn Fn(&Knot) -> f64| Pchip::new(grown.clone(), knots.iter().map(value).collect());
         Some(Self {
             force_n: curve(&|knot| knot.force_n)?,
-            depth_mm: Pchip::new(
+            growth,
+            loading: Pchip::new(
                 loading.iter().map(|knot| knot.force_n).collect(),
-                loading.iter().map(|knot| knot.depth_mm).collect(),
+                loading.iter().map(|knot| knot.depth_mm.powf(growth)).collect(),
             )?,
             features: (0..last.features.len())
                 .map(|k| curve(&|knot| knot.features[k]))
@@ -108,9 +115,9 @@ impl SweepTable {
                 let depth_mm = max_depth_mm * i as f64 / (n_knots - 1) as f64;
                 Knot {
                     depth_mm,
-                    force_n: mean(&|t| t.force_n.at(depth_mm)),
+                    force_n: mean(&|t| t.force_n(depth_mm)),
                     features: (0..n_features)
-                        .map(|k| mean(&|t| t.features[k].at(depth_mm)))
+                        .map(|k| mean(&|t| t.features[k].at(t.grown(depth_mm))))
                         .collect(),
                 }
             })
@@ -118,29 +125,35 @@ impl SweepTable {
         Self::from_knots(&knots)
     }
 
+    fn grown(&self, depth_mm: f64) -> f64 {
+        depth_mm.max(0.0).powf(self.growth)
+    }
+
     /// Force of the indenter at a depth, N.
     pub(crate) fn force_n(&self, depth_mm: f64) -> f64 {
-        self.force_n.at(depth_mm)
+        self.force_n.at(self.grown(depth_mm))
     }
 
     /// Depth at a force, mm.
     pub(crate) fn depth_mm(&self, force_n: f64) -> f64 {
-        self.depth_mm.at(force_n)
+        self.loading.at(force_n).powf(self.growth.recip())
     }
 
     /// Port pressure of each taxel at a depth, kPa; `[n_taxels]`.
     pub(crate) fn pressure_kpa(&self, depth_mm: f64) -> Vec<f64> {
+        let grown = self.grown(depth_mm);
         self.features[..self.features.len() / 2]
             .iter()
-            .map(|curve| curve.at(depth_mm))
+            .map(|curve| curve.at(grown))
             .collect()
     }
 
     /// Stress feature of each taxel at a depth, kPa/mm; `[n_taxels]`.
     pub(crate) fn stress_kpa_per_mm(&self, depth_mm: f64) -> Vec<f64> {
+        let grown = self.grown(depth_mm);
         self.features[self.features.len() / 2..]
             .iter()
-            .map(|curve| curve.at(depth_mm))
+            .map(|curve| curve.at(grown))
             .collect()
     }
 
@@ -152,6 +165,16 @@ impl SweepTable {
     /// Force at which the table ends, N.
     pub(crate) fn max_force_n(&self) -> f64 {
         self.max_force_n
+    }
+}
+
+/// The power of depth with which the force begins to grow, from the first two depths below the surface.
+fn growth(knots: &[Knot]) -> f64 {
+    match knots {
+        [_, a, b, ..] if a.force_n > 0.0 && b.force_n > a.force_n && b.depth_mm > a.depth_mm => {
+            ((b.force_n / a.force_n).ln() / (b.depth_mm / a.depth_mm).ln()).clamp(1.0, 2.0)
+        }
+        _ => 1.5,
     }
 }
 
@@ -184,8 +207,8 @@ mod tests {
         for depth_mm in [0.1, 0.77, 1.9] {
             let (force_n, pressure, _) =
                 Formula::at(glam::DVec3::X, depth_mm, crate::synthetic::DESCRIBED_RADIUS_MM);
-            assert!((table.force_n(depth_mm) / force_n - 1.0).abs() < 0.01);
-            assert!((table.depth_mm(force_n) - depth_mm).abs() < 0.01);
+            assert!((table.force_n(depth_mm) / force_n - 1.0).abs() < 0.001);
+            assert!((table.depth_mm(force_n) - depth_mm).abs() < 0.001);
             assert!((table.pressure_kpa(depth_mm)[1] / pressure[1] - 1.0).abs() < 0.01);
         }
         assert_eq!(table.pressure_kpa(-0.3), [0.0; 4]);

@@ -60,11 +60,11 @@ impl Default for TrainSettings {
         Self {
             variants: Variant::ALL.to_vec(),
             seed: 1,
-            epochs: 300,
+            epochs: 600,
             learning_rate: 1e-3,
             rate_factor: 0.3,
-            patience: 10,
-            stop_patience: 35,
+            patience: 20,
+            stop_patience: 60,
             gradient_norm: 1.0,
             weight_decay: 1e-2,
             paper_noise: 0.05,
@@ -73,7 +73,7 @@ impl Default for TrainSettings {
             correction_hidden: vec![24, 24],
             correction_limit: 0.3,
             time_constants_s: TIME_CONSTANTS_S.to_vec(),
-            batch_frames: 1024,
+            batch_frames: 512,
             max_frames: 128,
         }
     }
