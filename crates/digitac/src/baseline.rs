@@ -22,8 +22,8 @@ pub fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// A polynomial of depth and place for each indenter and taxel, by ridge regression. It knows nothing of time, of other indenters, and of
-/// places beyond those it was fitted to.
+/// A polynomial of depth and place for each indenter and taxel, by ridge regression. It knows nothing of
+/// time, of other indenters, and of places beyond those it was fitted to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticPolynomial {
     by_indenter: BTreeMap<String, Fit>,

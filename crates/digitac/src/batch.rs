@@ -17,7 +17,8 @@ pub(crate) struct Batch {
     /// One where a reading counts; `[n_presses * n_frames, n_taxels]`
     mask: Tensor<2>,
     n_counted: f64,
-    /// From elastic readings to overstresses; `[n_presses, n_time_constants * n_frames, n_frames]`, if the variant remembers.
+    /// From elastic readings to overstresses; `[n_presses, n_time_constants * n_frames, n_frames]`, if the
+    /// variant remembers.
     overstress: Option<Tensor<3>>,
 }
 
@@ -69,7 +70,8 @@ impl Batch {
         }
     }
 
-    /// Mean absolute deviation over the largest reading. `noise` is the deviation of noise on what the perceptron sees, with its stream.
+    /// Mean absolute deviation over the largest reading. `noise` is the deviation of noise on what the
+    /// perceptron sees, with its stream.
     pub(crate) fn loss(
         &self,
         network: &Network,

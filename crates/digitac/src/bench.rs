@@ -1,4 +1,5 @@
-//! What is unknown about a bench: the tip's radius, the height at which it touches, and how stiff the gel really is.
+//! What is unknown about a bench: the tip's radius, the height at which it touches, and how stiff the gel
+//! really is.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +16,8 @@ pub struct Bench {
     pub contact_offset_mm: BTreeMap<String, Estimate>,
     /// The same for files that were not fitted: the median of the fitted ones, mm.
     pub contact_offset_elsewhere_mm: f64,
-    /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where it cannot be told from the gains.
+    /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where it
+    /// cannot be told from the gains.
     pub stiffness: Option<Estimate>,
     /// The gains that went with these values.
     pub gains: Option<Gains>,
@@ -59,11 +61,13 @@ impl Bench {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BenchSettings {
-    /// Tip radii to simulate, mm, at increasing size; the fit interpolates between them. Empty takes the described indenter.
+    /// Tip radii to simulate, mm, at increasing size; the fit interpolates between them. Empty takes the
+    /// described indenter.
     pub tip_radii_mm: Vec<f64>,
     /// How many places, spread over each file, the fit looks at.
     pub n_places: usize,
-    /// Largest correction of the contact height, mm; not above the margin of [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
+    /// Largest correction of the contact height, mm; not above the margin of
+    /// [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
     pub contact_offset_limit_mm: f64,
     /// Smallest and largest stiffness over the simulated one.
     pub stiffness_limits: [f64; 2],

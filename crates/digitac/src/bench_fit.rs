@@ -1,4 +1,5 @@
-//! Fits a [`Bench`] by variable projection: for every guess of radius, contact heights and stiffness the gains are solved for inside.
+//! Fits a [`Bench`] by variable projection: for every guess of radius, contact heights and stiffness the
+//! gains are solved for inside.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -245,8 +246,8 @@ impl Problem<'_> {
     }
 }
 
-/// Searches the contact heights: of all files together, then of each on its own, until none moves. One file's height pulls at the gains,
-/// and so at the others' heights.
+/// Searches the contact heights: of all files together, then of each on its own, until none moves. One file's
+/// height pulls at the gains, and so at the others' heights.
 fn improve_offsets(guess: &mut Guess, limit_mm: f64, deviation: impl Fn(&Guess) -> f64) {
     let files: Vec<String> = guess.offsets_mm.keys().cloned().collect();
     let mut groups = vec![files.clone()];

@@ -1,9 +1,11 @@
 //! Dynamic time warping of a measured load onto a simulated one.
 //!
-//! Both loads are sampled at the same instants, so the path would be the diagonal if the clocks agreed. What is compared is the load's
-//! *rate* (derivative dynamic time warping, Keogh and Pazzani, SDM 2001): when a load begins to rise or fall dates it, while its level also
-//! holds relaxation and hysteresis, which are physics and must survive. Leaving the diagonal costs, so plateaus and noise stay where they
-//! are; a Sakoe–Chiba window bounds how far any instant can be moved; and a warp that does not explain most of the mismatch is not believed.
+//! Both loads are sampled at the same instants, so the path would be the diagonal if the clocks agreed. What
+//! is compared is the load's *rate* (derivative dynamic time warping, Keogh and Pazzani, SDM 2001): when a
+//! load begins to rise or fall dates it, while its level also holds relaxation and hysteresis, which are
+//! physics and must survive. Leaving the diagonal costs, so plateaus and noise stay where they are; a
+//! Sakoe–Chiba window bounds how far any instant can be moved; and a warp that does not explain most of the
+//! mismatch is not believed.
 
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +37,8 @@ impl Default for WarpSettings {
 /// When each simulated frame happened on the measurement's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Warp {
-    /// For each simulated frame the index, between frames, of the measurement that belongs to it; `[n_frames]`.
+    /// For each simulated frame the index, between frames, of the measurement that belongs to it;
+    /// `[n_frames]`.
     pub measured_index: Vec<f64>,
     /// Accumulated cost of the path, in units of the largest rate.
     pub cost: f64,
@@ -54,8 +57,8 @@ impl Warp {
         }
     }
 
-    /// Finds the warp between two loads of any unit, both `[n_frames]` at the instants `time_s`. A load that never rises leaves time as
-    /// it is.
+    /// Finds the warp between two loads of any unit, both `[n_frames]` at the instants `time_s`. A load that
+    /// never rises leaves time as it is.
     #[must_use]
     pub fn between(time_s: &[f64], measured: &[f64], simulated: &[f64], settings: &WarpSettings) -> Self {
         let n = time_s.len();
@@ -181,7 +184,8 @@ fn cheapest_path(
     settings: &WarpSettings,
 ) -> (Vec<(usize, usize)>, f64) {
     let n = time_s.len();
-    // Row j holds the measured frames i within the window of the simulated frame j, of which the diagonal is always one.
+    // Row j holds the measured frames i within the window of the simulated frame j, of which the diagonal is
+    // always one.
     let low: Vec<usize> = time_s
         .iter()
         .map(|t| time_s.partition_point(|other| *other < t - settings.window_s))

@@ -12,7 +12,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The value from all data with the standard error from fits that each leave out one block (delete-a-group jackknife, Kott 2001).
+    /// The value from all data with the standard error from fits that each leave out one block
+    /// (delete-a-group jackknife, Kott 2001).
     pub(crate) fn jackknife(value: f64, without_block: &[f64]) -> Self {
         let n = without_block.len() as f64;
         let mean = without_block.iter().sum::<f64>() / n.max(1.0);

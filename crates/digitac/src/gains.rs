@@ -1,4 +1,5 @@
-//! What each barometer makes of the pressure at its port, fitted directly: the start of every physical variant, and the inner fit of the bench.
+//! What each barometer makes of the pressure at its port, fitted directly: the start of every physical
+//! variant, and the inner fit of the bench.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +19,8 @@ pub struct Gains {
     pub time_constants_s: Vec<f64>,
 }
 
-/// Time constants that fits start from, s: two are enough for barometers cast into rubber, one while the load moves and one in a hold.
+/// Time constants that fits start from, s: two are enough for barometers cast into rubber, one while the load
+/// moves and one in a hold.
 pub const TIME_CONSTANTS_S: [f64; 2] = [0.25, 4.0];
 /// How far from its start a time constant is looked for, as a factor.
 const TIME_CONSTANT_REACH: f64 = 4.0;
@@ -41,8 +43,8 @@ impl<'a> From<&'a PairedPress> for Sample<'a> {
 }
 
 impl Gains {
-    /// Fits by least absolute deviations; no gain and no memory is negative. Returns with it the mean absolute deviation of each taxel,
-    /// kPa. Static samples, of one frame, have no memory.
+    /// Fits by least absolute deviations; no gain and no memory is negative. Returns with it the mean
+    /// absolute deviation of each taxel, kPa. Static samples, of one frame, have no memory.
     pub(crate) fn fit(samples: &[Sample<'_>], time_constants_s: &[f64]) -> (Self, Vec<f64>) {
         let n_taxels = samples
             .first()

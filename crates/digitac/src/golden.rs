@@ -1,6 +1,7 @@
 //! Golden-section search (Kiefer, Proc. AMS 4, 1953).
 
-/// The place of the smallest value between two bounds, to a tolerance, and the value. Of several valleys it finds one.
+/// The place of the smallest value between two bounds, to a tolerance, and the value. Of several valleys it
+/// finds one.
 pub(crate) fn minimize(
     mut low: f64,
     mut high: f64,

@@ -1,8 +1,9 @@
 //! The digital twin: from a simulated gel to what the barometers would read.
 //!
-//! A recording is cut into [`Places`]; a [`SweepSource`] simulates each; [`fit_bench`] finds what is unknown about the bench; [`pair()`]
-//! puts measured and simulated frames side by side on one clock ([`Warp`]); a [`Split`] says which presses teach and which judge; [`train()`]
-//! makes a [`Twin`] of each [`Variant`]; [`metric`] says how wrong it is; and a [`Model`] keeps it in a folder.
+//! A recording is cut into [`Places`]; a [`SweepSource`] simulates each; [`fit_bench`] finds what is unknown
+//! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
+//! [`Split`] says which presses teach and which judge; [`train()`] makes a [`Twin`] of each [`Variant`];
+//! [`metric`] says how wrong it is; and a [`Model`] keeps it in a folder.
 
 pub mod baseline;
 mod batch;

@@ -1,10 +1,11 @@
 //! Quasi-linear viscoelastic memory: an overstress that follows each change of the elastic reading and fades.
 //!
-//! With the elastic reading r(t) each time constant τ carries dq/dt = dr/dt - q/τ, and a barometer reads r + Σ c q (a generalized Maxwell
-//! solid, Simo and Hughes, Computational Inelasticity, section 10.3). A memory in this form cannot learn the protocol: it is linear, stable, and
-//! forgets.
+//! With the elastic reading r(t) each time constant τ carries dq/dt = dr/dt - q/τ, and a barometer reads r +
+//! Σ c q (a generalized Maxwell solid, Simo and Hughes, Computational Inelasticity, section 10.3). A memory
+//! in this form cannot learn the protocol: it is linear, stable, and forgets.
 
-/// Shares of the old overstress that stay, and of the change that arrives, over a time step on which r changes linearly (exact).
+/// Shares of the old overstress that stay, and of the change that arrives, over a time step on which r
+/// changes linearly (exact).
 fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
     let ratio = duration_s / time_constant_s;
     let kept = (-ratio).exp();
@@ -26,7 +27,8 @@ pub(crate) fn overstress(time_s: &[f64], elastic: &[f64], time_constant_s: f64) 
     q
 }
 
-/// [`overstress`] as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames + j]` × elastic reading j.
+/// [`overstress`] as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames
+/// + j]` × elastic reading j.
 pub(crate) fn operator(time_s: &[f64], time_constant_s: f64) -> Vec<f64> {
     let n = time_s.len();
     let mut matrix = vec![0.0; n * n];

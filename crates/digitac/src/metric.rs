@@ -228,7 +228,8 @@ mod tests {
 
     #[test]
     fn the_headline_takes_the_nearest_taxel_in_contact_only() {
-        // Above the gel; touching, but below 3 %; and twice in contact, nearest to one taxel and to the other.
+        // Above the gel; touching, but below 3 %; and twice in contact, nearest to one taxel and to the
+        // other.
         let frames = [
             (-1.0, [9.0, 0.0]),
             (0.1, [2.9, 0.0]),

@@ -56,7 +56,8 @@ impl Model {
         fs::rename(&partial, folder).map_err(|source| DigitacError::file(folder, source))
     }
 
-    /// Reads a model's folder. A file that is missing, altered, or of another version is an error that says so.
+    /// Reads a model's folder. A file that is missing, altered, or of another version is an error that says
+    /// so.
     pub fn load(folder: &Path) -> Result<Self, DigitacError> {
         let path = folder.join(CHECKSUMS);
         let damaged =

@@ -1,7 +1,7 @@
 //! The learned part of a twin, on burn.
 //!
-//! Every parameter of the physics is a change to what was fitted directly and starts at zero, and so does the last layer of the
-//! perceptron: training begins at the physical model, and weight decay pulls back to it.
+//! Every parameter of the physics is a change to what was fitted directly and starts at zero, and so does the
+//! last layer of the perceptron: training begins at the physical model, and weight decay pulls back to it.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,8 @@ use crate::gains::Gains;
 use crate::normalization::Normalization;
 use crate::{Features, Variant, seed};
 
-/// Below this share of the largest reading, squared, the size of a frame's readings is rounded off to keep its slope finite.
+/// Below this share of the largest reading, squared, the size of a frame's readings is rounded off to keep
+/// its slope finite.
 const ROUNDING: f64 = 1e-8;
 /// Memory shares below this start here: from zero nothing could be learned.
 const SMALLEST_MEMORY: f64 = 1e-3;
@@ -145,8 +146,8 @@ impl Network {
         }
     }
 
-    /// Elastic readings of order one, `[n_rows, n_taxels]`, from [`Physics::inputs`]. What the perceptron sees may be noisier than what the
-    /// physics sees.
+    /// Elastic readings of order one, `[n_rows, n_taxels]`, from [`Physics::inputs`]. What the perceptron
+    /// sees may be noisier than what the physics sees.
     pub(crate) fn elastic(&self, physics: &Physics, inputs: Tensor<2>, seen: Tensor<2>) -> Tensor<2> {
         if physics.variant == Variant::Paper {
             return self.perceptron(seen);

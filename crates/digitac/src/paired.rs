@@ -147,7 +147,8 @@ fn depths_mm(press: &Press, touch_z_mm: f64, contact_offset_mm: f64) -> Vec<f64>
         .collect()
 }
 
-/// The simulated side of every press of a recording. `sweeps` answer `places.requests`, whatever their tip radius.
+/// The simulated side of every press of a recording. `sweeps` answer `places.requests`, whatever their tip
+/// radius.
 pub fn features(
     recording: &Recording,
     places: &Places,
@@ -243,7 +244,8 @@ fn pair_press(
     })
 }
 
-/// Compares force with force; without a force sensor, the sum of the positive readings with the sum of the positive port pressures.
+/// Compares force with force; without a force sensor, the sum of the positive readings with the sum of the
+/// positive port pressures.
 fn warp(press: &Press, features: &Features, settings: &WarpSettings) -> Warp {
     match &press.force_n {
         Some(force_n) => Warp::between(&press.time_s, force_n, &features.force_n, settings),

@@ -1,8 +1,9 @@
 //! Where a new recording touches the gel.
 //!
-//! Contact heights differ from one mounting to the next by some hundredths of a millimetre, which costs percents, and no model can know them.
-//! So a file that the bench was not fitted to gives its first presses away: its height is fitted to them against the twin as it is, by a rule
-//! fixed beforehand, and they are not scored.
+//! Contact heights differ from one mounting to the next by some hundredths of a millimetre, which costs
+//! percents, and no model can know them. So a file that the bench was not fitted to gives its first presses
+//! away: its height is fitted to them against the twin as it is, by a rule fixed beforehand, and they are not
+//! scored.
 
 use std::collections::BTreeSet;
 
@@ -34,8 +35,9 @@ pub struct Recalibration {
     pub doubts: Vec<String>,
 }
 
-/// Fits the contact height of a file to its first three presses by least absolute deviations from the twin, within `limit_mm` of the
-/// bench's median. Taxels in `left_out` do not count. `None` if the file has no presses of prescribed pose, or none to spare.
+/// Fits the contact height of a file to its first three presses by least absolute deviations from the twin,
+/// within `limit_mm` of the bench's median. Taxels in `left_out` do not count. `None` if the file has no
+/// presses of prescribed pose, or none to spare.
 pub fn recalibrate(
     recording: &Recording,
     (places, sweeps): (&Places, &[Sweep]),

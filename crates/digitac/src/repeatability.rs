@@ -52,7 +52,8 @@ pub fn repeatability(presses: &[PairedPress], scale: &Scale) -> Option<Repeatabi
     })
 }
 
-/// The first press from first touch for as long as the second was driven alike, and the second's readings at its frames.
+/// The first press from first touch for as long as the second was driven alike, and the second's readings at
+/// its frames.
 fn common_stretch(first: &PairedPress, second: &PairedPress) -> Option<(PairedPress, Vec<Vec<f64>>)> {
     let (touch_s, other_touch_s) = (touch_time_s(first)?, touch_time_s(second)?);
     let (f, g) = (&first.features, &second.features);

@@ -2,13 +2,14 @@
 
 /// Rounds of reweighting.
 const ROUNDS: usize = 12;
-/// Residuals below this fraction of the largest target count squared, not absolute: the corner of Huber's loss.
+/// Residuals below this fraction of the largest target count squared, not absolute: the corner of Huber's
+/// loss.
 const CORNER: f64 = 2e-3;
 /// Sweeps of coordinate descent.
 const SWEEPS: usize = 200;
 
-/// Coefficients a ≥ 0 that make Σ a columns ≈ target in the sense of least absolute deviations (iteratively reweighted least squares), and the
-/// mean absolute deviation. Columns that are all zero get zero.
+/// Coefficients a ≥ 0 that make Σ a columns ≈ target in the sense of least absolute deviations (iteratively
+/// reweighted least squares), and the mean absolute deviation. Columns that are all zero get zero.
 pub(crate) fn fit_nonnegative(columns: &[Vec<f64>], target: &[f64]) -> (Vec<f64>, f64) {
     let n_columns = columns.len();
     let mut coefficients = vec![0.0; n_columns];

@@ -1,8 +1,9 @@
 //! Which presses teach, which decide, and which judge.
 //!
-//! Whole presses are held out, by place: presses that repeat a place are never on both sides. The places are walked in order and one of
-//! each few is drawn, so that what is held out lies between what is known and covers the whole gel. The outermost places of each indenter
-//! always teach: a twin is not asked to extrapolate beyond where it was pressed.
+//! Whole presses are held out, by place: presses that repeat a place are never on both sides. The places are
+//! walked in order and one of each few is drawn, so that what is held out lies between what is known and
+//! covers the whole gel. The outermost places of each indenter always teach: a twin is not asked to
+//! extrapolate beyond where it was pressed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,7 +20,8 @@ use crate::{DigitacError, seed};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SplitSettings {
-    /// Presses whose places fall into the same square of this side belong together, mm. Dense grids want several of their steps.
+    /// Presses whose places fall into the same square of this side belong together, mm. Dense grids want
+    /// several of their steps.
     pub block_mm: f64,
     /// One of so many places is held out for testing.
     pub test_one_in: usize,
@@ -148,8 +150,8 @@ fn outermost<'a>(places: &[Place<'a>]) -> BTreeSet<Place<'a>> {
         .collect()
 }
 
-/// Takes one group at random out of each run of `one_in`, and its presses with it. A last, shorter run gives one as well if it is at least
-/// half as long.
+/// Takes one group at random out of each run of `one_in`, and its presses with it. A last, shorter run gives
+/// one as well if it is at least half as long.
 fn draw(groups: &mut Vec<Vec<usize>>, one_in: usize, seed_number: u64, name: &str) -> Vec<usize> {
     let mut random = seed::stream(seed_number, &format!("split/{name}"));
     let mut drawn = BTreeSet::new();

@@ -1,4 +1,5 @@
-//! A gel of formulas: Hertz's contact over a kernel that widens with the contact, so that the crate can be tested without finite elements.
+//! A gel of formulas: Hertz's contact over a kernel that widens with the contact, so that the crate can be
+//! tested without finite elements.
 
 use glam::DVec3;
 use twintac_recording::{Control, Press, Provenance, Recording};

@@ -9,8 +9,9 @@ const STEP: f64 = 1e-9;
 
 /// Monotone cubics through a sweep: zero above the surface, the end of the table beyond it.
 ///
-/// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1 under a flat punch), over which
-/// everything begins as a straight line. A table of ten depths is then as good as one of fifty.
+/// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1
+/// under a flat punch), over which everything begins as a straight line. A table of ten depths is then as
+/// good as one of fifty.
 #[derive(Clone, Debug)]
 pub(crate) struct SweepTable {
     growth: f64,

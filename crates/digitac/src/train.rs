@@ -12,10 +12,11 @@ use crate::normalization::Normalization;
 use crate::split::batches;
 use crate::{DigitacError, PairedPress, Score, Split, TIME_CONSTANTS_S, Twin, Variant, metric, seed};
 
-/// Largest number of epochs without improvement after which the learning rate is as small as it may get.
+/// The learning rate does not fall below this.
 const SMALLEST_RATE: f64 = 1e-6;
 
-/// How variants are trained. Loss, optimizer, rate, its decay, clipping and noise are the TwinTac paper's (arXiv 2509.10063, section III-C).
+/// How variants are trained. Loss, optimizer, rate, its decay, clipping and noise are the TwinTac paper's
+/// (arXiv 2509.10063, section III-C).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrainSettings {
@@ -45,7 +46,8 @@ pub struct TrainSettings {
     pub paper_hidden: Vec<usize>,
     /// Widths of a correction's hidden layers.
     pub correction_hidden: Vec<usize>,
-    /// Largest correction, as a share of the size of the frame's readings. It bounds what the twin can say where it was never pressed.
+    /// Largest correction, as a share of the size of the frame's readings. It bounds what the twin can say
+    /// where it was never pressed.
     pub correction_limit: f64,
     /// Start of the memory's time constants, s.
     pub time_constants_s: Vec<f64>,
@@ -180,7 +182,8 @@ pub fn train(
         .collect()
 }
 
-/// The variant with the smallest headline error on validation presses; never chosen by test presses. Of equals, the first.
+/// The variant with the smallest headline error on validation presses; never chosen by test presses. Of
+/// equals, the first.
 #[must_use]
 pub fn choose(trained: &[Trained]) -> Option<&Trained> {
     let error = |t: &Trained| t.validation.overall.nearest_in_contact.percent;
@@ -237,7 +240,7 @@ fn check(settings: &TrainSettings) -> Result<(), DigitacError> {
             found,
         })
     };
-    if !(settings.learning_rate > 0.0) {
+    if settings.learning_rate.is_nan() || settings.learning_rate <= 0.0 {
         return wrong(
             "learning_rate",
             "a number above zero",
@@ -248,7 +251,11 @@ fn check(settings: &TrainSettings) -> Result<(), DigitacError> {
         let found = format!("{}, {}", settings.max_frames, settings.batch_frames);
         return wrong("max_frames, batch_frames", "1 or more", found);
     }
-    if settings.time_constants_s.iter().any(|tau| !(*tau > 0.0)) {
+    if settings
+        .time_constants_s
+        .iter()
+        .any(|tau| tau.is_nan() || *tau <= 0.0)
+    {
         return wrong(
             "time_constants_s",
             "times above zero",

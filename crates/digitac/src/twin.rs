@@ -34,7 +34,8 @@ impl Twin {
         })
     }
 
-    /// What the barometers would read above their unloaded baseline along a simulated press, kPa; `[n_frames][n_taxels]`.
+    /// What the barometers would read above their unloaded baseline along a simulated press, kPa;
+    /// `[n_frames][n_taxels]`.
     #[must_use]
     pub fn predict(&self, features: &Features) -> Vec<Vec<f64>> {
         let n_taxels = self.taxels.len();
