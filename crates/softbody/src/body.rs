@@ -163,8 +163,16 @@ impl SoftBody {
             .collect()
     }
 
-    pub(crate) fn negligible_load_n(&self, part: f64) -> f64 {
-        part * self.material.isochoric.shear_modulus_kpa() / KPA_PER_MPA * self.size_mm * self.size_mm
+    /// Shear modulus times volume, N mm.
+    pub(crate) fn energy_scale_n_mm(&self) -> f64 {
+        self.material.isochoric.shear_modulus_kpa() / KPA_PER_MPA * self.size_mm.powi(3)
+    }
+
+    /// Loads below this count as none, N: far below what matters, above what round-off makes of a large bulk modulus.
+    pub(crate) fn negligible_load_n(&self) -> f64 {
+        let stress_kpa =
+            1e-7 * self.material.isochoric.shear_modulus_kpa() + 1e-9 * self.material.bulk_modulus_kpa;
+        stress_kpa / KPA_PER_MPA * self.size_mm * self.size_mm
     }
 }
 

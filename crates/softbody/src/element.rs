@@ -225,3 +225,6 @@ impl Deformation {
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,11 +15,17 @@ const MAX_TRIALS: u32 = 20;
 /// Part of the decrease promised by the slope that a trial step must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Below this part of the energy a change of energy is round-off, and the slope decides.
-const ROUND_OFF: f64 = 1e-11;
+/// Steps below this part of their direction are short.
+const SHORT: f64 = 0.2;
 
-/// Loads below this part of the shear modulus times the squared size of the body count as none.
-const NEGLIGIBLE_LOAD: f64 = 1e-7;
+/// Smallest damping worth having.
+const LEAST_DAMPING: f64 = 0.01;
+
+/// A trial whose slope is below this part of that at the start is close enough to the lowest point.
+const FLAT: f64 = 0.5;
+
+/// Below this part of the energy, and of the shear modulus times the volume, a change of energy is round-off, and the slope decides.
+const ROUND_OFF: f64 = 1e-13;
 
 /// Accuracy of a direction: the part of the right-hand side, in the norm of the preconditioner, that may be left.
 const FORCING: f64 = 1e-2;
@@ -83,6 +89,8 @@ impl Clone for Workspace {
 pub(crate) struct Buffers {
     factors: Factors,
     has_factors: bool,
+    /// Extra stiffness, in units of each node's own, that keeps steps within reach.
+    damping: f64,
     gradients: ConjugateGradients,
     pressure_scratch: MemBuffer,
     /// Gradient of the energy at each node, N; at bonded nodes the force of what holds them. `[n_nodes]`
@@ -102,6 +110,7 @@ impl Workspace {
             Box::new(Buffers {
                 factors: body.system.factors(),
                 has_factors: false,
+                damping: 0.0,
                 gradients: ConjugateGradients::new(&body.system),
                 pressure_scratch: body.compressibility.scratch(),
                 gradient_n: vec![DVec3::ZERO; n_nodes],
@@ -125,11 +134,12 @@ impl Buffers {
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
         self.prepare(body, step);
+        self.damping = 0.0;
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut is_last_resort = false;
         for _ in 0..=settings.max_iterations {
-            let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n(NEGLIGIBLE_LOAD));
+            let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n());
             if residual <= settings.tolerance {
                 if !push_out(body, x.touches) {
                     return Ok(Equilibrium {
@@ -144,7 +154,10 @@ impl Buffers {
             *iterations += 1;
             self.find_direction(body, step, x)?;
             match self.search(body, step, x, &now) {
-                Ok(next) => now = next,
+                Ok((next, length)) => {
+                    now = next;
+                    self.adapt_damping(length);
+                }
                 Err(failure @ Failure::Inverted) => return Err(failure),
                 Err(_) => {
                     is_last_resort = true;
@@ -153,7 +166,7 @@ impl Buffers {
             }
         }
         Err(Failure::NotConverged {
-            residual: now.unbalanced_n / now.load_n.max(body.negligible_load_n(NEGLIGIBLE_LOAD)),
+            residual: now.unbalanced_n / now.load_n.max(body.negligible_load_n()),
         })
     }
 
@@ -247,7 +260,7 @@ impl Buffers {
         }
         let mut is_fresh = false;
         if self.has_factors {
-            self.assemble(body, step, x, None);
+            self.assemble(body, step, x, true, self.damping);
         } else {
             self.factorise(body, step, x)?;
             is_fresh = true;
@@ -292,21 +305,43 @@ impl Buffers {
     /// Factorises the tangent: the true one if it is convex, else without the curvature of the shapes, else ever stiffer.
     fn factorise(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
         self.has_factors = false;
-        for shift in [None, Some(0.0), Some(0.01), Some(0.1), Some(1.0), Some(10.0)] {
-            self.assemble(body, step, x, shift);
+        for (with_curvature, extra) in [
+            (true, 0.0),
+            (false, 0.0),
+            (false, 0.02),
+            (false, 0.1),
+            (false, 0.5),
+            (false, 2.0),
+            (false, 10.0),
+        ] {
+            let damping = self.damping + extra;
+            self.assemble(body, step, x, with_curvature, damping);
             if body
                 .system
                 .factorise(&mut self.factors)
                 .map_err(|_| Failure::Singular)?
             {
                 self.has_factors = true;
+                self.damping = damping;
                 return Ok(());
             }
         }
         Err(Failure::Singular)
     }
 
-    fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns, shift: Option<f64>) {
+    /// Short steps tell that the tangent is a poor guide: trust it less (Levenberg, 1944), and more again after whole ones.
+    fn adapt_damping(&mut self, length: f64) {
+        if length < SHORT {
+            self.damping = (4.0 * self.damping).max(LEAST_DAMPING);
+        } else if length == 1.0 {
+            self.damping *= 0.25;
+        }
+        if self.damping < LEAST_DAMPING {
+            self.damping = 0.0;
+        }
+    }
+
+    fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns, with_curvature: bool, damping: f64) {
         let law = &body.material().isochoric;
         body.system.clear(&mut self.factors);
         for (tet, element) in body.elements.iter().enumerate() {
@@ -323,63 +358,84 @@ impl Buffers {
                 if touch.force_n > 0.0 {
                     let node = boundary.node as usize;
                     let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                    let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, shift.is_none());
+                    let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, with_curvature);
                     body.system.add_to_node(&mut self.factors, node, &stiffness);
                 }
             }
         }
-        if let Some(shift) = shift.filter(|shift| *shift > 0.0) {
+        if damping > 0.0 {
             for (node, stiffness) in body.node_stiffness.iter().enumerate() {
-                let extra = DMat3::from_diagonal(DVec3::splat(shift * stiffness));
+                let extra = DMat3::from_diagonal(DVec3::splat(damping * stiffness));
                 body.system.add_to_node(&mut self.factors, node, &extra);
             }
         }
     }
 
-    /// Goes along the direction as far as the energy goes down.
+    /// Goes along the direction to where the energy is about lowest, at most its whole length. Trials cost little beside a direction.
     fn search(
         &mut self,
         body: &SoftBody,
         step: &Step,
         x: &mut Unknowns,
         start: &Evaluation,
-    ) -> Result<Evaluation, Failure> {
+    ) -> Result<(Evaluation, f64), Failure> {
         let slope_at_start = -dot(&self.unbalanced_n, &self.direction_mm);
+        let round_off = ROUND_OFF * (start.energy.abs() + body.energy_scale_n_mm());
         self.start_mm.copy_from_slice(x.displacements_mm);
+        // The energy falls at `low`, where the best trial is; beyond `high` it rises, or a tetrahedron is inside out.
+        let (mut low, mut slope_at_low, mut is_usable) = (0.0, slope_at_start, false);
+        let (mut high, mut slope_at_high) = (1.0, None);
         let mut length = 1.0;
-        let mut was_inverted = true;
         for _ in 0..MAX_TRIALS {
-            for ((u, start), direction) in x
-                .displacements_mm
-                .iter_mut()
-                .zip(&self.start_mm)
-                .zip(&self.direction_mm)
-            {
-                *u = *start + *direction * length;
-            }
-            let Some(trial) = self.evaluate(body, step, x) else {
-                length *= 0.5;
-                continue;
-            };
-            was_inverted = false;
-            let change = trial.energy - start.energy;
+            let trial = self.try_length(body, step, x, length);
             let slope = dot(&self.gradient_n, &self.direction_mm);
-            let is_round_off = change.abs() <= ROUND_OFF * start.energy.abs();
-            if change <= SUFFICIENT_DECREASE * length * slope_at_start
-                || (is_round_off && slope.abs() <= 0.9 * slope_at_start.abs())
-            {
-                return Ok(trial);
+            let falls = trial.is_some_and(|trial| {
+                let change = trial.energy - start.energy;
+                change <= SUFFICIENT_DECREASE * length * slope_at_start
+                    || (change.abs() <= round_off && slope.abs() <= 0.9 * slope_at_start.abs())
+            });
+            match trial {
+                Some(trial)
+                    if falls
+                        && (slope.abs() <= FLAT * slope_at_start.abs() || slope < 0.0 && length == 1.0) =>
+                {
+                    return Ok((trial, length));
+                }
+                Some(_) if falls && slope < 0.0 => (low, slope_at_low, is_usable) = (length, slope, true),
+                Some(_) => (high, slope_at_high) = (length, (slope > 0.0).then_some(slope)),
+                None => (high, slope_at_high) = (length, None),
             }
-            // Where a line through both slopes is zero.
-            let secant = slope_at_start / (slope_at_start - slope);
-            length *= if slope > 0.0 { secant.clamp(0.1, 0.7) } else { 0.5 };
+            if is_usable && high - low < 0.1 * high {
+                break;
+            }
+            // Where a line through both slopes is zero, but well inside.
+            let part = slope_at_high.map_or(0.5, |high| slope_at_low / (slope_at_low - high));
+            length = low + part.clamp(0.1, 0.9) * (high - low);
         }
-        x.displacements_mm.copy_from_slice(&self.start_mm);
-        Err(if was_inverted {
-            Failure::Inverted
-        } else {
-            Failure::NotConverged { residual: f64::NAN }
-        })
+        let trial = self.try_length(body, step, x, low);
+        match trial {
+            Some(trial) if is_usable => Ok((trial, low)),
+            _ if slope_at_high.is_none() => Err(Failure::Inverted),
+            _ => Err(Failure::NotConverged { residual: f64::NAN }),
+        }
+    }
+
+    fn try_length(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &mut Unknowns,
+        length: f64,
+    ) -> Option<Evaluation> {
+        for ((u, start), direction) in x
+            .displacements_mm
+            .iter_mut()
+            .zip(&self.start_mm)
+            .zip(&self.direction_mm)
+        {
+            *u = *start + *direction * length;
+        }
+        self.evaluate(body, step, x)
     }
 }
 

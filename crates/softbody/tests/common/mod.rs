@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use twintac_mesh::{NodeSets, TetMesh};
 use twintac_shape::{Distance, Pose, SignedDistance};
 use twintac_softbody::{Frame, SoftBody, State};
@@ -36,13 +36,17 @@ pub struct Walls {
 
 impl SignedDistance for Walls {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
-        let x = self.half_mm[0] - point_mm.x.abs();
-        let y = self.half_mm[1] - point_mm.y.abs();
-        let (distance_mm, gradient) = if x < y {
-            (x, DVec3::X * -point_mm.x.signum())
+        let past = point_mm.abs().truncate() - DVec2::from(self.half_mm);
+        let outwards = DVec2::new(point_mm.x.signum(), point_mm.y.signum());
+        let (distance_mm, gradient) = if past.max_element() > 0.0 {
+            let past = past.max(DVec2::ZERO);
+            (-past.length(), -past.normalize())
+        } else if past.x > past.y {
+            (-past.x, DVec2::NEG_X)
         } else {
-            (y, DVec3::Y * -point_mm.y.signum())
+            (-past.y, DVec2::NEG_Y)
         };
+        let gradient = (gradient * outwards).extend(0.0);
         Distance {
             distance_mm,
             gradient,

@@ -1,0 +1,228 @@
+//! A block of gel under a ball: reference forces and pressures, balance, robustness, repeatability.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{Ball, Walls, block, disc_mean, even, press};
+use glam::{DQuat, DVec3};
+use twintac_shape::Pose;
+use twintac_softbody::{Frame, Isochoric, Material, PronyTerm, SoftBody, SolveError, SolverSettings};
+
+const BALL: Ball = Ball { radius_mm: 12.5 };
+
+/// Worst relative errors in force and pressure against the converged results of two other codes (20-node hexahedra, and quadratic
+/// tetrahedra with a pressure field): 34 × 18 × 8.5 mm, E = 70 kPa, ν = 0.49, pressure at the bottom over a disc of 1 mm.
+fn errors(cells: [usize; 3]) -> [f64; 2] {
+    let (x, y, z) = (
+        even(-17.0, 17.0, cells[0]),
+        even(-9.0, 9.0, cells[1]),
+        even(0.0, 8.5, cells[2]),
+    );
+    let body = SoftBody::new(
+        block(&x, &y, &z),
+        Material::neo_hookean(70.0, 0.49),
+        SolverSettings::default(),
+    )
+    .unwrap();
+    let mut state = body.rest();
+    let mut worst = [0.0_f64; 2];
+    for (depth_mm, force_n, pressure_kpa) in [
+        (0.5, 0.2155, 0.642),
+        (1.0, 0.7100, 2.109),
+        (2.0, 2.4585, 7.00),
+        (4.0, 8.881, 21.96),
+    ] {
+        let frame = press(&body, &mut state, &BALL, 8.5, depth_mm).unwrap();
+        let pressure = disc_mean(&x, &y, &body.pressure_kpa(&state), [4.0, 4.0], 1.0);
+        let found = [
+            -frame.indenter_force_n.z / force_n - 1.0,
+            pressure / pressure_kpa - 1.0,
+        ];
+        println!(
+            "{depth_mm} mm: force {:+.2} %, pressure {:+.2} %",
+            100.0 * found[0],
+            100.0 * found[1]
+        );
+        worst = [worst[0].max(found[0].abs()), worst[1].max(found[1].abs())];
+    }
+    worst
+}
+
+#[test]
+fn force_and_pressure_agree_with_the_reference() {
+    let [force, pressure] = errors([25, 14, 7]);
+    assert!(force < 0.03, "{force}");
+    assert!(pressure < 0.08, "{pressure}");
+}
+
+#[test]
+#[ignore = "7,200 nodes take a minute"]
+fn force_and_pressure_agree_better_on_a_finer_mesh() {
+    let [force, pressure] = errors([35, 19, 9]);
+    assert!(force < 0.01, "{force}");
+    assert!(pressure < 0.05, "{pressure}");
+}
+
+fn coarse(material: Material) -> SoftBody {
+    let mesh = block(&even(-17.0, 17.0, 14), &even(-9.0, 9.0, 8), &even(0.0, 8.5, 4));
+    SoftBody::new(mesh, material, SolverSettings::default()).unwrap()
+}
+
+#[track_caller]
+fn assert_balanced(frame: &Frame) {
+    let sum = frame.indenter_force_n + frame.board_reaction_n + frame.obstacle_reaction_n;
+    let load = frame.indenter_force_n.length();
+    assert!(sum.length() < 1e-6 * load, "{} of {load}", sum.length());
+}
+
+#[test]
+fn forces_balance_against_board_and_walls() {
+    let mesh = block(&even(-8.0, 8.0, 10), &even(-6.0, 6.0, 8), &even(0.0, 6.0, 4));
+    let settings = SolverSettings {
+        tolerance: 1e-8,
+        ..SolverSettings::default()
+    };
+    let body = SoftBody::new(mesh, Material::neo_hookean(70.0, 0.49), settings)
+        .unwrap()
+        .with_obstacle(Arc::new(Walls { half_mm: [8.1, 6.1] }), Pose::IDENTITY);
+    let mut state = body.rest();
+    let rotation = DQuat::from_rotation_y(0.1);
+    for depth_mm in [0.5, 1.5, 2.5] {
+        // Off the centre, so that the walls' forces do not cancel.
+        let pose = Pose {
+            position_mm: DVec3::new(3.0, 1.0, 6.0 - depth_mm),
+            rotation,
+        };
+        let frame = body.advance(&mut state, &BALL, &pose, 0.0).unwrap();
+        assert_balanced(&frame);
+        assert!(frame.penetration_mm <= 0.005, "{}", frame.penetration_mm);
+        assert!(frame.smallest_volume_ratio > 0.0);
+    }
+    let frame = body
+        .advance(
+            &mut state,
+            &BALL,
+            &Pose {
+                position_mm: DVec3::new(3.0, 1.0, 3.0),
+                rotation,
+            },
+            0.0,
+        )
+        .unwrap();
+    assert!(
+        frame.obstacle_reaction_n.length() > 0.01,
+        "the gel never reached a wall: {frame:?}"
+    );
+    assert_balanced(&frame);
+    // A ball is the same however it is turned about its centre: no torque about it.
+    let lever = rotation * DVec3::Z * BALL.radius_mm;
+    let about_center = frame.indenter_torque_n_mm - lever.cross(frame.indenter_force_n);
+    assert!(
+        about_center.length() < 1e-9 * lever.length() * frame.indenter_force_n.length(),
+        "{about_center}"
+    );
+}
+
+#[test]
+fn a_small_ball_goes_deep() {
+    let mesh = block(&even(-6.0, 6.0, 16), &even(-6.0, 6.0, 16), &even(0.0, 5.0, 7));
+    let body = SoftBody::new(mesh, Material::neo_hookean(70.0, 0.49), SolverSettings::default()).unwrap();
+    let ball = Ball { radius_mm: 2.0 };
+    let mut state = body.rest();
+    let mut last_n = 0.0;
+    for step in 1..=6 {
+        let frame = press(&body, &mut state, &ball, 5.0, 0.5 * f64::from(step)).unwrap();
+        println!("{frame:?}");
+        assert!(frame.smallest_volume_ratio > 0.0);
+        assert!(-frame.indenter_force_n.z > last_n);
+        last_n = -frame.indenter_force_n.z;
+    }
+    // All at once, from rest, must end in the same place.
+    let mut other = body.rest();
+    let frame = press(&body, &mut other, &ball, 5.0, 3.0).unwrap();
+    assert!(
+        (-frame.indenter_force_n.z / last_n - 1.0).abs() < 0.005,
+        "{} {last_n}",
+        frame.indenter_force_n.z
+    );
+}
+
+#[test]
+fn what_is_pressed_comes_back() {
+    let body = coarse(Material::neo_hookean(70.0, 0.49));
+    let mut state = body.rest();
+    for depth_mm in [1.0, 2.0, 1.0, 0.0, -0.5] {
+        press(&body, &mut state, &BALL, 8.5, depth_mm).unwrap();
+    }
+    let largest = state
+        .displacements_mm()
+        .iter()
+        .map(|u| u.length())
+        .fold(0.0, f64::max);
+    assert!(largest < 1e-6, "{largest}");
+}
+
+#[test]
+fn two_runs_agree_bit_for_bit() {
+    let prony = vec![PronyTerm {
+        weight: 0.2,
+        time_s: 0.5,
+    }];
+    let isochoric = Isochoric::Yeoh {
+        c10_kpa: 8.0,
+        c20_kpa: 0.1,
+        c30_kpa: 0.0,
+    };
+    let body = coarse(Material {
+        isochoric,
+        bulk_modulus_kpa: 1500.0,
+        prony,
+    });
+    let run = || {
+        let mut state = body.rest();
+        [0.5, 1.0, 2.0, 2.0, 1.0]
+            .map(|depth| {
+                let pose = Pose::from_position(DVec3::Z * (8.5 - depth));
+                let frame = body.advance(&mut state, &BALL, &pose, 0.1).unwrap();
+                let bits = frame.indenter_force_n.to_array().map(f64::to_bits);
+                (
+                    bits,
+                    body.pressure_kpa(&state)
+                        .iter()
+                        .map(|p| p.to_bits())
+                        .collect::<Vec<_>>(),
+                )
+            })
+            .to_vec()
+    };
+    let first = run();
+    assert_eq!(first, run());
+    std::thread::scope(|scope| {
+        let threads = [scope.spawn(run), scope.spawn(run)];
+        threads
+            .into_iter()
+            .for_each(|thread| assert_eq!(first, thread.join().unwrap()));
+    });
+}
+
+#[test]
+fn an_impossible_press_is_an_error_and_changes_nothing() {
+    let body = coarse(Material::neo_hookean(70.0, 0.49));
+    let mut state = body.rest();
+    press(&body, &mut state, &BALL, 8.5, 1.0).unwrap();
+    let before = state.displacements_mm().to_vec();
+    // The ball would have to pass through the board.
+    let error = press(&body, &mut state, &BALL, 8.5, 9.5).unwrap_err();
+    println!("{error}");
+    assert!(!matches!(error, SolveError::Input { .. }), "{error}");
+    assert_eq!(before, state.displacements_mm());
+    press(&body, &mut state, &BALL, 8.5, 1.2).unwrap();
+
+    let error = press(&body, &mut state, &BALL, 8.5, f64::NAN).unwrap_err();
+    assert!(matches!(error, SolveError::Input { .. }), "{error}");
+    let error = body
+        .advance(&mut state, &BALL, &Pose::from_position(DVec3::Z * 7.0), -1.0)
+        .unwrap_err();
+    assert!(matches!(error, SolveError::Input { .. }), "{error}");
+}
