@@ -9,11 +9,17 @@ use crate::SolveError;
 use crate::body::SoftBody;
 use crate::contact::RigidBody;
 use crate::material::Relaxation;
-use crate::newton::{Equilibrium, Failure, Step, Unknowns, hold_forces};
+use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::state::{Frame, Motion, State};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
 const CLEARANCE_MM: f64 = 0.01;
+
+/// Moves after which an indenter is taken to be out of the body.
+const MAX_RETREATS: u32 = 50;
+
+/// Part of its smallest dimension by which an indenter may move at once.
+const THICKNESS_PART: f64 = 0.25;
 
 /// How far past the last motion the next may be extrapolated.
 const MAX_EXTRAPOLATION: f64 = 2.0;
@@ -29,6 +35,7 @@ impl SoftBody {
         time_step_s: f64,
     ) -> Result<Frame, SolveError> {
         check_pose(gel_from_indenter)?;
+        self.check_way(state, indenter, gel_from_indenter)?;
         let start = state
             .gel_from_indenter
             .unwrap_or_else(|| self.retreat(state, indenter, gel_from_indenter));
@@ -80,9 +87,15 @@ impl SoftBody {
         }
         let before = state.clone();
         let mut iterations = 0;
-        let (mut done, mut size) = (0.0, 1.0_f64);
+        let largest = drive.largest_part(self.settings.max_travel_mm);
+        let (mut done, mut size) = (0.0, largest);
         loop {
-            let next = f64::min(done + size, 1.0);
+            // The last part takes what round-off leaves.
+            let next = if done + size > 1.0 - 1e-9 {
+                1.0
+            } else {
+                done + size
+            };
             match self.substep(
                 state,
                 drive,
@@ -94,8 +107,8 @@ impl SoftBody {
                     let wall_time_s = started.elapsed().as_secs_f64();
                     return Ok(self.frame(state, &equilibrium, iterations, wall_time_s));
                 }
-                Ok(_) => done = next,
-                Err(_) if 0.5 * size >= self.settings.min_substep => size *= 0.5,
+                Ok(_) => (done, size) = (next, (2.0 * size).min(largest)),
+                Err(_) if 0.5 * size >= self.settings.min_substep * largest => size *= 0.5,
                 Err(failure) => {
                     let workspace = std::mem::take(&mut state.workspace);
                     *state = State { workspace, ..before };
@@ -134,16 +147,14 @@ impl SoftBody {
             gel_from_shape: *pose,
         }));
         let old = state.clone();
-        state.touches[0]
-            .iter_mut()
-            .for_each(|touch| touch.forget_distance());
+        state.contacts[0].forget_distances();
         drive.hold(self, part[1], &mut state.displacements_mm);
 
         let State {
             displacements_mm,
             pressures_mpa,
             memory,
-            touches,
+            contacts,
             workspace,
             last,
             ..
@@ -157,7 +168,7 @@ impl SoftBody {
         let mut x = Unknowns {
             displacements_mm,
             pressures_mpa,
-            touches,
+            contacts,
         };
         let travel_mm = to.position_mm - from.position_mm;
         let ratio = last
@@ -186,7 +197,6 @@ impl SoftBody {
                     let deformation = element.deformation(displacements_mm);
                     memory.remember(&relaxation, &self.material().isochoric, tet, &deformation);
                 }
-                hold_forces(touches);
                 if let Drive::Indenter { .. } = drive {
                     let displacements_mm = state
                         .displacements_mm
@@ -224,10 +234,10 @@ impl SoftBody {
             .map_or(DVec3::ZERO, |pose| pose.position_mm);
         let at_mm = |node: usize| self.mesh().nodes_mm[node] + state.displacements_mm[node];
         let mut torque = DVec3::ZERO;
-        let mut forces = vec![DVec3::ZERO; state.touches.len()];
+        let mut forces = vec![DVec3::ZERO; state.contacts.len()];
         let mut penetration_mm: f64 = 0.0;
-        for (shape, touches) in state.touches.iter().enumerate() {
-            for (boundary, touch) in self.boundary.iter().zip(touches) {
+        for (shape, contact) in state.contacts.iter().enumerate() {
+            for (boundary, touch) in self.boundary.iter().zip(&contact.touches) {
                 let force = touch.normal * touch.force_n;
                 forces[shape] += force;
                 if shape == 0 {
@@ -274,26 +284,57 @@ impl SoftBody {
             .collect()
     }
 
-    /// A pose near another at which the indenter does not touch the body: straight out of it.
-    fn retreat(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Pose {
-        let mut free = *pose;
-        for _ in 0..20 {
-            let deepest = self
-                .boundary
-                .iter()
-                .map(|boundary| {
-                    let node = boundary.node as usize;
-                    let at_mm = self.mesh().nodes_mm[node] + state.displacements_mm[node];
-                    indenter.signed_distance(free.inverse_transform_point(at_mm))
-                })
-                .min_by(|a, b| a.distance_mm.total_cmp(&b.distance_mm));
-            match deepest {
-                Some(deepest) if deepest.distance_mm < 0.0 => {
-                    free.position_mm -=
-                        free.rotation * deepest.gradient * (CLEARANCE_MM - deepest.distance_mm);
-                }
-                _ => break,
+    /// Refuses an indenter that reaches into what the body is bonded to: no gel is left there that could stop it.
+    fn check_way(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Result<(), SolveError> {
+        for &node in &self.mesh().sets.bonded {
+            let at_mm = self.mesh().nodes_mm[node as usize] + state.displacements_mm[node as usize];
+            let distance_mm = indenter
+                .signed_distance(pose.inverse_transform_point(at_mm))
+                .distance_mm;
+            if distance_mm < -self.settings.penetration_mm {
+                return Err(SolveError::Blocked {
+                    at_mm,
+                    depth_mm: -distance_mm,
+                });
             }
+        }
+        Ok(())
+    }
+
+    /// Where an indenter without a past comes from: straight out of the body, along the mean of the outward normals where it is inside.
+    fn retreat(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Pose {
+        let mesh = self.mesh();
+        let mut normals = vec![DVec3::ZERO; mesh.nodes_mm.len()];
+        for triangle in mesh.boundary_triangles() {
+            let area_vector = mesh.area_vector_mm2(&triangle);
+            triangle
+                .iter()
+                .for_each(|&node| normals[node as usize] += area_vector);
+        }
+        let mut free = *pose;
+        let mut way_out = DVec3::ZERO;
+        for _ in 0..MAX_RETREATS {
+            let mut deepest_mm: f64 = 0.0;
+            let mut normal = DVec3::ZERO;
+            for boundary in &self.boundary {
+                let node = boundary.node as usize;
+                let at_mm = mesh.nodes_mm[node] + state.displacements_mm[node];
+                let gap_mm = indenter
+                    .signed_distance(free.inverse_transform_point(at_mm))
+                    .distance_mm;
+                if gap_mm < 0.0 {
+                    normal += normals[node];
+                    deepest_mm = deepest_mm.max(-gap_mm);
+                }
+            }
+            if deepest_mm == 0.0 {
+                break;
+            }
+            // The first answer stays: as the indenter leaves, ever fewer nodes are asked.
+            if way_out == DVec3::ZERO {
+                way_out = normal.normalize_or(DVec3::Z);
+            }
+            free.position_mm += way_out * (deepest_mm + CLEARANCE_MM);
         }
         free
     }
@@ -321,6 +362,24 @@ impl Drive<'_> {
             },
             Self::Indenter { to, .. } => *to,
             Self::Bonded { .. } => Pose::IDENTITY,
+        }
+    }
+
+    /// Largest part of the motion that may be taken at once: a node that a moving shape has swallowed must still be nearest to the side
+    /// by which it came in.
+    fn largest_part(&self, max_travel_mm: f64) -> f64 {
+        let Self::Indenter { shape, from, to } = self else {
+            return 1.0;
+        };
+        let (low, high) = shape.bounds_mm();
+        let reach_mm = low.abs().max(high.abs()).length();
+        let turn = from.rotation.angle_between(to.rotation);
+        let travel_mm = from.position_mm.distance(to.position_mm) + turn * reach_mm;
+        let limit_mm = max_travel_mm.min(THICKNESS_PART * (high - low).min_element());
+        if travel_mm > limit_mm && limit_mm > 0.0 {
+            1.0 / (travel_mm / limit_mm).ceil()
+        } else {
+            1.0
         }
     }
 

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use twintac_mesh::TetMesh;
 use twintac_shape::{Pose, SignedDistance};
 
-use crate::contact::{BoundaryNode, Touch};
+use crate::contact::{BoundaryNode, Contact};
 use crate::element::Element;
 use crate::material::{KPA_PER_MPA, Material, Memory, Relaxation};
 use crate::ordering::elimination_order;
@@ -122,7 +122,7 @@ impl SoftBody {
             displacements_mm: vec![DVec3::ZERO; n_nodes],
             pressures_mpa: vec![0.0; n_nodes],
             memory: Memory::new(self.elements.len(), &self.material.prony),
-            touches: vec![vec![Touch::default(); self.boundary.len()]; 1 + self.obstacles.len()],
+            contacts: vec![Contact::new(self.boundary.len()); 1 + self.obstacles.len()],
             gel_from_indenter: None,
             last: None,
             workspace: crate::newton::Workspace::default(),

@@ -1,10 +1,14 @@
 //! Frictionless contact of boundary nodes with rigid shapes, known by their signed distance.
 //!
-//! Augmented Lagrangian (Simo and Laursen, Comput. Struct. 42, 1992): a node with gap `g`, multiplier `λ` and stiffness `κ` adds
-//! `(max(0, λ - κ g)² - λ²)/(2κ)` to the energy, and is pushed along the shape's outward normal with `max(0, λ - κ g)`.
+//! A node with gap `g < 0` adds about `κ g²/2` to the energy, and is pushed along the shape's outward normal with about `-κ g`. The stiffness `κ`
+//! is so far above the gel's that penetrations are some micrometres; where they are not, a step raises it. There are no multipliers: in
+//! a hollow corner the direction of the nearest wall jumps outside the shape, but not inside, where alone this force acts.
 
 use glam::{DMat3, DVec3};
 use twintac_shape::{Pose, SignedDistance};
+
+/// Depth over which the force of contact starts, mm. A sudden start would leave Newton's method going to and fro across it.
+const RAMP_MM: f64 = 0.001;
 
 /// Half the distance between the points at which the curvature of a shape is sampled, mm.
 const CURVATURE_STEP_MM: f64 = 1e-4;
@@ -33,12 +37,19 @@ pub(crate) struct Touch {
     pub(crate) normal: DVec3,
     /// Force that pushes the node out, N, not below zero.
     pub(crate) force_n: f64,
-    /// Multiplier λ, N.
-    pub(crate) multiplier_n: f64,
     /// Where the gap was measured last, in the shape's frame.
     measured_at_mm: DVec3,
     /// What was measured there; a signed distance changes no faster than its point moves.
     measured_mm: f64,
+}
+
+/// What all boundary nodes feel of one shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Contact {
+    /// `[n_boundary_nodes]`
+    pub(crate) touches: Vec<Touch>,
+    /// What the stiffness of the nodes is multiplied by.
+    pub(crate) stiffening: f64,
 }
 
 impl RigidBody<'_> {
@@ -47,7 +58,7 @@ impl RigidBody<'_> {
     pub(crate) fn touch(&self, touch: &mut Touch, at_mm: DVec3, stiffness: f64) -> f64 {
         let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
         let bound_mm = touch.measured_mm - local_mm.distance(touch.measured_at_mm);
-        if bound_mm > 0.0 && touch.multiplier_n == 0.0 {
+        if bound_mm > 0.0 {
             touch.gap_mm = bound_mm;
             touch.force_n = 0.0;
             return 0.0;
@@ -57,11 +68,12 @@ impl RigidBody<'_> {
         touch.measured_mm = distance.distance_mm;
         touch.gap_mm = distance.distance_mm;
         touch.normal = self.gel_from_shape.rotation * distance.gradient;
-        touch.force_n = (touch.multiplier_n - stiffness * touch.gap_mm).max(0.0);
-        (touch.force_n * touch.force_n - touch.multiplier_n * touch.multiplier_n) / (2.0 * stiffness)
+        let (energy, force_n, _) = penalty(touch.gap_mm, stiffness);
+        touch.force_n = force_n;
+        energy
     }
 
-    /// Second derivative of a touching node's contact energy, N/mm: `κ n⊗n - f ∇²d`.
+    /// Second derivative of a touching node's contact energy, N/mm: `k n⊗n - f ∇²g`, `k` the slope of the force.
     pub(crate) fn stiffness(
         &self,
         touch: &Touch,
@@ -70,6 +82,7 @@ impl RigidBody<'_> {
         with_curvature: bool,
     ) -> DMat3 {
         let normal = touch.normal;
+        let (_, _, stiffness) = penalty(touch.gap_mm, stiffness);
         let mut sum = outer(normal * stiffness, normal);
         if with_curvature {
             let tangent = normal.any_orthonormal_vector();
@@ -86,9 +99,9 @@ impl RigidBody<'_> {
             let (along_tangent, along_other) = (slope(tangent), slope(other));
             let mixed = 0.5 * (along_tangent.dot(other) + along_other.dot(tangent));
             let (first, second) = (along_tangent.dot(tangent), along_other.dot(other));
-            // Beside an edge the sampled curvature has no bound; the tangent must not lose the contact's own stiffness.
-            let size = first.abs().max(second.abs()) + mixed.abs();
-            let force = touch.force_n.min(0.5 * stiffness / size.max(1e-12));
+            // Beside a sharp edge the sampled curvature has no bound; the tangent must not lose the contact's own stiffness.
+            let most = first.max(second) + mixed.abs();
+            let force = touch.force_n.min(0.5 * stiffness / most.max(1e-12));
             sum -= outer(tangent * first + other * mixed, tangent) * force;
             sum -= outer(tangent * mixed + other * second, other) * force;
         }
@@ -96,13 +109,54 @@ impl RigidBody<'_> {
     }
 }
 
-impl Touch {
-    /// Forgets where the shape was: it has been replaced by another, or there is none yet.
-    pub(crate) fn forget_distance(&mut self) {
-        self.measured_mm = 0.0;
+impl Contact {
+    /// No contact yet.
+    pub(crate) fn new(n_boundary_nodes: usize) -> Self {
+        Self {
+            touches: vec![Touch::default(); n_boundary_nodes],
+            stiffening: 1.0,
+        }
+    }
+
+    /// Forgets what was measured: the shape may be another now.
+    pub(crate) fn forget_distances(&mut self) {
+        self.touches.iter_mut().for_each(|touch| touch.measured_mm = 0.0);
+    }
+}
+
+/// Energy, force and slope of the force at a gap: the force rises with stiffness `κ`, after a quadratic start.
+#[inline]
+fn penalty(gap_mm: f64, stiffness: f64) -> (f64, f64, f64) {
+    let depth_mm = (-gap_mm).max(0.0);
+    if depth_mm < RAMP_MM {
+        let slope = stiffness * depth_mm / RAMP_MM;
+        (slope * depth_mm * depth_mm / 6.0, 0.5 * slope * depth_mm, slope)
+    } else {
+        let past_mm = depth_mm - 0.5 * RAMP_MM;
+        (
+            stiffness * (0.5 * past_mm * past_mm + RAMP_MM * RAMP_MM / 24.0),
+            stiffness * past_mm,
+            stiffness,
+        )
     }
 }
 
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn force_and_slope_are_those_of_the_energy() {
+        for gap_mm in [0.1, -0.0002, -0.0009, -0.0011, -0.02] {
+            let (_, force, slope) = penalty(gap_mm, 3.0);
+            let step = 1e-7;
+            let [before, after] = [gap_mm - step, gap_mm + step].map(|gap_mm| penalty(gap_mm, 3.0));
+            assert!((force + (after.0 - before.0) / (2.0 * step)).abs() < 1e-8);
+            assert!((slope + (after.1 - before.1) / (2.0 * step)).abs() < 1e-6);
+        }
+    }
 }

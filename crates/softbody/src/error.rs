@@ -88,6 +88,14 @@ pub enum SolveError {
         /// Part of the step that did converge.
         fraction: f64,
     },
+    /// The indenter would reach into what the body is bonded to.
+    #[error("the indenter would be {depth_mm:.3} mm deep in what the body is bonded to at {at_mm} mm")]
+    Blocked {
+        /// A bonded node inside the indenter, mm.
+        at_mm: glam::DVec3,
+        /// How deep inside, mm.
+        depth_mm: f64,
+    },
     /// A pose or time that is no number, or a time that runs backwards.
     #[error("{what} is {found}, expected {expected}")]
     Input {

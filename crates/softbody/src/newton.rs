@@ -4,7 +4,7 @@ use faer::dyn_stack::MemBuffer;
 use glam::{DMat3, DVec3};
 
 use crate::body::SoftBody;
-use crate::contact::{RigidBody, Touch};
+use crate::contact::{Contact, RigidBody};
 use crate::krylov::{ConjugateGradients, Outcome};
 use crate::material::{Memory, Relaxation};
 use crate::system::Factors;
@@ -14,6 +14,9 @@ const MAX_TRIALS: u32 = 20;
 
 /// Part of the decrease promised by the slope that a trial step must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+/// What contact stiffness is multiplied by where nodes are too deep inside a shape.
+const STIFFENING: f64 = 4.0;
 
 /// Steps below this part of their direction are short.
 const SHORT: f64 = 0.2;
@@ -47,7 +50,7 @@ pub(crate) struct Step<'a> {
 pub(crate) struct Unknowns<'a> {
     pub(crate) displacements_mm: &'a mut Vec<DVec3>,
     pub(crate) pressures_mpa: &'a mut Vec<f64>,
-    pub(crate) touches: &'a mut Vec<Vec<Touch>>,
+    pub(crate) contacts: &'a mut Vec<Contact>,
 }
 
 /// Why a step failed.
@@ -137,32 +140,35 @@ impl Buffers {
         self.damping = 0.0;
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
-        let mut is_last_resort = false;
+        let mut has_failed = false;
         for _ in 0..=settings.max_iterations {
             let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n());
             if residual <= settings.tolerance {
-                if !push_out(body, x.touches) {
+                if !push_out(body, x.contacts) {
                     return Ok(Equilibrium {
                         residual,
                         smallest_volume_ratio: now.smallest_volume_ratio,
                     });
                 }
                 now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
-            } else if is_last_resort {
-                break;
             }
             *iterations += 1;
             self.find_direction(body, step, x)?;
             match self.search(body, step, x, &now) {
                 Ok((next, length)) => {
                     now = next;
+                    has_failed = false;
                     self.adapt_damping(length);
                 }
-                Err(failure @ Failure::Inverted) => return Err(failure),
-                Err(_) => {
-                    is_last_resort = true;
+                // A direction that leads nowhere: once more with new factors and a short leash.
+                Err(_) if !has_failed => {
+                    has_failed = true;
+                    self.has_factors = false;
+                    self.adapt_damping(0.0);
                     now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
                 }
+                Err(Failure::Inverted) => return Err(Failure::Inverted),
+                Err(_) => break,
             }
         }
         Err(Failure::NotConverged {
@@ -232,11 +238,11 @@ impl Buffers {
                 self.gradient_n[node as usize] += force;
             }
         }
-        for (shape, touches) in step.shapes.iter().zip(x.touches.iter_mut()) {
-            for (boundary, touch) in body.boundary.iter().zip(touches) {
+        for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
+            for (boundary, touch) in body.boundary.iter().zip(&mut contact.touches) {
                 let node = boundary.node as usize;
                 let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness);
+                evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness * contact.stiffening);
                 self.gradient_n[node] -= touch.normal * touch.force_n;
                 evaluation.load_n += touch.force_n;
             }
@@ -353,12 +359,17 @@ impl Buffers {
             let tangent = element.tangent(&deformation, &response, element.mean(x.pressures_mpa));
             body.system.add(&mut self.factors, tet, element, &tangent);
         }
-        for (shape, touches) in step.shapes.iter().zip(x.touches.iter()) {
-            for (boundary, touch) in body.boundary.iter().zip(touches) {
+        for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
+            for (boundary, touch) in body.boundary.iter().zip(&contact.touches) {
                 if touch.force_n > 0.0 {
                     let node = boundary.node as usize;
                     let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                    let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, with_curvature);
+                    let stiffness = shape.stiffness(
+                        touch,
+                        at_mm,
+                        boundary.stiffness * contact.stiffening,
+                        with_curvature,
+                    );
                     body.system.add_to_node(&mut self.factors, node, &stiffness);
                 }
             }
@@ -439,21 +450,20 @@ impl Buffers {
     }
 }
 
-/// Raises the multipliers of nodes that are too deep inside a shape; true if there were any.
-fn push_out(body: &SoftBody, touches: &mut [Vec<Touch>]) -> bool {
-    let is_deep = |touch: &Touch| touch.gap_mm < -body.settings.penetration_mm;
-    if !touches.iter().flatten().any(is_deep) {
-        return false;
+/// Stiffens the contact with shapes that a node is too deep inside of; true if there are any.
+fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
+    let mut any = false;
+    for contact in contacts {
+        if contact
+            .touches
+            .iter()
+            .any(|touch| touch.gap_mm < -body.settings.penetration_mm)
+        {
+            contact.stiffening *= STIFFENING;
+            any = true;
+        }
     }
-    hold_forces(touches);
-    true
-}
-
-/// Makes the forces of contact its multipliers.
-pub(crate) fn hold_forces(touches: &mut [Vec<Touch>]) {
-    for touch in touches.iter_mut().flatten() {
-        touch.multiplier_n = touch.force_n;
-    }
+    any
 }
 
 fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {

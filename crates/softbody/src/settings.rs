@@ -10,13 +10,15 @@ use crate::SoftBodyError;
 pub struct SolverSettings {
     /// A step has converged when the 2-norm of the unbalanced nodal forces is below this part of the load. Default 1e-6.
     pub tolerance: f64,
-    /// Newton iterations before a sub-step is given up and halved. Default 50.
+    /// Newton iterations before a sub-step is given up and halved. Default 40.
     pub max_iterations: u32,
-    /// Smallest sub-step as part of the step asked for. Default 1/64.
+    /// Farthest the indenter moves in one sub-step, mm. Default 0.5.
+    pub max_travel_mm: f64,
+    /// Smallest sub-step as part of that or of the step asked for, whichever is smaller. Default 1/16.
     pub min_substep: f64,
-    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 500.
+    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 1000.
     pub contact_stiffness: f64,
-    /// Largest penetration left after a step, mm; deeper ones are pushed out by raising the contact's multipliers. Default 0.005.
+    /// Largest depth of a node inside a shape after a step, mm; contact is stiffened until it is reached. Default 0.005.
     pub penetration_mm: f64,
     /// Weight of the pressure stabilisation; 1 is that of Dohrmann and Bochev (2004), 0 none. Default 0.25.
     pub stabilisation: f64,
@@ -26,9 +28,10 @@ impl Default for SolverSettings {
     fn default() -> Self {
         Self {
             tolerance: 1e-6,
-            max_iterations: 50,
-            min_substep: 1.0 / 64.0,
-            contact_stiffness: 500.0,
+            max_iterations: 40,
+            max_travel_mm: 0.5,
+            min_substep: 1.0 / 16.0,
+            contact_stiffness: 1000.0,
             penetration_mm: 0.005,
             stabilisation: 0.25,
         }
@@ -50,6 +53,7 @@ impl SolverSettings {
         };
         positive("tolerance", self.tolerance)?;
         positive("max_iterations", f64::from(self.max_iterations))?;
+        positive("max_travel_mm", self.max_travel_mm)?;
         positive("min_substep", self.min_substep)?;
         positive("contact_stiffness", self.contact_stiffness)?;
         positive("penetration_mm", self.penetration_mm)?;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use twintac_shape::Pose;
 
-use crate::contact::Touch;
+use crate::contact::Contact;
 use crate::material::{KPA_PER_MPA, Memory};
 use crate::newton::Workspace;
 
@@ -13,8 +13,8 @@ pub struct State {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
     pub(crate) memory: Memory,
-    /// `[n_shapes][n_boundary_nodes]`; the indenter first, then the obstacles.
-    pub(crate) touches: Vec<Vec<Touch>>,
+    /// The indenter first, then the obstacles.
+    pub(crate) contacts: Vec<Contact>,
     pub(crate) gel_from_indenter: Option<Pose>,
     /// Last accepted motion, to start the next from.
     pub(crate) last: Option<Motion>,

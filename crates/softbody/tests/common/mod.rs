@@ -1,5 +1,5 @@
 //! Blocks, spheres and boxes to press.
-#![allow(dead_code)]
+#![allow(dead_code)] // each test takes what it needs
 
 use std::collections::BTreeSet;
 
@@ -9,8 +9,8 @@ use twintac_shape::{Distance, Pose, SignedDistance};
 use twintac_softbody::{Frame, SoftBody, State};
 
 /// A ball whose lowest point is its origin.
-pub struct Ball {
-    pub radius_mm: f64,
+pub(crate) struct Ball {
+    pub(crate) radius_mm: f64,
 }
 
 impl SignedDistance for Ball {
@@ -30,8 +30,8 @@ impl SignedDistance for Ball {
 }
 
 /// Everything outside a box about the z axis: four walls.
-pub struct Walls {
-    pub half_mm: [f64; 2],
+pub(crate) struct Walls {
+    pub(crate) half_mm: [f64; 2],
 }
 
 impl SignedDistance for Walls {
@@ -59,14 +59,14 @@ impl SignedDistance for Walls {
 }
 
 /// `n + 1` equally spaced values.
-pub fn even(from: f64, to: f64, n: usize) -> Vec<f64> {
+pub(crate) fn even(from: f64, to: f64, n: usize) -> Vec<f64> {
     (0..=n)
         .map(|i| from + (to - from) * i as f64 / n as f64)
         .collect()
 }
 
 /// Values from 0 to `to`, spaced by `edge` at first and growing by `growth` after `fine`.
-pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
+pub(crate) fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
     let mut values = vec![0.0];
     let (mut at, mut step) = (0.0, edge);
     while at < to {
@@ -88,7 +88,7 @@ pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
 }
 
 /// The values and their mirror images.
-pub fn mirrored(half: &[f64]) -> Vec<f64> {
+pub(crate) fn mirrored(half: &[f64]) -> Vec<f64> {
     half.iter()
         .skip(1)
         .rev()
@@ -98,7 +98,7 @@ pub fn mirrored(half: &[f64]) -> Vec<f64> {
 }
 
 /// A block of bricks, six tetrahedra each, its bottom bonded.
-pub fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
+pub(crate) fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
     let (nx, ny, nz) = (x_mm.len(), y_mm.len(), z_mm.len());
     let index = |i: usize, j: usize, k: usize| (i + nx * (j + ny * k)) as u32;
     let mut nodes_mm = Vec::new();
@@ -141,7 +141,7 @@ pub fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
 }
 
 /// Bonds the boundary nodes that a test picks; the rest is free.
-pub fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
+pub(crate) fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
     let boundary: BTreeSet<u32> = mesh.boundary_triangles().into_iter().flatten().collect();
     let (bonded, free) = boundary
         .into_iter()
@@ -154,7 +154,7 @@ pub fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
 }
 
 /// Presses straight down from the height at which the origin touches.
-pub fn press(
+pub(crate) fn press(
     body: &SoftBody,
     state: &mut State,
     indenter: &dyn SignedDistance,
@@ -170,7 +170,7 @@ pub fn press(
 }
 
 /// Mean over a disc of a nodal field given on the bottom of a block with these lines, by bilinear interpolation.
-pub fn disc_mean(x_mm: &[f64], y_mm: &[f64], field: &[f64], at_mm: [f64; 2], radius_mm: f64) -> f64 {
+pub(crate) fn disc_mean(x_mm: &[f64], y_mm: &[f64], field: &[f64], at_mm: [f64; 2], radius_mm: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for i in -20..=20 {
         for j in -20..=20 {
