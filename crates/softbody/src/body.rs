@@ -197,8 +197,7 @@ fn check(mesh: &TetMesh) -> Result<(), SoftBodyError> {
             .iter()
             .try_for_each(|&node| check(&|| format!("tetrahedron {tet}"), node))?;
         let volume_mm3 = mesh.tet_volume_mm3(tet);
-        // Not `<= 0`, so that a NaN is refused as well.
-        if !(volume_mm3 > 0.0) {
+        if volume_mm3.is_nan() || volume_mm3 <= 0.0 {
             return Err(SoftBodyError::Degenerate { tet, volume_mm3 });
         }
     }

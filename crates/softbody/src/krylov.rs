@@ -6,7 +6,7 @@
 
 use faer::dyn_stack::MemBuffer;
 
-use crate::pressure::Compressibility;
+use crate::body::SoftBody;
 use crate::system::{Factors, System};
 
 /// Vectors of the iteration, in the numbering of the system; the places of pressures hold zero. `[n_unknowns]`
@@ -50,8 +50,7 @@ impl ConjugateGradients {
     /// right-hand side; `target` is set where it is none.
     pub(crate) fn iterate(
         &mut self,
-        system: &System,
-        compressibility: &Compressibility,
+        body: &SoftBody,
         factors: &mut Factors,
         scratch: &mut MemBuffer,
         tolerance: f64,
@@ -60,7 +59,8 @@ impl ConjugateGradients {
     ) -> Outcome {
         let mut old_square = f64::INFINITY;
         for iteration in 0..=max_iterations {
-            system.precondition(factors, &self.residual, &mut self.preconditioned);
+            body.system
+                .precondition(factors, &self.residual, &mut self.preconditioned);
             let square = dot(&self.residual, &self.preconditioned);
             let whole = *target.get_or_insert(square);
             if square <= tolerance * tolerance * whole {
@@ -77,9 +77,9 @@ impl ConjugateGradients {
             for (d, z) in self.direction.iter_mut().zip(&self.preconditioned) {
                 *d = *z + if iteration == 0 { 0.0 } else { ratio * *d };
             }
-            self.multiply(system, compressibility, factors, scratch);
+            self.multiply(body, factors, scratch);
             let curvature = dot(&self.direction, &self.product);
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 return Outcome::NotConvex;
             }
             let length = square / curvature;
@@ -95,22 +95,19 @@ impl ConjugateGradients {
     }
 
     /// `product ← H direction`
-    fn multiply(
-        &mut self,
-        system: &System,
-        compressibility: &Compressibility,
-        factors: &Factors,
-        scratch: &mut MemBuffer,
-    ) {
+    fn multiply(&mut self, body: &SoftBody, factors: &Factors, scratch: &mut MemBuffer) {
         // [A d; -Bᵀd], and then less [-B q; ...] with q = S⁻¹Bᵀd in the pressures' places.
         self.product.fill(0.0);
-        system.multiply_add(factors, &self.direction, &mut self.product);
-        system.take_pressures(&mut self.product, &mut self.pressures);
-        compressibility.solve(&mut self.pressures, scratch);
+        body.system
+            .multiply_add(factors, &self.direction, &mut self.product);
+        body.system.take_pressures(&mut self.product, &mut self.pressures);
+        body.compressibility.solve(&mut self.pressures, scratch);
         self.pressure_part.fill(0.0);
-        system.put_pressures(&self.pressures, &mut self.pressure_part);
-        system.multiply_add(factors, &self.pressure_part, &mut self.product);
-        system.take_pressures(&mut self.product, &mut self.pressures);
+        body.system
+            .put_pressures(&self.pressures, &mut self.pressure_part);
+        body.system
+            .multiply_add(factors, &self.pressure_part, &mut self.product);
+        body.system.take_pressures(&mut self.product, &mut self.pressures);
     }
 }
 

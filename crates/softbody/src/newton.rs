@@ -209,8 +209,8 @@ impl Buffers {
                 x.pressures_mpa[node as usize] -= share;
             }
         }
-        // Not `<= 0`, so that a NaN is caught as well.
-        if !(evaluation.smallest_volume_ratio > 0.0) {
+        let smallest = evaluation.smallest_volume_ratio;
+        if smallest.is_nan() || smallest <= 0.0 {
             return None;
         }
         self.volume_changes.copy_from_slice(x.pressures_mpa);
@@ -282,16 +282,9 @@ impl Buffers {
                 MAX_STALE_ITERATIONS
             };
             let (factors, scratch) = (&mut self.factors, &mut self.pressure_scratch);
-            let (system, compressibility) = (&body.system, &body.compressibility);
-            let outcome = self.gradients.iterate(
-                system,
-                compressibility,
-                factors,
-                scratch,
-                FORCING,
-                &mut target,
-                limit,
-            );
+            let outcome = self
+                .gradients
+                .iterate(body, factors, scratch, FORCING, &mut target, limit);
             if outcome == Outcome::Converged || is_fresh {
                 break;
             }

@@ -6,11 +6,11 @@
 //!
 //! `p` positive in compression, `p²` integrated at the nodes, and `πp` the mean of `p` over a tetrahedron: the stabilisation of
 //! Dohrmann and Bochev (Int. J. Numer. Methods Fluids 46, 2004), which for a tetrahedron of size `h` is the better known
-//! `-α h²/(2μ) |∇p|²` with α near 0.05, but needs no choice of `h`. `Π` is quadratic and concave in `p`, so that its stationary
+//! `-α h²/(2μ) |∇p|²` with α near `0.04 w`, but needs no choice of `h`. `Π` is quadratic and concave in `p`, so that its stationary
 //! point can be put in: `p = -S⁻¹ g(u)` with `g_a = ∫ N_a (J - 1) dV`, and what is left is an energy of the displacements alone,
 //! `∫ W̄ dV + ½ gᵀ S⁻¹ g`, which a line search can go down. `S` never changes.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
@@ -90,10 +90,7 @@ impl Compressibility {
     }
 
     pub(crate) fn scratch(&self) -> MemBuffer {
-        MemBuffer::new(StackReq::and(
-            self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
-            StackReq::empty(),
-        ))
+        MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq))
     }
 
     /// `values ← S⁻¹ values`

@@ -1,5 +1,7 @@
 //! Homogeneous deformations of an irregular mesh against closed forms.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
+
 mod common;
 
 use common::{block, bond, even};

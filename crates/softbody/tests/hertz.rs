@@ -1,6 +1,8 @@
 //! A ball on a large block, against Hertz (1881) with the correction of Dimitriadis et al. (Biophys. J. 82, 2002) for a layer bonded
 //! to a rigid board.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
+
 mod common;
 
 use std::f64::consts::PI;
