@@ -31,7 +31,15 @@ fn main() -> ExitCode {
 
 fn lint() -> Result<()> {
     cargo(&["fmt", "--all", "--check"])?;
-    cargo(&["clippy", "--release", "--workspace", "--all-targets", "--", "--deny", "warnings"])
+    cargo(&[
+        "clippy",
+        "--release",
+        "--workspace",
+        "--all-targets",
+        "--",
+        "--deny",
+        "warnings",
+    ])
 }
 
 fn test() -> Result<()> {
@@ -41,7 +49,10 @@ fn test() -> Result<()> {
 fn cargo(arguments: &[&str]) -> Result<()> {
     eprintln!("cargo {}", arguments.join(" "));
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo).args(arguments).status().context("starting cargo")?;
+    let status = Command::new(cargo)
+        .args(arguments)
+        .status()
+        .context("starting cargo")?;
     if !status.success() {
         bail!("`cargo {}` failed", arguments.join(" "));
     }

@@ -16,10 +16,17 @@ fn own_dependencies() -> BTreeMap<String, BTreeSet<String>> {
         .current_dir(root())
         .output()
         .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let packages = metadata["packages"].as_array().unwrap();
-    let names: BTreeSet<&str> = packages.iter().map(|package| package["name"].as_str().unwrap()).collect();
+    let names: BTreeSet<&str> = packages
+        .iter()
+        .map(|package| package["name"].as_str().unwrap())
+        .collect();
     let dependencies_of = |package: &serde_json::Value| {
         let dependencies = package["dependencies"].as_array().unwrap();
         dependencies
@@ -30,7 +37,15 @@ fn own_dependencies() -> BTreeMap<String, BTreeSet<String>> {
             .map(str::to_owned)
             .collect()
     };
-    packages.iter().map(|package| (package["name"].as_str().unwrap().to_owned(), dependencies_of(package))).collect()
+    packages
+        .iter()
+        .map(|package| {
+            (
+                package["name"].as_str().unwrap().to_owned(),
+                dependencies_of(package),
+            )
+        })
+        .collect()
 }
 
 /// All that a crate reaches through the workspace's own crates.
@@ -71,9 +86,22 @@ fn files_named_in_the_documents_exist() {
         for (number, line) in text.lines().enumerate() {
             for quoted in line.split('`').skip(1).step_by(2) {
                 let first = quoted.split('/').next().unwrap_or_default();
-                let is_ours = ["crates", "sensors", "protocols", "imports", "realities", "xtask", "docs"].contains(&first);
+                let is_ours = [
+                    "crates",
+                    "sensors",
+                    "protocols",
+                    "imports",
+                    "realities",
+                    "xtask",
+                    "docs",
+                ]
+                .contains(&first);
                 if is_ours && quoted.contains('/') && !quoted.contains(['*', '{', ' ']) {
-                    assert!(root().join(quoted).exists(), "{document}:{}: `{quoted}` does not exist", number + 1);
+                    assert!(
+                        root().join(quoted).exists(),
+                        "{document}:{}: `{quoted}` does not exist",
+                        number + 1
+                    );
                 }
             }
         }
@@ -90,7 +118,11 @@ fn source_files_are_one_idea_each() {
                 pending.push(path);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
                 let size = fs::metadata(&path).unwrap().len();
-                assert!(size < 30_000, "{} has {size} bytes: look for the missing room", path.display());
+                assert!(
+                    size < 30_000,
+                    "{} has {size} bytes: look for the missing room",
+                    path.display()
+                );
             }
         }
     }

@@ -82,7 +82,7 @@ pub struct BenchSettings {
 impl Default for BenchSettings {
     fn default() -> Self {
         Self {
-            tip_radii_mm: vec![1.5, 2.2, 3.3, 5.0],
+            tip_radii_mm: vec![2.0, 3.0, 4.5, 6.5],
             n_places: 12,
             contact_offset_limit_mm: 0.3,
             stiffness_limits: [0.25, 4.0],

@@ -59,7 +59,8 @@ pub struct Split {
 type Place<'a> = (&'a str, i64, i64);
 
 impl Split {
-    /// Divides the presses of a recording by place.
+    /// Divides the presses of a recording by place. The outermost places of each file always train: a twin is to answer between the
+    /// places that it was shown.
     pub fn new(recording: &Recording, settings: &SplitSettings) -> Result<Self, DigitacError> {
         let presses = &recording.presses;
         if settings.test_one_in < 2 || settings.validation_one_in < 2 {
@@ -86,7 +87,14 @@ impl Split {
             }
         }
         let n_places = groups.len();
-        let outermost = outermost(&groups.keys().copied().collect::<Vec<_>>());
+        let mut in_file: BTreeMap<&str, Vec<Place<'_>>> = BTreeMap::new();
+        for press in presses {
+            in_file
+                .entry(&press.file)
+                .or_default()
+                .push(place(press, settings.block_mm)?);
+        }
+        let outermost: BTreeSet<Place<'_>> = in_file.values().flat_map(|places| outermost(places)).collect();
         let (outer, inner): (Vec<_>, Vec<_>) = groups
             .into_iter()
             .partition(|(place, _)| outermost.contains(place));
@@ -127,7 +135,7 @@ fn place(press: &Press, block_mm: f64) -> Result<Place<'_>, DigitacError> {
     Ok((&press.indenter, y, x))
 }
 
-/// Places with the smallest or largest x or y of their indenter, along axes on which it was moved.
+/// Places with the smallest or largest x or y of their indenter in one file, along axes on which it was moved.
 fn outermost<'a>(places: &[Place<'a>]) -> BTreeSet<Place<'a>> {
     let mut limits: BTreeMap<&str, [i64; 4]> = BTreeMap::new();
     for &(indenter, y, x) in places {

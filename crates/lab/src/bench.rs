@@ -6,7 +6,9 @@ use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
-use twintac_simulate::{Gel, Keyframe, Pchip, PressPlace, SimulateError, SimulateSettings, Sweep, SweepFrame};
+use twintac_simulate::{
+    Gel, Keyframe, Pchip, PressPlace, SimulateError, SimulateSettings, Sweep, SweepFrame,
+};
 use twintac_softbody::{Isochoric, Material, PronyTerm};
 
 use crate::Reality;
@@ -66,16 +68,29 @@ impl Bench {
             taxel.position_mm.x += chance.normal(reality.readout.position_deviation_mm);
             taxel.position_mm.y += chance.normal(reality.readout.position_deviation_mm);
         }
-        let gains = drawing.taxels.iter().map(|_| 1.0 + chance.normal(reality.readout.gain_deviation)).collect();
-        let offsets_kpa =
-            drawing.taxels.iter().map(|_| chance.normal(reality.readout.offset_deviation_kpa)).collect();
+        let gains = drawing
+            .taxels
+            .iter()
+            .map(|_| 1.0 + chance.normal(reality.readout.gain_deviation))
+            .collect();
+        let offsets_kpa = drawing
+            .taxels
+            .iter()
+            .map(|_| chance.normal(reality.readout.offset_deviation_kpa))
+            .collect();
         let settings = SimulateSettings {
             edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
             ..SimulateSettings::default()
         };
         let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));
-        Self { drawing, gel, gains, offsets_kpa, reality }
+        Self {
+            drawing,
+            gel,
+            gains,
+            offsets_kpa,
+            reality,
+        }
     }
 
     /// Performs one press and records it.
@@ -90,9 +105,15 @@ impl Bench {
         let sweep = self
             .gel
             .press(&place, &keyframes)
-            .map_err(|source| LabError::Simulate { press: plan.name.clone(), source })?;
+            .map_err(|source| LabError::Simulate {
+                press: plan.name.clone(),
+                source,
+            })?;
         if let Some(why) = &sweep.failure {
-            return Err(LabError::NotConverged { press: plan.name.clone(), why: why.clone() });
+            return Err(LabError::NotConverged {
+                press: plan.name.clone(),
+                why: why.clone(),
+            });
         }
 
         let history = History::new(&sweep, &keyframes);
@@ -100,7 +121,10 @@ impl Bench {
         let mut previous_s = 0.0;
         let mut frames = Frames::default();
         for &(scheduled_s, depth_mm) in &schedule {
-            let time_s = scheduled_s + chance.normal(readout.jitter_s).clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
+            let time_s = scheduled_s
+                + chance
+                    .normal(readout.jitter_s)
+                    .clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
             let step_s = (time_s - previous_s).max(0.0);
             previous_s = time_s;
             let raw_kpa: Vec<f64> = (0..self.gains.len())
@@ -113,7 +137,11 @@ impl Bench {
                 })
                 .collect();
             let commanded = Pose {
-                position_mm: sweep.gel_from_indenter_at_touch.position_mm.with_x(plan.x_mm).with_y(plan.y_mm)
+                position_mm: sweep
+                    .gel_from_indenter_at_touch
+                    .position_mm
+                    .with_x(plan.x_mm)
+                    .with_y(plan.y_mm)
                     - glam::DVec3::Z * depth_mm,
                 rotation: plan.rotation,
             };
@@ -134,15 +162,26 @@ impl Bench {
         Recording {
             sensor: self.drawing.name.clone(),
             provenance: Provenance::Emulated,
-            taxels: self.drawing.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+            taxels: self
+                .drawing
+                .taxels
+                .iter()
+                .map(|taxel| taxel.name.clone())
+                .collect(),
             presses,
         }
     }
 
     fn true_place(&self, plan: &PressPlan, chance: &mut Chance) -> Result<PressPlace, LabError> {
-        let indenter = self.drawing.indenters.iter().find(|indenter| indenter.name == plan.indenter).ok_or_else(|| {
-            LabError::NoIndenter { press: plan.name.clone(), indenter: plan.indenter.clone() }
-        })?;
+        let indenter = self
+            .drawing
+            .indenters
+            .iter()
+            .find(|indenter| indenter.name == plan.indenter)
+            .ok_or_else(|| LabError::NoIndenter {
+                press: plan.name.clone(),
+                indenter: plan.indenter.clone(),
+            })?;
         let robot = &self.reality.robot;
         Ok(PressPlace {
             indenter: plan.indenter.clone(),
@@ -163,13 +202,20 @@ impl Bench {
 fn material(reality: &Reality) -> Material {
     let [c10_kpa, c20_kpa, c30_kpa] = reality.gel.yeoh_kpa;
     Material {
-        isochoric: Isochoric::Yeoh { c10_kpa, c20_kpa, c30_kpa },
+        isochoric: Isochoric::Yeoh {
+            c10_kpa,
+            c20_kpa,
+            c30_kpa,
+        },
         bulk_modulus_kpa: reality.gel.bulk_modulus_kpa,
         prony: reality
             .gel
             .relaxation
             .iter()
-            .map(|term| PronyTerm { weight: term.weight, time_s: term.time_s })
+            .map(|term| PronyTerm {
+                weight: term.weight,
+                time_s: term.time_s,
+            })
             .collect(),
     }
 }
@@ -182,15 +228,26 @@ fn keyframes(schedule: &[(f64, f64)], deeper_mm: f64, step_mm: f64) -> Vec<Keyfr
     while at < schedule.len() {
         let (time_s, depth_mm) = schedule[at];
         let true_mm = depth_mm + deeper_mm;
-        chosen.push(Keyframe { time_s, depth_mm: true_mm });
-        let hold_end = schedule[at..].iter().take_while(|(_, depth)| (depth - depth_mm).abs() < 1e-9).count() + at - 1;
+        chosen.push(Keyframe {
+            time_s,
+            depth_mm: true_mm,
+        });
+        let hold_end = schedule[at..]
+            .iter()
+            .take_while(|(_, depth)| (depth - depth_mm).abs() < 1e-9)
+            .count()
+            + at
+            - 1;
         if hold_end > at + 1 && true_mm > 0.0 {
             let hold = (hold_end - at) as f64;
             let mut last = at;
             for fraction in HOLD_FRACTIONS {
                 let index = at + (fraction * hold).round() as usize;
                 if index > last {
-                    chosen.push(Keyframe { time_s: schedule[index].0, depth_mm: true_mm });
+                    chosen.push(Keyframe {
+                        time_s: schedule[index].0,
+                        depth_mm: true_mm,
+                    });
                     last = index;
                 }
             }
@@ -227,9 +284,14 @@ impl History {
         let curve = |value: &dyn Fn(&SweepFrame) -> f64| {
             Pchip::new(time_s.clone(), sweep.frames.iter().map(value).collect())
         };
-        let n_taxels = sweep.frames.first().map_or(0, |frame| frame.port_pressure_kpa.len());
+        let n_taxels = sweep
+            .frames
+            .first()
+            .map_or(0, |frame| frame.port_pressure_kpa.len());
         Self {
-            pressure_kpa: (0..n_taxels).filter_map(|k| curve(&|frame| frame.port_pressure_kpa[k])).collect(),
+            pressure_kpa: (0..n_taxels)
+                .filter_map(|k| curve(&|frame| frame.port_pressure_kpa[k]))
+                .collect(),
             force_n: curve(&|frame| frame.force_n),
         }
     }
@@ -261,7 +323,12 @@ impl Frames {
 
     /// Zeroes each taxel on the frames above the gel, as a recorder does before each press.
     fn into_press(self, plan: &PressPlan, sensor: &Sensor) -> Press {
-        let n_before = self.0.iter().take_while(|moment| moment.depth_mm < -0.1).count().max(1);
+        let n_before = self
+            .0
+            .iter()
+            .take_while(|moment| moment.depth_mm < -0.1)
+            .count()
+            .max(1);
         let baseline_kpa: Vec<f64> = (0..sensor.taxels.len())
             .map(|taxel| self.0[..n_before].iter().map(|m| m.raw_kpa[taxel]).sum::<f64>() / n_before as f64)
             .collect();
@@ -277,9 +344,19 @@ impl Frames {
             taxels_kpa: self
                 .0
                 .iter()
-                .map(|m| m.raw_kpa.iter().zip(&baseline_kpa).map(|(raw, zero)| raw - zero).collect())
+                .map(|m| {
+                    m.raw_kpa
+                        .iter()
+                        .zip(&baseline_kpa)
+                        .map(|(raw, zero)| raw - zero)
+                        .collect()
+                })
                 .collect(),
-            valid: self.0.iter().map(|m| m.raw_kpa.iter().map(|raw| range.contains(raw)).collect()).collect(),
+            valid: self
+                .0
+                .iter()
+                .map(|m| m.raw_kpa.iter().map(|raw| range.contains(raw)).collect())
+                .collect(),
             taxels_raw: self.0.into_iter().map(|m| m.raw_kpa).collect(),
         }
     }
@@ -291,7 +368,9 @@ mod tests {
 
     #[test]
     fn keyframes_keep_turns_and_ends() {
-        let mut schedule: Vec<(f64, f64)> = (0..=60).map(|i| (f64::from(i) * 0.02, -0.2 + f64::from(i) * 0.02)).collect();
+        let mut schedule: Vec<(f64, f64)> = (0..=60)
+            .map(|i| (f64::from(i) * 0.02, -0.2 + f64::from(i) * 0.02))
+            .collect();
         schedule.extend((1..=50).map(|i| (1.2 + f64::from(i) * 0.02, 1.0)));
         schedule.extend((1..=60).map(|i| (2.2 + f64::from(i) * 0.02, 1.0 - f64::from(i) * 0.02)));
         let chosen = keyframes(&schedule, 0.05, 0.25);

@@ -1,7 +1,7 @@
 //! Chance, by name.
 
-use rand::SeedableRng;
 use rand::Rng;
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// A stream of random numbers that depends on the seed and a name alone, so that nothing depends on the order of work.
@@ -10,7 +10,9 @@ pub(crate) struct Chance(ChaCha8Rng);
 impl Chance {
     pub(crate) fn new(seed: u64, name: &str) -> Self {
         // FNV-1a; the stream number keeps equal seeds apart by name.
-        let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+        let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
+            (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)
+        });
         let mut stream = ChaCha8Rng::seed_from_u64(seed);
         stream.set_stream(hash);
         Self(stream)

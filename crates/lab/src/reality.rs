@@ -129,7 +129,11 @@ impl Reality {
         for (index, term) in gel.relaxation.iter().enumerate() {
             if term.time_s <= 0.0 || term.weight <= 0.0 {
                 let field = format!("gel.relaxation[{index}]");
-                return Err(document.error(&field, "has no positive weight and time", "give both above zero"));
+                return Err(document.error(
+                    &field,
+                    "has no positive weight and time",
+                    "give both above zero",
+                ));
             }
         }
         let relaxing: f64 = gel.relaxation.iter().map(|term| term.weight).sum();
@@ -156,7 +160,10 @@ mod tests {
     fn a_gel_that_relaxes_to_nothing_is_refused() {
         let text = SHIPPED.replace("weight = 0.06", "weight = 0.96");
         let error = Reality::parse("default.toml", &text).unwrap_err().to_string();
-        assert!(error.contains("gel.relaxation") && error.contains("below 1"), "{error}");
+        assert!(
+            error.contains("gel.relaxation") && error.contains("below 1"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -164,6 +171,9 @@ mod tests {
         let text = SHIPPED.replace("noise_kpa = ", "noise_kpa = -");
         let error = Reality::parse("default.toml", &text).unwrap_err();
         assert_eq!(error.field, "readout.noise_kpa");
-        assert!(text.lines().nth(error.line - 1).unwrap().starts_with("noise_kpa"), "{error}");
+        assert!(
+            text.lines().nth(error.line - 1).unwrap().starts_with("noise_kpa"),
+            "{error}"
+        );
     }
 }

@@ -42,7 +42,10 @@ impl PressPlan {
                 } else {
                     (duration_s - time_s).min(travel_s)
                 };
-                (time_s, (moving_s * self.speed_mm_per_s - self.clearance_mm).max(-self.clearance_mm))
+                (
+                    time_s,
+                    (moving_s * self.speed_mm_per_s - self.clearance_mm).max(-self.clearance_mm),
+                )
             })
             .collect()
     }
@@ -67,9 +70,16 @@ mod tests {
         };
         let trajectory = plan.trajectory(50.0);
         assert_eq!(trajectory.first(), Some(&(0.0, -0.5)));
-        let deepest = trajectory.iter().filter(|(_, depth)| (*depth - 1.5).abs() < 1e-9).count();
+        let deepest = trajectory
+            .iter()
+            .filter(|(_, depth)| (*depth - 1.5).abs() < 1e-9)
+            .count();
         assert_eq!(deepest, 26, "half a second at 50 Hz, both ends counted");
         assert!((trajectory.last().unwrap().1 + 0.5).abs() < 1e-9);
-        assert!(trajectory.windows(2).all(|pair| (pair[1].1 - pair[0].1).abs() < 0.04 + 1e-9));
+        assert!(
+            trajectory
+                .windows(2)
+                .all(|pair| (pair[1].1 - pair[0].1).abs() < 0.04 + 1e-9)
+        );
     }
 }

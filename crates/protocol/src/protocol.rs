@@ -156,7 +156,11 @@ impl Protocol {
         for (field, range, least) in smallest {
             let [low, high] = range.ends();
             if low > high {
-                return Err(document.error(field, format!("runs from {low} to {high}"), "give the smaller number first"));
+                return Err(document.error(
+                    field,
+                    format!("runs from {low} to {high}"),
+                    "give the smaller number first",
+                ));
             }
             if low < least {
                 return Err(document.error(field, format!("is {low}"), format!("give {least} or more")));
@@ -164,7 +168,11 @@ impl Protocol {
         }
         let tilt_rad = self.tilt_rad.ends()[1];
         if tilt_rad > 1.0 {
-            return Err(document.error("tilt_rad", format!("is {tilt_rad}"), "keep the tilt at 1 rad or below"));
+            return Err(document.error(
+                "tilt_rad",
+                format!("is {tilt_rad}"),
+                "keep the tilt at 1 rad or below",
+            ));
         }
         if let Indenters::Named(names) = &self.indenters {
             if names.is_empty() {
@@ -173,7 +181,11 @@ impl Protocol {
             for (index, name) in names.iter().enumerate() {
                 if names[..index].contains(name) {
                     let problem = format!("is `{name}` again");
-                    return Err(document.error(&format!("indenters[{index}]"), problem, "name each indenter once"));
+                    return Err(document.error(
+                        &format!("indenters[{index}]"),
+                        problem,
+                        "name each indenter once",
+                    ));
                 }
             }
         }
@@ -183,7 +195,11 @@ impl Protocol {
         };
         for (field, [low, high]) in [("places.x_mm", area.x_mm), ("places.y_mm", area.y_mm)] {
             if low > high {
-                return Err(document.error(field, format!("runs from {low} to {high}"), "give the smaller number first"));
+                return Err(document.error(
+                    field,
+                    format!("runs from {low} to {high}"),
+                    "give the smaller number first",
+                ));
             }
         }
         if n_places == 0 {
@@ -194,7 +210,11 @@ impl Protocol {
         }
         if n_places.saturating_mul(u64::from(self.repeats)) > MOST_PRESSES {
             let problem = format!("makes {n_places} places, pressed {} times", self.repeats);
-            return Err(document.error("places.count", problem, format!("keep to {MOST_PRESSES} presses an indenter")));
+            return Err(document.error(
+                "places.count",
+                problem,
+                format!("keep to {MOST_PRESSES} presses an indenter"),
+            ));
         }
         Ok(())
     }
@@ -212,7 +232,10 @@ impl Protocol {
         let mut plans = Vec::new();
         for indenter in indenters {
             if !known.contains(indenter) {
-                return Err(PlanError { asked: indenter.clone(), known: known.join(", ") });
+                return Err(PlanError {
+                    asked: indenter.clone(),
+                    known: known.join(", "),
+                });
             }
             let mut number = 0;
             for _ in 0..self.repeats {
@@ -238,10 +261,17 @@ impl Protocol {
         let (x_mm, y_mm) = match &self.places {
             Places::Grid { area, count } => {
                 let at = |[low, high]: [f64; 2], index: u32, count: u32| {
-                    let fraction = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.5 };
+                    let fraction = if count > 1 {
+                        f64::from(index) / f64::from(count - 1)
+                    } else {
+                        0.5
+                    };
                     low + (high - low) * fraction
                 };
-                (at(area.x_mm, place % count[0], count[0]), at(area.y_mm, place / count[0], count[1]))
+                (
+                    at(area.x_mm, place % count[0], count[0]),
+                    at(area.y_mm, place / count[0], count[1]),
+                )
             }
             Places::Random { area, .. } => {
                 let x_mm = Range::Between(area.x_mm).draw(&mut chance);
@@ -268,7 +298,9 @@ impl Protocol {
 /// Random numbers of one press: of the seed and its name alone.
 fn stream(seed: u64, name: &str) -> ChaCha8Rng {
     // FNV-1a.
-    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
+        (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)
+    });
     let mut stream = ChaCha8Rng::seed_from_u64(seed);
     stream.set_stream(hash);
     stream
@@ -282,7 +314,18 @@ mod tests {
     const REAL_TO_SIM: &str = include_str!("../../../protocols/real2sim.toml");
 
     fn known() -> Vec<String> {
-        ["sphere-25", "cube", "x", "ring", "triangle", "wedge", "cylinder", "sphere"].map(str::to_owned).to_vec()
+        [
+            "sphere-25",
+            "cube",
+            "x",
+            "ring",
+            "triangle",
+            "wedge",
+            "cylinder",
+            "sphere",
+        ]
+        .map(str::to_owned)
+        .to_vec()
     }
 
     #[test]
@@ -293,7 +336,11 @@ mod tests {
             let plans = protocol.plan(&known(), 3).unwrap();
             let [shallow, deep] = protocol.depth_mm.ends();
             assert!(plans.iter().all(|plan| (shallow..=deep).contains(&plan.depth_mm)));
-            assert!(plans.iter().all(|plan| (plan.rotation.length() - 1.0).abs() < 1e-12));
+            assert!(
+                plans
+                    .iter()
+                    .all(|plan| (plan.rotation.length() - 1.0).abs() < 1e-12)
+            );
         }
     }
 
@@ -313,19 +360,33 @@ mod tests {
         let text = DEMO.replace("clearance_mm = ", "clearance_mm = -");
         let error = Protocol::parse("demo.toml", &text).unwrap_err();
         assert_eq!(error.field, "clearance_mm");
-        assert!(text.lines().nth(error.line - 1).unwrap().starts_with("clearance_mm"), "{error}");
+        assert!(
+            text.lines()
+                .nth(error.line - 1)
+                .unwrap()
+                .starts_with("clearance_mm"),
+            "{error}"
+        );
         let wrong = |old: &str, new: &str| {
             assert!(DEMO.contains(old), "{old}");
-            Protocol::parse("demo.toml", &DEMO.replace(old, new)).unwrap_err().field
+            Protocol::parse("demo.toml", &DEMO.replace(old, new))
+                .unwrap_err()
+                .field
         };
         assert_eq!(wrong("count = 8", "count = 8, margin_mm = 1"), "places.margin_mm");
         assert_eq!(wrong("count = 8", "count = 0"), "places.count");
         assert_eq!(wrong("count = 8", "count = 4000000000"), "places.count");
         assert_eq!(wrong("count = 8", "number = 8"), "places.count");
         assert_eq!(wrong("x_mm = [-9.0, 9.0]", "x_mm = [9.0, -9.0]"), "places.x_mm");
-        assert_eq!(wrong("depth_mm = [1.0, 2.0]", "depth_mm = [2.0, 1.0]"), "depth_mm");
+        assert_eq!(
+            wrong("depth_mm = [1.0, 2.0]", "depth_mm = [2.0, 1.0]"),
+            "depth_mm"
+        );
         assert_eq!(wrong("depth_mm = [1.0, 2.0]", "depth_mm = \"deep\""), "depth_mm");
-        assert_eq!(wrong("speed_mm_per_s = [1.5, 4.0]", "speed_mm_per_s = 0.0"), "speed_mm_per_s");
+        assert_eq!(
+            wrong("speed_mm_per_s = [1.5, 4.0]", "speed_mm_per_s = 0.0"),
+            "speed_mm_per_s"
+        );
         assert_eq!(wrong("hold_s = [0.5, 1.5]", "hold_s = inf"), "hold_s");
         assert_eq!(wrong("indenters = [", "indenters = [\"cube\", "), "indenters[2]");
         let protocol = Protocol::parse("demo.toml", DEMO).unwrap();

@@ -64,7 +64,11 @@ impl Gel {
     #[must_use]
     pub fn new(sensor: Arc<Sensor>, settings: SimulateSettings) -> Self {
         let material = soft_material(&sensor.gel.material);
-        Self { sensor, settings, material }
+        Self {
+            sensor,
+            settings,
+            material,
+        }
     }
 
     /// The same gel of another material.
@@ -98,11 +102,17 @@ impl Gel {
         Ok(self.first_touch(indenter.as_ref(), above)?.0)
     }
 
-    fn first_touch(&self, indenter: &dyn SignedDistance, above: &Pose) -> Result<(Pose, DVec3), SimulateError> {
+    fn first_touch(
+        &self,
+        indenter: &dyn SignedDistance,
+        above: &Pose,
+    ) -> Result<(Pose, DVec3), SimulateError> {
         let (solid, surfaces) = (&self.sensor.gel.solid, &self.sensor.surfaces);
         let top_height_mm = |x_mm: f64, y_mm: f64| solid.top_height_mm(x_mm, y_mm, surfaces);
-        first_touch(indenter, above, &top_height_mm)
-            .ok_or(SimulateError::NoTouch { x_mm: above.position_mm.x, y_mm: above.position_mm.y })
+        first_touch(indenter, above, &top_height_mm).ok_or(SimulateError::NoTouch {
+            x_mm: above.position_mm.x,
+            y_mm: above.position_mm.y,
+        })
     }
 
     /// Meshes the gel for a press: fine under the indenter, coarser elsewhere.
@@ -110,20 +120,40 @@ impl Gel {
         let sensor = &*self.sensor;
         let solid = &sensor.gel.solid;
         let indenter = place.shape.signed_distance_field(&sensor.surfaces)?;
-        let above = Pose { position_mm: DVec3::new(place.x_mm, place.y_mm, 0.0), rotation: place.rotation };
+        let above = Pose {
+            position_mm: DVec3::new(place.x_mm, place.y_mm, 0.0),
+            rotation: place.rotation,
+        };
         let (touch, touched) = self.first_touch(indenter.as_ref(), &above)?;
         let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, CONTACT_DEPTH * place.depth_mm);
         let coarse_mm = self.height_mm() / self.settings.edges_per_height;
         let fine_mm = (radius_mm / self.settings.edges_per_contact_radius).min(coarse_mm);
         let settings = MeshSettings {
             edge_mm: coarse_mm,
-            focuses: vec![Focus { center_mm: touched, radius_mm, edge_mm: fine_mm }],
+            focuses: vec![Focus {
+                center_mm: touched,
+                radius_mm,
+                edge_mm: fine_mm,
+            }],
             ..MeshSettings::default()
         };
-        let inclusions: Vec<Cuboid> =
-            sensor.inclusions.iter().map(|i| Cuboid { min_mm: i.min_mm, max_mm: i.max_mm }).collect();
+        let inclusions: Vec<Cuboid> = sensor
+            .inclusions
+            .iter()
+            .map(|i| Cuboid {
+                min_mm: i.min_mm,
+                max_mm: i.max_mm,
+            })
+            .collect();
         let mesh = twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings)?;
-        GelMesh::new(sensor, mesh, self.material.clone(), &self.settings, indenter, touch)
+        GelMesh::new(
+            sensor,
+            mesh,
+            self.material.clone(),
+            &self.settings,
+            indenter,
+            touch,
+        )
     }
 
     /// Presses a place to increasing depths. A table that ends early says why in [`Sweep::failure`].
@@ -136,7 +166,12 @@ impl Gel {
     pub fn depths(&self, place: &PressPlace) -> Vec<Keyframe> {
         let n_frames = self.settings.sweep_frames.max(1);
         let fraction = |i: u32| (f64::from(i) / f64::from(n_frames)).powf(1.25);
-        (0..=n_frames).map(|i| Keyframe { time_s: 0.0, depth_mm: fraction(i) * place.depth_mm }).collect()
+        (0..=n_frames)
+            .map(|i| Keyframe {
+                time_s: 0.0,
+                depth_mm: fraction(i) * place.depth_mm,
+            })
+            .collect()
     }
 
     /// Follows a trajectory in time; the material remembers what it is made to remember.
@@ -154,8 +189,11 @@ impl GelMesh {
         indenter: Box<dyn SignedDistance>,
         touch: Pose,
     ) -> Result<Self, SimulateError> {
-        let ports =
-            sensor.taxels.iter().map(|taxel| PortReadout::new(&mesh, taxel)).collect::<Result<Vec<_>, _>>()?;
+        let ports = sensor
+            .taxels
+            .iter()
+            .map(|taxel| PortReadout::new(&mesh, taxel))
+            .collect::<Result<Vec<_>, _>>()?;
         let clusters = StressCluster::for_each_taxel(&mesh, sensor);
         let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
         if let Some(shell) = &sensor.shell {
@@ -163,7 +201,13 @@ impl GelMesh {
             let cavity = Cavity::around(low.truncate(), high.truncate(), shell.gap_mm, shell.height_mm);
             body = body.with_obstacle(Arc::new(cavity), Pose::IDENTITY);
         }
-        Ok(Self { body, indenter, touch, ports, clusters })
+        Ok(Self {
+            body,
+            indenter,
+            touch,
+            ports,
+            clusters,
+        })
     }
 
     /// The soft body of this press.
@@ -180,16 +224,27 @@ impl GelMesh {
 
     /// Presses along the keyframes and shows the gel at each.
     #[must_use]
-    pub fn press_with(&self, place: &PressPlace, keyframes: &[Keyframe], show: &mut dyn FnMut(&Fields<'_>)) -> Sweep {
+    pub fn press_with(
+        &self,
+        place: &PressPlace,
+        keyframes: &[Keyframe],
+        show: &mut dyn FnMut(&Fields<'_>),
+    ) -> Sweep {
         let mut state = self.body.rest();
         let mut frames: Vec<SweepFrame> = Vec::with_capacity(keyframes.len());
         let mut failure = None;
         let mut previous_s = keyframes.first().map_or(0.0, |k| k.time_s);
         for keyframe in keyframes {
-            let pose = Pose { position_mm: self.touch.position_mm - DVec3::Z * keyframe.depth_mm, ..self.touch };
+            let pose = Pose {
+                position_mm: self.touch.position_mm - DVec3::Z * keyframe.depth_mm,
+                ..self.touch
+            };
             let time_step_s = keyframe.time_s - previous_s;
             previous_s = keyframe.time_s;
-            match self.body.advance(&mut state, self.indenter.as_ref(), &pose, time_step_s) {
+            match self
+                .body
+                .advance(&mut state, self.indenter.as_ref(), &pose, time_step_s)
+            {
                 Ok(frame) => {
                     let fields = Fields {
                         mesh: self.body.mesh(),
@@ -222,7 +277,11 @@ impl GelMesh {
             time_s: keyframe.time_s,
             depth_mm: keyframe.depth_mm,
             force_n: -frame.indenter_force_n.z,
-            port_pressure_kpa: self.ports.iter().map(|port| port.read(&fields.pressure_kpa)).collect(),
+            port_pressure_kpa: self
+                .ports
+                .iter()
+                .map(|port| port.read(&fields.pressure_kpa))
+                .collect(),
             stress_feature_kpa_per_mm: self.clusters.iter().map(feature).collect(),
             honesty: Honesty {
                 converged: frame.converged,
@@ -253,8 +312,27 @@ fn soft_material(material: &twintac_sensor::Material) -> Material {
     let isochoric = match material.model {
         Model::NeoHookean { shear_modulus_kpa } => Isochoric::NeoHookean { shear_modulus_kpa },
         Model::MooneyRivlin { c10_kpa, c01_kpa } => Isochoric::MooneyRivlin { c10_kpa, c01_kpa },
-        Model::Yeoh { c10_kpa, c20_kpa, c30_kpa } => Isochoric::Yeoh { c10_kpa, c20_kpa, c30_kpa },
+        Model::Yeoh {
+            c10_kpa,
+            c20_kpa,
+            c30_kpa,
+        } => Isochoric::Yeoh {
+            c10_kpa,
+            c20_kpa,
+            c30_kpa,
+        },
     };
-    let prony = material.prony.iter().map(|term| PronyTerm { weight: term.weight, time_s: term.time_s }).collect();
-    Material { isochoric, bulk_modulus_kpa: material.bulk_modulus_kpa, prony }
+    let prony = material
+        .prony
+        .iter()
+        .map(|term| PronyTerm {
+            weight: term.weight,
+            time_s: term.time_s,
+        })
+        .collect();
+    Material {
+        isochoric,
+        bulk_modulus_kpa: material.bulk_modulus_kpa,
+        prony,
+    }
 }

@@ -24,15 +24,25 @@ impl Lattice {
         let size_mm = high_mm - low_mm;
         let intervals = |length_mm: f64| ((length_mm / spacing_mm - 1e-9).ceil() as usize).max(3);
         let (n_x, n_y) = (intervals(size_mm.x), intervals(size_mm.y));
-        let step_mm = DVec2::new((size_mm.x / n_x as f64).max(1e-6), (size_mm.y / n_y as f64).max(1e-6));
-        Self { low_mm, step_mm, n_x: n_x + 1, n_y: n_y + 1 }
+        let step_mm = DVec2::new(
+            (size_mm.x / n_x as f64).max(1e-6),
+            (size_mm.y / n_y as f64).max(1e-6),
+        );
+        Self {
+            low_mm,
+            step_mm,
+            n_x: n_x + 1,
+            n_y: n_y + 1,
+        }
     }
 
     /// The places to simulate, mm.
     #[must_use]
     pub fn places_mm(&self) -> Vec<DVec2> {
         (0..self.n_y)
-            .flat_map(|j| (0..self.n_x).map(move |i| self.low_mm + self.step_mm * DVec2::new(i as f64, j as f64)))
+            .flat_map(|j| {
+                (0..self.n_x).map(move |i| self.low_mm + self.step_mm * DVec2::new(i as f64, j as f64))
+            })
             .collect()
     }
 
@@ -48,15 +58,24 @@ impl Lattice {
                 neighbours.push((&sweeps[(j0 + j) * self.n_x + i0 + i], weight_x * weight_y));
             }
         }
-        let n_frames = neighbours.iter().map(|(sweep, _)| sweep.frames.len()).min().unwrap_or(0);
+        let n_frames = neighbours
+            .iter()
+            .map(|(sweep, _)| sweep.frames.len())
+            .min()
+            .unwrap_or(0);
         let nearest = nearest(&neighbours);
-        let z_mm = neighbours.iter().map(|(s, w)| w * s.gel_from_indenter_at_touch.position_mm.z).sum();
+        let z_mm = neighbours
+            .iter()
+            .map(|(s, w)| w * s.gel_from_indenter_at_touch.position_mm.z)
+            .sum();
         Sweep {
             gel_from_indenter_at_touch: Pose {
                 position_mm: place_mm.extend(z_mm),
                 ..nearest.gel_from_indenter_at_touch
             },
-            frames: (0..n_frames).map(|frame| blend(&neighbours, nearest, frame)).collect(),
+            frames: (0..n_frames)
+                .map(|frame| blend(&neighbours, nearest, frame))
+                .collect(),
             ..nearest.clone()
         }
     }
@@ -74,7 +93,10 @@ fn nearest<'a>(neighbours: &[(&'a Sweep, f64)]) -> &'a Sweep {
 
 fn blend(neighbours: &[(&Sweep, f64)], nearest: &Sweep, frame: usize) -> SweepFrame {
     let sum = |value: &dyn Fn(&SweepFrame) -> f64| -> f64 {
-        neighbours.iter().map(|(sweep, weight)| weight * value(&sweep.frames[frame])).sum()
+        neighbours
+            .iter()
+            .map(|(sweep, weight)| weight * value(&sweep.frames[frame]))
+            .sum()
     };
     let template = &nearest.frames[frame];
     let n_taxels = template.port_pressure_kpa.len();
@@ -83,7 +105,9 @@ fn blend(neighbours: &[(&Sweep, f64)], nearest: &Sweep, frame: usize) -> SweepFr
         depth_mm: sum(&|f| f.depth_mm),
         force_n: sum(&|f| f.force_n),
         port_pressure_kpa: (0..n_taxels).map(|k| sum(&|f| f.port_pressure_kpa[k])).collect(),
-        stress_feature_kpa_per_mm: (0..n_taxels).map(|k| sum(&|f| f.stress_feature_kpa_per_mm[k])).collect(),
+        stress_feature_kpa_per_mm: (0..n_taxels)
+            .map(|k| sum(&|f| f.stress_feature_kpa_per_mm[k]))
+            .collect(),
         honesty: template.honesty,
     }
 }
@@ -137,10 +161,17 @@ mod tests {
     fn cubics_are_interpolated_exactly_up_to_the_border() {
         let lattice = Lattice::covering(DVec2::new(-1.0, 2.0), DVec2::new(6.0, 9.5), 1.5);
         let sweeps: Vec<Sweep> = lattice.places_mm().into_iter().map(sweep_of).collect();
-        for place in [DVec2::new(-1.0, 2.0), DVec2::new(0.3, 2.1), DVec2::new(3.3, 5.0), DVec2::new(6.0, 9.5)] {
+        for place in [
+            DVec2::new(-1.0, 2.0),
+            DVec2::new(0.3, 2.1),
+            DVec2::new(3.3, 5.0),
+            DVec2::new(6.0, 9.5),
+        ] {
             let (found, expected) = (lattice.at(&sweeps, place), sweep_of(place));
             assert!((found.frames[0].force_n - expected.frames[0].force_n).abs() < 1e-9);
-            assert!((found.frames[0].port_pressure_kpa[0] - expected.frames[0].port_pressure_kpa[0]).abs() < 1e-9);
+            assert!(
+                (found.frames[0].port_pressure_kpa[0] - expected.frames[0].port_pressure_kpa[0]).abs() < 1e-9
+            );
             assert!((found.gel_from_indenter_at_touch.position_mm.z - 8.0).abs() < 1e-12);
         }
     }

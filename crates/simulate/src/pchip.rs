@@ -47,7 +47,11 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
         return vec![0.0];
     }
     let width: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let secant: Vec<f64> = y.windows(2).zip(&width).map(|(pair, h)| (pair[1] - pair[0]) / h).collect();
+    let secant: Vec<f64> = y
+        .windows(2)
+        .zip(&width)
+        .map(|(pair, h)| (pair[1] - pair[0]) / h)
+        .collect();
     let mut slope = vec![0.0; n];
     slope[0] = secant[0];
     slope[n - 1] = secant[n - 2];
@@ -85,7 +89,10 @@ mod tests {
             let x: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
             let y = x.iter().map(|x| x.exp()).collect();
             let curve = Pchip::new(x, y).unwrap();
-            (10..90).map(|i| f64::from(i) / 100.0).map(|x| (curve.at(x) - x.exp()).abs()).fold(0.0, f64::max)
+            (10..90)
+                .map(|i| f64::from(i) / 100.0)
+                .map(|x| (curve.at(x) - x.exp()).abs())
+                .fold(0.0, f64::max)
         };
         assert!(error(40) < error(10) / 16.0);
     }

@@ -25,20 +25,27 @@ impl PortReadout {
         let mut weights = std::collections::BTreeMap::new();
         for sample in &samples {
             let point = taxel.position_mm + sample.extend(0.0);
-            let (tet, barycentric) = mesh.locate(point, PORT_TOLERANCE_MM).ok_or_else(|| SimulateError::PortOutside {
-                taxel: taxel.name.clone(),
-                distance_mm: PORT_TOLERANCE_MM,
-            })?;
+            let (tet, barycentric) =
+                mesh.locate(point, PORT_TOLERANCE_MM)
+                    .ok_or_else(|| SimulateError::PortOutside {
+                        taxel: taxel.name.clone(),
+                        distance_mm: PORT_TOLERANCE_MM,
+                    })?;
             for (node, weight) in mesh.tets[tet].iter().zip(barycentric) {
                 *weights.entry(*node as usize).or_insert(0.0) += weight * share;
             }
         }
-        Ok(Self { weights: weights.into_iter().collect() })
+        Ok(Self {
+            weights: weights.into_iter().collect(),
+        })
     }
 
     /// Mean of a nodal field over the port.
     pub(crate) fn read(&self, nodal: &[f64]) -> f64 {
-        self.weights.iter().map(|&(node, weight)| weight * nodal[node]).sum()
+        self.weights
+            .iter()
+            .map(|&(node, weight)| weight * nodal[node])
+            .sum()
     }
 }
 
@@ -68,17 +75,30 @@ impl StressCluster {
     /// x and y, weighted by their share of the surface, so that a graded mesh gives what a uniform one would.
     pub(crate) fn for_each_taxel(mesh: &TetMesh, sensor: &Sensor) -> Vec<Self> {
         let areas_mm2 = mesh.node_areas_mm2();
-        let plan: Vec<DVec2> = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate()).collect();
+        let plan: Vec<DVec2> = sensor
+            .taxels
+            .iter()
+            .map(|taxel| taxel.position_mm.truncate())
+            .collect();
         let half_pitch_mm = 0.5 * smallest_distance_mm(&plan);
-        let mut clusters: Vec<Self> =
-            sensor.taxels.iter().map(|taxel| Self { taxel_mm: taxel.position_mm, nodes: Vec::new() }).collect();
+        let mut clusters: Vec<Self> = sensor
+            .taxels
+            .iter()
+            .map(|taxel| Self {
+                taxel_mm: taxel.position_mm,
+                nodes: Vec::new(),
+            })
+            .collect();
         for &node in &mesh.sets.top {
             let at = mesh.nodes_mm[node as usize].truncate();
-            let nearest = (0..plan.len()).min_by(|&a, &b| at.distance(plan[a]).total_cmp(&at.distance(plan[b])));
+            let nearest =
+                (0..plan.len()).min_by(|&a, &b| at.distance(plan[a]).total_cmp(&at.distance(plan[b])));
             if let Some(taxel) = nearest
                 && (at - plan[taxel]).abs().max_element() <= half_pitch_mm
             {
-                clusters[taxel].nodes.push((node as usize, areas_mm2[node as usize]));
+                clusters[taxel]
+                    .nodes
+                    .push((node as usize, areas_mm2[node as usize]));
             }
         }
         clusters

@@ -23,7 +23,10 @@ impl Default for SimulateSettings {
             edges_per_height: 5.0,
             edges_per_contact_radius: 4.0,
             sweep_frames: 10,
-            solver: SolverSettings { tolerance: 1e-4, ..SolverSettings::default() },
+            solver: SolverSettings {
+                tolerance: 1e-4,
+                ..SolverSettings::default()
+            },
         }
     }
 }

@@ -18,13 +18,21 @@ pub(crate) fn first_touch(
     let reach_mm = low.abs().max(high.abs()).length();
     let mut centre = place;
     let mut best: Option<(f64, DVec3)> = None;
-    for half_width_mm in [reach_mm, reach_mm / f64::from(SAMPLES), reach_mm / f64::from(SAMPLES * SAMPLES)] {
+    for half_width_mm in [
+        reach_mm,
+        reach_mm / f64::from(SAMPLES),
+        reach_mm / f64::from(SAMPLES * SAMPLES),
+    ] {
         for i in -SAMPLES..=SAMPLES {
             for j in -SAMPLES..=SAMPLES {
                 let offset = DVec2::new(f64::from(i), f64::from(j)) * (half_width_mm / f64::from(SAMPLES));
                 let point = centre + offset;
-                let Some(height_mm) = top_height_mm(point.x, point.y) else { continue };
-                let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm) else { continue };
+                let Some(height_mm) = top_height_mm(point.x, point.y) else {
+                    continue;
+                };
+                let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm) else {
+                    continue;
+                };
                 let z_mm = height_mm - lowest_mm;
                 if best.is_none_or(|(best_mm, _)| z_mm > best_mm + 1e-12) {
                     best = Some((z_mm, point.extend(height_mm)));
@@ -34,17 +42,25 @@ pub(crate) fn first_touch(
         centre = best?.1.truncate();
     }
     best.map(|(z_mm, touched)| {
-        let pose = Pose { position_mm: place.extend(z_mm), rotation: at_origin.rotation };
+        let pose = Pose {
+            position_mm: place.extend(z_mm),
+            rotation: at_origin.rotation,
+        };
         (pose, touched)
     })
 }
 
 /// Height of the indenter's underside above its origin at a place in the gel's plane, mm; `None` beside the indenter.
 fn underside_mm(indenter: &dyn SignedDistance, pose: &Pose, place: DVec2, reach_mm: f64) -> Option<f64> {
-    let flat = Pose { position_mm: pose.position_mm.truncate().extend(0.0), rotation: pose.rotation };
+    let flat = Pose {
+        position_mm: pose.position_mm.truncate().extend(0.0),
+        rotation: pose.rotation,
+    };
     let mut z_mm = -1.5 * reach_mm;
     for _ in 0..200 {
-        let distance_mm = indenter.signed_distance(flat.inverse_transform_point(place.extend(z_mm))).distance_mm;
+        let distance_mm = indenter
+            .signed_distance(flat.inverse_transform_point(place.extend(z_mm)))
+            .distance_mm;
         if distance_mm < 1e-9 {
             return Some(z_mm);
         }

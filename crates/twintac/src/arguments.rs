@@ -93,7 +93,12 @@ pub(crate) struct SensorShow {
 #[derive(Args, Debug)]
 pub(crate) struct Mesh {
     /// Sensor description (TOML) whose gel to mesh.
-    #[arg(long, value_name = "FILE", conflicts_with = "check", required_unless_present = "check")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "check",
+        required_unless_present = "check"
+    )]
     pub(crate) sensor: Option<PathBuf>,
     /// Edge length, mm [default: a sixth of the gel's height].
     #[arg(long, value_name = "MM", conflicts_with_all = ["nodes", "check"])]

@@ -21,7 +21,11 @@ pub(crate) struct SensorFile {
 pub(crate) fn read_sensor(path: &Path) -> Result<SensorFile> {
     let text = fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
     let sensor = parse_sensor(path, &text)?;
-    Ok(SensorFile { sensor: Arc::new(sensor), text, folder: folder_of(path) })
+    Ok(SensorFile {
+        sensor: Arc::new(sensor),
+        text,
+        folder: folder_of(path),
+    })
 }
 
 /// Reads a description from its text, as if it stood in `path`.
@@ -35,7 +39,11 @@ impl SensorFile {
     /// A description that the program carries with it.
     pub(crate) fn built_in(name: &str, text: &str) -> Result<Self> {
         let path = Path::new(name);
-        Ok(Self { sensor: Arc::new(parse_sensor(path, text)?), text: text.to_owned(), folder: PathBuf::new() })
+        Ok(Self {
+            sensor: Arc::new(parse_sensor(path, text)?),
+            text: text.to_owned(),
+            folder: PathBuf::new(),
+        })
     }
 
     /// Puts the description, and the surfaces that it names, into a folder.

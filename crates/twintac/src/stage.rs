@@ -48,7 +48,8 @@ impl Inputs {
 
     /// Adds settings.
     pub(crate) fn settings(mut self, name: &str, settings: &impl Serialize) -> Result<Self> {
-        let text = serde_json::to_vec(settings).with_context(|| format!("writing down the settings of {name}"))?;
+        let text =
+            serde_json::to_vec(settings).with_context(|| format!("writing down the settings of {name}"))?;
         self.0.insert(name.to_owned(), sha256(&text));
         Ok(self)
     }
@@ -62,7 +63,10 @@ impl Inputs {
     /// Adds all that an earlier stage left.
     pub(crate) fn stage(mut self, folder: &Path) -> Result<Self> {
         let record = read_record(folder).with_context(|| {
-            format!("{} is not a finished stage: run the command that makes it first", folder.display())
+            format!(
+                "{} is not a finished stage: run the command that makes it first",
+                folder.display()
+            )
         })?;
         for (name, hash) in record.outputs {
             self.0.insert(format!("{}/{name}", folder.display()), hash);
@@ -87,9 +91,14 @@ pub(crate) fn run(folder: &Path, inputs: Inputs, work: impl FnOnce(&Path) -> Res
     }
     let started = Instant::now();
     let partial = partial_folder(folder)?;
-    let mut record = StageRecord { inputs: inputs.0, outputs: BTreeMap::new(), wall_time_s: 0.0 };
+    let mut record = StageRecord {
+        inputs: inputs.0,
+        outputs: BTreeMap::new(),
+        wall_time_s: 0.0,
+    };
     if partial.exists() && !read_record(&partial).is_ok_and(|earlier| earlier.inputs == record.inputs) {
-        fs::remove_dir_all(&partial).with_context(|| format!("removing the outdated {}", partial.display()))?;
+        fs::remove_dir_all(&partial)
+            .with_context(|| format!("removing the outdated {}", partial.display()))?;
     }
     write_json(&partial.join(RECORD), &record)?;
     work(&partial)?;
@@ -99,7 +108,8 @@ pub(crate) fn run(folder: &Path, inputs: Inputs, work: impl FnOnce(&Path) -> Res
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("removing the outdated {}", folder.display()))?;
     }
-    fs::rename(&partial, folder).with_context(|| format!("renaming {} to its final name", partial.display()))?;
+    fs::rename(&partial, folder)
+        .with_context(|| format!("renaming {} to its final name", partial.display()))?;
     Ok(Outcome::Ran)
 }
 
@@ -116,7 +126,8 @@ pub(crate) fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<T> 
 
 /// Writes a JSON file under a temporary name and renames it.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
-    let mut bytes = serde_json::to_vec_pretty(value).with_context(|| format!("writing {}", path.display()))?;
+    let mut bytes =
+        serde_json::to_vec_pretty(value).with_context(|| format!("writing {}", path.display()))?;
     bytes.push(b'\n');
     write_file(path, &bytes)
 }
@@ -145,16 +156,22 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
 }
 
 fn sha256_of_file(path: &Path) -> Result<String> {
-    Ok(sha256(&fs::read(path).with_context(|| format!("reading {}", path.display()))?))
+    Ok(sha256(
+        &fs::read(path).with_context(|| format!("reading {}", path.display()))?,
+    ))
 }
 
 fn is_current(folder: &Path, inputs: &Inputs) -> bool {
-    let Ok(record) = read_record(folder) else { return false };
+    let Ok(record) = read_record(folder) else {
+        return false;
+    };
     record.inputs == inputs.0 && hash_files(folder).is_ok_and(|files| files == record.outputs)
 }
 
 fn partial_folder(folder: &Path) -> Result<PathBuf> {
-    let name = folder.file_name().with_context(|| format!("{} is no folder's name", folder.display()))?;
+    let name = folder
+        .file_name()
+        .with_context(|| format!("{} is no folder's name", folder.display()))?;
     let mut partial = name.to_owned();
     partial.push(".partial");
     Ok(folder.with_file_name(partial))
@@ -192,7 +209,10 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let folder = root.path().join("stage");
         let make = |text: &'static str| {
-            run(&folder, inputs(text), |to| write_file(&to.join("deep/out.txt"), text.as_bytes())).unwrap()
+            run(&folder, inputs(text), |to| {
+                write_file(&to.join("deep/out.txt"), text.as_bytes())
+            })
+            .unwrap()
         };
         assert_eq!(make("a"), Outcome::Ran);
         assert_eq!(make("a"), Outcome::Kept);

@@ -28,7 +28,11 @@ pub(crate) struct SweepStore<'a> {
 impl<'a> SweepStore<'a> {
     /// Keeps the gel's sweeps in `folder`, which holds sweeps of no other gel.
     pub(crate) fn new(gel: &'a Gel, folder: PathBuf, progress: ProgressBar) -> Self {
-        Self { gel, folder, progress }
+        Self {
+            gel,
+            folder,
+            progress,
+        }
     }
 
     fn place(&self, request: &SweepRequest) -> Result<PressPlace, SourceError> {
@@ -49,8 +53,15 @@ impl<'a> SweepStore<'a> {
     }
 
     fn shape(&self, indenter: &str) -> Result<&Shape, SourceError> {
-        let found = self.gel.sensor().indenters.iter().find(|candidate| candidate.name == indenter);
-        Ok(&found.ok_or_else(|| format!("the sensor's description has no indenter `{indenter}`"))?.shape)
+        let found = self
+            .gel
+            .sensor()
+            .indenters
+            .iter()
+            .find(|candidate| candidate.name == indenter);
+        Ok(&found
+            .ok_or_else(|| format!("the sensor's description has no indenter `{indenter}`"))?
+            .shape)
     }
 
     /// The sweeps at places, from their files or computed now, in order.
@@ -77,7 +88,13 @@ impl<'a> SweepStore<'a> {
 
     fn path(&self, place: &PressPlace) -> Result<PathBuf, SourceError> {
         let hash = sha256(&serde_json::to_vec(place)?);
-        let name = format!("{}_x{:+.2}_y{:+.2}_{}.json", place.indenter, place.x_mm, place.y_mm, &hash[..12]);
+        let name = format!(
+            "{}_x{:+.2}_y{:+.2}_{}.json",
+            place.indenter,
+            place.x_mm,
+            place.y_mm,
+            &hash[..12]
+        );
         Ok(self.folder.join(name))
     }
 }
@@ -88,15 +105,25 @@ impl SweepSource for SweepStore<'_> {
     }
 
     fn sweeps(&self, requests: &[SweepRequest]) -> Result<Vec<Sweep>, SourceError> {
-        let places = requests.iter().map(|request| self.place(request)).collect::<Result<Vec<_>, _>>()?;
+        let places = requests
+            .iter()
+            .map(|request| self.place(request))
+            .collect::<Result<Vec<_>, _>>()?;
         if let Some(lattice) = lattice(self.gel, &places) {
             let nodes: Vec<PressPlace> = lattice
                 .places_mm()
                 .into_iter()
-                .map(|at| PressPlace { x_mm: at.x, y_mm: at.y, ..places[0].clone() })
+                .map(|at| PressPlace {
+                    x_mm: at.x,
+                    y_mm: at.y,
+                    ..places[0].clone()
+                })
                 .collect();
             let sweeps = self.compute(&nodes)?;
-            return Ok(places.iter().map(|p| lattice.at(&sweeps, DVec2::new(p.x_mm, p.y_mm))).collect());
+            return Ok(places
+                .iter()
+                .map(|p| lattice.at(&sweeps, DVec2::new(p.x_mm, p.y_mm)))
+                .collect());
         }
         let mut distinct: Vec<PressPlace> = Vec::new();
         let mut index_of = BTreeMap::new();
@@ -116,9 +143,21 @@ impl SweepSource for SweepStore<'_> {
 /// A lattice over the places, if they are many and differ in nothing but where they are.
 fn lattice(gel: &Gel, places: &[PressPlace]) -> Option<Lattice> {
     let first = places.first()?;
-    let alike = |place: &PressPlace| PressPlace { x_mm: first.x_mm, y_mm: first.y_mm, ..place.clone() } == *first;
-    let low = places.iter().map(|p| DVec2::new(p.x_mm, p.y_mm)).reduce(DVec2::min)?;
-    let high = places.iter().map(|p| DVec2::new(p.x_mm, p.y_mm)).reduce(DVec2::max)?;
+    let alike = |place: &PressPlace| {
+        PressPlace {
+            x_mm: first.x_mm,
+            y_mm: first.y_mm,
+            ..place.clone()
+        } == *first
+    };
+    let low = places
+        .iter()
+        .map(|p| DVec2::new(p.x_mm, p.y_mm))
+        .reduce(DVec2::min)?;
+    let high = places
+        .iter()
+        .map(|p| DVec2::new(p.x_mm, p.y_mm))
+        .reduce(DVec2::max)?;
     let lattice = Lattice::covering(low, high, LATTICE_SPACING * gel.height_mm());
     let pays = places.len() >= LATTICE_FROM && lattice.places_mm().len() < places.len();
     (pays && places.iter().all(alike)).then_some(lattice)

@@ -30,8 +30,15 @@ pub(crate) fn run(arguments: &Demo) -> Result<()> {
 /// Coarser and shorter than usual: the demo has minutes.
 fn settings() -> RunSettings {
     RunSettings {
-        simulate: SimulateSettings { edges_per_height: 4.0, edges_per_contact_radius: 3.0, ..SimulateSettings::default() },
-        train: TrainSettings { epochs: 120, ..TrainSettings::default() },
+        simulate: SimulateSettings {
+            edges_per_height: 4.0,
+            edges_per_contact_radius: 3.0,
+            ..SimulateSettings::default()
+        },
+        train: TrainSettings {
+            epochs: 120,
+            ..TrainSettings::default()
+        },
         ..RunSettings::default()
     }
 }

@@ -14,7 +14,9 @@ pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
             files.push(file?);
         }
         if files.len() == before {
-            bail!("no file matches `{pattern}`; check the path, and quote patterns so that the shell leaves them alone");
+            bail!(
+                "no file matches `{pattern}`; check the path, and quote patterns so that the shell leaves them alone"
+            );
         }
     }
     files.sort_unstable();

@@ -4,7 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use twintac_mesh::{Cuboid, MeshSettings, Quality, TetMesh, gel_volume_mm3, generate, generate_with_node_count, gmsh, stl, vtk};
+use twintac_mesh::{
+    Cuboid, MeshSettings, Quality, TetMesh, gel_volume_mm3, generate, generate_with_node_count, gmsh, stl,
+    vtk,
+};
 use twintac_sensor::Sensor;
 
 use crate::arguments::Mesh;
@@ -21,14 +24,27 @@ pub(crate) fn run(arguments: &Mesh) -> Result<()> {
         let mesh = gmsh::read(&bytes).with_context(|| path.display().to_string())?;
         return print_quality(&Quality::of(&mesh, None));
     }
-    let path = arguments.sensor.as_ref().context("give a sensor description with --sensor")?;
+    let path = arguments
+        .sensor
+        .as_ref()
+        .context("give a sensor description with --sensor")?;
     let sensor = read_sensor(path)?.sensor;
     let height_mm = sensor.gel.solid.bounds_mm(&sensor.surfaces).1.z;
     let edge_mm = arguments.edge_mm.unwrap_or(height_mm / EDGES_PER_HEIGHT);
-    let settings = MeshSettings { edge_mm, ..MeshSettings::default() };
+    let settings = MeshSettings {
+        edge_mm,
+        ..MeshSettings::default()
+    };
     let mesh = match arguments.nodes {
         Some(nodes) => {
-            generate_with_node_count(&sensor.gel.solid, &sensor.surfaces, &inclusions(&sensor), &settings, nodes)?.0
+            generate_with_node_count(
+                &sensor.gel.solid,
+                &sensor.surfaces,
+                &inclusions(&sensor),
+                &settings,
+                nodes,
+            )?
+            .0
         }
         None => mesh_of(&sensor, &settings)?,
     };
@@ -41,7 +57,12 @@ pub(crate) fn run(arguments: &Mesh) -> Result<()> {
 
 /// The mesh of a sensor's gel.
 pub(crate) fn mesh_of(sensor: &Sensor, settings: &MeshSettings) -> Result<TetMesh> {
-    Ok(generate(&sensor.gel.solid, &sensor.surfaces, &inclusions(sensor), settings)?)
+    Ok(generate(
+        &sensor.gel.solid,
+        &sensor.surfaces,
+        &inclusions(sensor),
+        settings,
+    )?)
 }
 
 /// Writes a gel's mesh for Gmsh, ParaView and CAD, and its quality.
@@ -60,7 +81,14 @@ fn quality(sensor: &Sensor, mesh: &TetMesh) -> Result<Quality> {
 }
 
 fn inclusions(sensor: &Sensor) -> Vec<Cuboid> {
-    sensor.inclusions.iter().map(|i| Cuboid { min_mm: i.min_mm, max_mm: i.max_mm }).collect()
+    sensor
+        .inclusions
+        .iter()
+        .map(|i| Cuboid {
+            min_mm: i.min_mm,
+            max_mm: i.max_mm,
+        })
+        .collect()
 }
 
 fn print_quality(quality: &Quality) -> Result<()> {

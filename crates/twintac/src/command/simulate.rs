@@ -33,7 +33,8 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
         run.mesh()?;
         return run.simulate();
     }
-    let (Some(sensor), Some(protocol), Some(out)) = (&arguments.sensor, &arguments.protocol, &arguments.out) else {
+    let (Some(sensor), Some(protocol), Some(out)) = (&arguments.sensor, &arguments.protocol, &arguments.out)
+    else {
         anyhow::bail!("give --run, or --sensor, --protocol and --out");
     };
     let sensor = read_sensor(sensor)?.sensor;
@@ -41,32 +42,46 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
     let settings = SimulateSettings::default();
     let gel = Gel::new(Arc::clone(&sensor), settings.clone());
     let bar = progress::bar("simulating", plans.len() as u64);
-    plans.par_iter().with_max_len(1).try_for_each(|plan| -> Result<()> {
-        let indenter = sensor.indenters.iter().find(|indenter| indenter.name == plan.indenter);
-        let shape = indenter.with_context(|| format!("there is no indenter `{}`", plan.indenter))?.shape.clone();
-        let place = PressPlace {
-            indenter: plan.indenter.clone(),
-            shape,
-            x_mm: plan.x_mm,
-            y_mm: plan.y_mm,
-            rotation: plan.rotation,
-            depth_mm: plan.depth_mm,
-        };
-        let name = plan.name.replace('#', "-");
-        let press = gel.mesh(&place)?;
-        let (mut number, mut written) = (0, Ok(()));
-        let table = press.press_with(&place, &gel.depths(&place), &mut |fields| {
-            if arguments.vtk && written.is_ok() {
-                written = write_frame(&out.join("vtk").join(format!("{name}_{number:03}.vtu")), fields);
-            }
-            number += 1;
-        });
-        written?;
-        let record = SimulatedPress { provenance: Provenance::Simulated, plan, settings: &settings, table: &table };
-        write_json(&out.join(format!("{name}.json")), &record)?;
-        bar.inc(1);
-        Ok(())
-    })?;
+    plans
+        .par_iter()
+        .with_max_len(1)
+        .try_for_each(|plan| -> Result<()> {
+            let indenter = sensor
+                .indenters
+                .iter()
+                .find(|indenter| indenter.name == plan.indenter);
+            let shape = indenter
+                .with_context(|| format!("there is no indenter `{}`", plan.indenter))?
+                .shape
+                .clone();
+            let place = PressPlace {
+                indenter: plan.indenter.clone(),
+                shape,
+                x_mm: plan.x_mm,
+                y_mm: plan.y_mm,
+                rotation: plan.rotation,
+                depth_mm: plan.depth_mm,
+            };
+            let name = plan.name.replace('#', "-");
+            let press = gel.mesh(&place)?;
+            let (mut number, mut written) = (0, Ok(()));
+            let table = press.press_with(&place, &gel.depths(&place), &mut |fields| {
+                if arguments.vtk && written.is_ok() {
+                    written = write_frame(&out.join("vtk").join(format!("{name}_{number:03}.vtu")), fields);
+                }
+                number += 1;
+            });
+            written?;
+            let record = SimulatedPress {
+                provenance: Provenance::Simulated,
+                plan,
+                settings: &settings,
+                table: &table,
+            };
+            write_json(&out.join(format!("{name}.json")), &record)?;
+            bar.inc(1);
+            Ok(())
+        })?;
     bar.finish_and_clear();
     Ok(())
 }
@@ -74,11 +89,23 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
 /// The pressed gel, where it is now.
 fn write_frame(path: &Path, fields: &Fields<'_>) -> Result<()> {
     let mut mesh = fields.mesh.clone();
-    mesh.nodes_mm.iter_mut().zip(fields.displacements_mm).for_each(|(node, moved)| *node += *moved);
+    mesh.nodes_mm
+        .iter_mut()
+        .zip(fields.displacements_mm)
+        .for_each(|(node, moved)| *node += *moved);
     let fields = [
-        Field { name: "displacement_mm", values: Values::Vector(fields.displacements_mm) },
-        Field { name: "pressure_kpa", values: Values::Scalar(&fields.pressure_kpa) },
-        Field { name: "von_mises_kpa", values: Values::Scalar(&fields.von_mises_kpa) },
+        Field {
+            name: "displacement_mm",
+            values: Values::Vector(fields.displacements_mm),
+        },
+        Field {
+            name: "pressure_kpa",
+            values: Values::Scalar(&fields.pressure_kpa),
+        },
+        Field {
+            name: "von_mises_kpa",
+            values: Values::Scalar(&fields.von_mises_kpa),
+        },
     ];
     write_file(path, vtk::write(&mesh, &fields, &[])?.as_bytes())
 }

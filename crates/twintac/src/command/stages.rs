@@ -23,22 +23,48 @@ pub(crate) fn finish(run: &Run) -> Result<()> {
 /// `twintac record`: starts a run with presses on the emulated bench.
 pub(crate) fn record(arguments: &Record) -> Result<()> {
     let sensor = read_sensor(&arguments.sensor)?;
-    let text = std::fs::read_to_string(&arguments.lab).with_context(|| format!("reading {}", arguments.lab.display()))?;
+    let text = std::fs::read_to_string(&arguments.lab)
+        .with_context(|| format!("reading {}", arguments.lab.display()))?;
     let reality = Reality::parse(&arguments.lab.display().to_string(), &text)?;
     let plans = plan(&arguments.protocol, &sensor.sensor, arguments.seed)?;
     let source = format!("{} presses on the emulated bench", plans.len());
-    Run::start(&arguments.out, sensor, source, arguments.seed, RunSettings::default())?.record(&reality, &plans)
+    Run::start(
+        &arguments.out,
+        sensor,
+        source,
+        arguments.seed,
+        RunSettings::default(),
+    )?
+    .record(&reality, &plans)
 }
 
 /// `twintac import`: starts a run with a lab's files.
 pub(crate) fn import(arguments: &Import) -> Result<()> {
     let sensor = read_sensor(&arguments.sensor)?;
     let files = expand(&arguments.recordings)?;
-    let import = arguments.import.clone().or_else(|| sensor.import()).with_context(|| {
-        format!("{} names no import description; give one with --import", arguments.sensor.display())
-    })?;
-    let source = files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
-    Run::start(&arguments.out, sensor, source, arguments.seed, RunSettings::default())?.import(&import, &files)
+    let import = arguments
+        .import
+        .clone()
+        .or_else(|| sensor.import())
+        .with_context(|| {
+            format!(
+                "{} names no import description; give one with --import",
+                arguments.sensor.display()
+            )
+        })?;
+    let source = files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect::<Vec<_>>()
+        .join(", ");
+    Run::start(
+        &arguments.out,
+        sensor,
+        source,
+        arguments.seed,
+        RunSettings::default(),
+    )?
+    .import(&import, &files)
 }
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
@@ -64,7 +90,10 @@ pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
         }
         return print_headline(&run);
     }
-    let model = arguments.model.as_ref().context("give a model with --model, or a run with --run")?;
+    let model = arguments
+        .model
+        .as_ref()
+        .context("give a model with --model, or a run with --run")?;
     let files = expand(&arguments.recordings)?;
     let recording = match &arguments.import {
         Some(import) => import_files(import, &files)?.0,
@@ -87,7 +116,10 @@ fn read_presses(files: &[std::path::PathBuf]) -> Result<Recording> {
         if file.extension().is_some_and(|extension| extension == "parquet") {
             Ok(Recording::read_parquet(file)?)
         } else {
-            anyhow::bail!("{} is no Parquet file; say with --import how to read it", file.display())
+            anyhow::bail!(
+                "{} is no Parquet file; say with --import how to read it",
+                file.display()
+            )
         }
     });
     let mut first = recordings.next().context("there are no recordings")??;
@@ -106,7 +138,10 @@ fn print_headline(run: &Run) -> Result<()> {
 
 fn headline(metrics: &Metrics) -> String {
     let line = |name: &str, figures: &crate::run::Figures| {
-        format!("{name:<18} {:6.2} %  {:6.2} %", figures.nearest_in_contact_percent, figures.all_percent)
+        format!(
+            "{name:<18} {:6.2} %  {:6.2} %",
+            figures.nearest_in_contact_percent, figures.all_percent
+        )
     };
     let mut lines = vec![
         format!(
@@ -116,11 +151,33 @@ fn headline(metrics: &Metrics) -> String {
         format!("{:<18} {:>8}  {:>8}", "", "nearest", "all"),
         line("twin", &metrics.twin.overall),
     ];
-    lines.extend(metrics.twin.by_file.iter().map(|(file, figures)| line(&format!("  {}", shortened(file)), figures)));
-    lines.extend(metrics.twin_all_taxels.as_ref().map(|figures| line("twin, every taxel", figures)));
-    lines.extend(metrics.baselines.polynomial.as_ref().map(|figures| line("static polynomial", figures)));
+    lines.extend(
+        metrics
+            .twin
+            .by_file
+            .iter()
+            .map(|(file, figures)| line(&format!("  {}", shortened(file)), figures)),
+    );
+    lines.extend(
+        metrics
+            .twin_all_taxels
+            .as_ref()
+            .map(|figures| line("twin, every taxel", figures)),
+    );
+    lines.extend(
+        metrics
+            .baselines
+            .polynomial
+            .as_ref()
+            .map(|figures| line("static polynomial", figures)),
+    );
     lines.push(line("zero", &metrics.baselines.zero));
-    lines.extend(metrics.repeatability.as_ref().map(|figures| line("repeatability", figures)));
+    lines.extend(
+        metrics
+            .repeatability
+            .as_ref()
+            .map(|figures| line("repeatability", figures)),
+    );
     lines.push(metrics.definition.clone());
     lines.join("\n")
 }
@@ -128,8 +185,14 @@ fn headline(metrics: &Metrics) -> String {
 fn unseen(found: &UnseenEvaluation) -> String {
     let figures = &found.twin.overall;
     let mut lines = vec![
-        format!("{} presses ({} data), `{}`", found.presses, found.provenance, found.variant),
-        format!("nearest in contact {:6.2} %, all {:6.2} %", figures.nearest_in_contact_percent, figures.all_percent),
+        format!(
+            "{} presses ({} data), `{}`",
+            found.presses, found.provenance, found.variant
+        ),
+        format!(
+            "nearest in contact {:6.2} %, all {:6.2} %",
+            figures.nearest_in_contact_percent, figures.all_percent
+        ),
         format!(
             "with contact heights as at training: nearest in contact {:6.2} %",
             found.uncalibrated.nearest_in_contact_percent

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use digitac::{
-    Estimate, Evaluation, Model, Places, Recalibration, Repeatability, Scale, StaticPolynomial, SweepSource, evaluate, pair,
-    recalibrate, repeatability,
+    Estimate, Evaluation, Model, Places, Recalibration, Repeatability, Scale, StaticPolynomial, SweepSource,
+    evaluate, pair, recalibrate, repeatability,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::{Provenance, Recording};
@@ -55,7 +55,13 @@ impl Run {
             });
             let repeatability = repeatability(&presses, &scale);
             let metrics = self.metrics(&model, &evaluation, every_taxel, repeatability.as_ref())?;
-            write_json(&folder.join("evaluation.json"), &HeldOut { evaluation, repeatability })?;
+            write_json(
+                &folder.join("evaluation.json"),
+                &HeldOut {
+                    evaluation,
+                    repeatability,
+                },
+            )?;
             write_json(&folder.join("metrics.json"), &metrics)
         })
     }
@@ -67,7 +73,8 @@ impl Run {
         every_taxel: Option<Figures>,
         repeatability: Option<&Repeatability>,
     ) -> Result<Metrics> {
-        let variants: Vec<super::train::VariantRecord> = read_json(&self.stage("training").join("variants.json"))?;
+        let variants: Vec<super::train::VariantRecord> =
+            read_json(&self.stage("training").join("variants.json"))?;
         Ok(Metrics {
             sensor: self.record.sensor.clone(),
             provenance: model.record.provenance,
@@ -79,7 +86,10 @@ impl Run {
             twin_all_taxels: every_taxel,
             baselines: baselines(evaluation),
             repeatability: super::metrics::repeatability(repeatability),
-            variants: variants.iter().map(|v| (v.variant.to_string(), Figures::from(&v.test.overall))).collect(),
+            variants: variants
+                .iter()
+                .map(|v| (v.variant.to_string(), Figures::from(&v.test.overall)))
+                .collect(),
             seed: self.record.seed,
         })
     }
@@ -123,7 +133,11 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
     let model = Model::load(model_folder)?;
     let record = &model.record;
     if recording.taxels != record.taxels {
-        bail!("the model reads taxels {:?}, the recordings have {:?}", record.taxels, recording.taxels);
+        bail!(
+            "the model reads taxels {:?}, the recordings have {:?}",
+            record.taxels,
+            recording.taxels
+        );
     }
     let sensor = Arc::new(parse_sensor(&model_folder.join("twin.json"), &record.sensor)?);
     let settings: SimulateSettings = serde_json::from_value(record.simulation.clone())
@@ -135,30 +149,48 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
     let store = SweepStore::new(&gel, folder.path().to_owned(), bar.clone());
     let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?
         .with_tip_radius(record.bench.tip_radius_mm.map(|radius| radius.value));
-    let sweeps = store.sweeps(&places.requests).map_err(anyhow::Error::from_boxed)?;
+    let sweeps = store
+        .sweeps(&places.requests)
+        .map_err(anyhow::Error::from_boxed)?;
     bar.finish_and_clear();
 
     let mut bench = record.bench.clone();
     let mut contact = Vec::new();
     let mut spent = BTreeSet::new();
     for file in new_files(recording, &bench.contact_offset_mm) {
-        let found =
-            recalibrate(recording, (&places, &sweeps), &bench, &model.twin, &file, CONTACT_LIMIT_MM, &left_out)?;
+        let found = recalibrate(
+            recording,
+            (&places, &sweeps),
+            &bench,
+            &model.twin,
+            &file,
+            CONTACT_LIMIT_MM,
+            &left_out,
+        )?;
         if let Some(found) = found {
             spent.extend(found.used.iter().copied());
             contact.push(found);
         }
     }
     for found in &contact {
-        bench.contact_offset_mm.insert(found.file.clone(), found.contact_offset_mm);
+        bench
+            .contact_offset_mm
+            .insert(found.file.clone(), found.contact_offset_mm);
     }
     let settings = digitac::PairSettings::default();
     let judge = |bench: &digitac::Bench| -> Result<(Evaluation, Option<Repeatability>)> {
         let presses = pair(recording, &places, &sweeps, bench, &settings)?;
         let scale = Scale::of(&presses, left_out.clone());
-        let scored: Vec<_> =
-            presses.iter().enumerate().filter(|(index, _)| !spent.contains(index)).map(|(_, press)| press).collect();
-        Ok((evaluate(&model.twin, &scored, &scale, None), repeatability(&presses, &scale)))
+        let scored: Vec<_> = presses
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| !spent.contains(index))
+            .map(|(_, press)| press)
+            .collect();
+        Ok((
+            evaluate(&model.twin, &scored, &scale, None),
+            repeatability(&presses, &scale),
+        ))
     };
     let (evaluation, repeats) = judge(&bench)?;
     let (uncalibrated, _) = judge(&record.bench)?;
@@ -182,5 +214,8 @@ fn new_files(recording: &Recording, known: &BTreeMap<String, Estimate>) -> BTree
 }
 
 fn names(indices: BTreeSet<usize>, taxels: &[String]) -> Vec<String> {
-    indices.into_iter().filter_map(|index| taxels.get(index).cloned()).collect()
+    indices
+        .into_iter()
+        .filter_map(|index| taxels.get(index).cloned())
+        .collect()
 }

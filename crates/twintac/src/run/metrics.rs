@@ -48,8 +48,16 @@ impl TwinFigures {
     pub(crate) fn new(score: &Score, taxels: &[String]) -> Self {
         Self {
             overall: Figures::from(&score.overall),
-            by_file: score.by_file.iter().map(|(file, errors)| (file.clone(), errors.into())).collect(),
-            by_taxel: taxels.iter().cloned().zip(score.by_taxel.iter().map(Figures::from)).collect(),
+            by_file: score
+                .by_file
+                .iter()
+                .map(|(file, errors)| (file.clone(), errors.into()))
+                .collect(),
+            by_taxel: taxels
+                .iter()
+                .cloned()
+                .zip(score.by_taxel.iter().map(Figures::from))
+                .collect(),
             frames_not_simulated: score.n_frames_not_simulated,
         }
     }
@@ -96,7 +104,10 @@ pub(crate) struct Metrics {
 pub(crate) fn baselines(evaluation: &Evaluation) -> BaselineFigures {
     BaselineFigures {
         zero: Figures::from(&evaluation.zero.overall),
-        polynomial: evaluation.polynomial.as_ref().map(|score| Figures::from(&score.overall)),
+        polynomial: evaluation
+            .polynomial
+            .as_ref()
+            .map(|score| Figures::from(&score.overall)),
     }
 }
 

@@ -62,21 +62,43 @@ pub(crate) struct Run {
 
 impl Run {
     /// Starts a run, or takes up the one that the folder holds with new settings: stages that they do not touch are kept.
-    pub(crate) fn start(folder: &Path, sensor: SensorFile, source: String, seed: u64, settings: RunSettings) -> Result<Self> {
+    pub(crate) fn start(
+        folder: &Path,
+        sensor: SensorFile,
+        source: String,
+        seed: u64,
+        settings: RunSettings,
+    ) -> Result<Self> {
         std::fs::create_dir_all(folder).with_context(|| format!("creating {}", folder.display()))?;
-        let record = RunRecord { sensor: sensor.sensor.name.clone(), source, seed, settings };
+        let record = RunRecord {
+            sensor: sensor.sensor.name.clone(),
+            source,
+            seed,
+            settings,
+        };
         sensor.copy_to(folder)?;
         write_json(&folder.join("run.json"), &record)?;
-        Ok(Self { folder: folder.to_owned(), record, sensor })
+        Ok(Self {
+            folder: folder.to_owned(),
+            record,
+            sensor,
+        })
     }
 
     /// Opens a run that was started.
     pub(crate) fn open(folder: &Path) -> Result<Self> {
         let record: RunRecord = read_json(&folder.join("run.json")).with_context(|| {
-            format!("{} is not a run; start one with `twintac import` or `twintac record`", folder.display())
+            format!(
+                "{} is not a run; start one with `twintac import` or `twintac record`",
+                folder.display()
+            )
         })?;
         let sensor = read_sensor(&folder.join("sensor.toml"))?;
-        Ok(Self { folder: folder.to_owned(), record, sensor })
+        Ok(Self {
+            folder: folder.to_owned(),
+            record,
+            sensor,
+        })
     }
 
     /// The folder of a stage.
@@ -92,7 +114,10 @@ impl Run {
 
     /// The gel as the twin simulates it.
     pub(crate) fn gel(&self) -> Gel {
-        Gel::new(Arc::clone(&self.sensor.sensor), self.record.settings.simulate.clone())
+        Gel::new(
+            Arc::clone(&self.sensor.sensor),
+            self.record.settings.simulate.clone(),
+        )
     }
 
     /// Taxels whose readings are not to be trusted, by index: left out of headline figures.
@@ -101,8 +126,14 @@ impl Run {
     }
 
     /// Runs a stage unless it is there, and says so.
-    pub(crate) fn run_stage(&self, name: &str, inputs: stage::Inputs, work: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-        let outcome = stage::run(&self.stage(name), inputs, work).with_context(|| format!("stage `{name}`"))?;
+    pub(crate) fn run_stage(
+        &self,
+        name: &str,
+        inputs: stage::Inputs,
+        work: impl FnOnce(&Path) -> Result<()>,
+    ) -> Result<()> {
+        let outcome =
+            stage::run(&self.stage(name), inputs, work).with_context(|| format!("stage `{name}`"))?;
         let word = match outcome {
             stage::Outcome::Ran => "done",
             stage::Outcome::Kept => "kept",
@@ -115,5 +146,8 @@ impl Run {
 /// Taxels of a sensor whose readings are not to be trusted, by index.
 pub(crate) fn left_out(sensor: &Sensor) -> std::collections::BTreeSet<usize> {
     let taxels = sensor.taxels.iter().enumerate();
-    taxels.filter(|(_, taxel)| taxel.doubtful.is_some()).map(|(index, _)| index).collect()
+    taxels
+        .filter(|(_, taxel)| taxel.doubtful.is_some())
+        .map(|(index, _)| index)
+        .collect()
 }

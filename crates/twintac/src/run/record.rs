@@ -45,11 +45,18 @@ impl Run {
     fn check_sensor(&self, recording: &Recording) -> Result<()> {
         let sensor = &self.sensor.sensor;
         if recording.sensor != sensor.name {
-            bail!("the recordings are of sensor `{}`, the description is of `{}`", recording.sensor, sensor.name);
+            bail!(
+                "the recordings are of sensor `{}`, the description is of `{}`",
+                recording.sensor,
+                sensor.name
+            );
         }
         let taxels: Vec<&String> = sensor.taxels.iter().map(|taxel| &taxel.name).collect();
         if !recording.taxels.iter().eq(taxels.iter().copied()) {
-            bail!("the recordings have taxels {:?}, the description has {taxels:?}", recording.taxels);
+            bail!(
+                "the recordings have taxels {:?}, the description has {taxels:?}",
+                recording.taxels
+            );
         }
         Ok(())
     }
@@ -88,12 +95,22 @@ pub(crate) fn record_on_bench(bench: &Bench, plans: &[PressPlan], folder: &Path)
 
 /// The presses that a protocol plans for a sensor.
 pub(crate) fn plan(protocol: &Path, sensor: &twintac_sensor::Sensor, seed: u64) -> Result<Vec<PressPlan>> {
-    let text = std::fs::read_to_string(protocol).with_context(|| format!("reading {}", protocol.display()))?;
+    let text =
+        std::fs::read_to_string(protocol).with_context(|| format!("reading {}", protocol.display()))?;
     plan_text(&protocol.display().to_string(), &text, sensor, seed)
 }
 
 /// The presses that a protocol's text plans for a sensor.
-pub(crate) fn plan_text(file: &str, text: &str, sensor: &twintac_sensor::Sensor, seed: u64) -> Result<Vec<PressPlan>> {
-    let names: Vec<String> = sensor.indenters.iter().map(|indenter| indenter.name.clone()).collect();
+pub(crate) fn plan_text(
+    file: &str,
+    text: &str,
+    sensor: &twintac_sensor::Sensor,
+    seed: u64,
+) -> Result<Vec<PressPlan>> {
+    let names: Vec<String> = sensor
+        .indenters
+        .iter()
+        .map(|indenter| indenter.name.clone())
+        .collect();
     Ok(Protocol::parse(file, text)?.plan(&names, seed)?)
 }

@@ -4,8 +4,8 @@ use anyhow::Result;
 use digitac::{Bench, PairedPress};
 use twintac_recording::Provenance;
 use twintac_report::data::{
-    BenchFit, Fact, FileError, Gain, Headline, Parameter, Reference, ReferenceKind, SensorSummary, SimulationQuality, Stage,
-    TaxelError, TrainingCurve, Variant, WarpPath,
+    BenchFit, Fact, FileError, Gain, Headline, Parameter, Reference, ReferenceKind, SensorSummary,
+    SimulationQuality, Stage, TaxelError, TrainingCurve, Variant, WarpPath,
 };
 use twintac_report::plot::{Panel, Panels, Series};
 use twintac_report::{Ink, Provenance as Badge, ReportData, Scene};
@@ -18,7 +18,14 @@ use crate::drawing;
 use crate::stage::{read_json, read_record, write_file};
 
 /// Stages in the order in which they run.
-const STAGES: [&str; 6] = ["recordings", "mesh", "simulation", "pairs", "training", "evaluation"];
+const STAGES: [&str; 6] = [
+    "recordings",
+    "mesh",
+    "simulation",
+    "pairs",
+    "training",
+    "evaluation",
+];
 
 impl Run {
     /// Writes `report.html` and `metrics.json`.
@@ -33,7 +40,10 @@ impl Run {
             title: format!("Digital twin of {}", sensor.name),
             provenance: badge(metrics.provenance),
             command: std::env::args().collect::<Vec<_>>().join(" "),
-            versions: vec![Fact::new("twintac", env!("CARGO_PKG_VERSION")), Fact::new("presses", &self.record.source)],
+            versions: vec![
+                Fact::new("twintac", env!("CARGO_PKG_VERSION")),
+                Fact::new("presses", &self.record.source),
+            ],
             seed: Some(self.record.seed),
             warnings: self.warnings(&simulation.bench, &metrics),
             sensor: Some(SensorSummary {
@@ -69,19 +79,29 @@ impl Run {
         }
         for taxel in self.sensor.sensor.taxels.iter() {
             if let Some(why) = &taxel.doubtful {
-                warnings.push(format!("Taxel {} is left out of headline figures: {why}.", taxel.name));
+                warnings.push(format!(
+                    "Taxel {} is left out of headline figures: {why}.",
+                    taxel.name
+                ));
             }
         }
         if metrics.twin.frames_not_simulated > 0 {
             let n_frames = metrics.twin.frames_not_simulated;
-            warnings.push(format!("{n_frames} frames are deeper than the simulation reached; the end of its table stands in."));
+            warnings.push(format!(
+                "{n_frames} frames are deeper than the simulation reached; the end of its table stands in."
+            ));
         }
         warnings.extend(bench.doubts.iter().cloned());
         warnings
     }
 
     fn stages(&self) -> Vec<Stage> {
-        let time = |name: &&str| Some(Stage { name: (*name).into(), wall_s: read_record(&self.stage(name)).ok()?.wall_time_s });
+        let time = |name: &&str| {
+            Some(Stage {
+                name: (*name).into(),
+                wall_s: read_record(&self.stage(name)).ok()?.wall_time_s,
+            })
+        };
         STAGES.iter().filter_map(time).collect()
     }
 }
@@ -106,14 +126,25 @@ fn shift_s(press: &PairedPress) -> Vec<f64> {
         let after = (before + 1).min(time_s.len() - 1);
         time_s[before] + index.fract() * (time_s[after] - time_s[before])
     };
-    press.warp.measured_index.iter().zip(time_s).map(|(&index, now_s)| at(index) - now_s).collect()
+    press
+        .warp
+        .measured_index
+        .iter()
+        .zip(time_s)
+        .map(|(&index, now_s)| at(index) - now_s)
+        .collect()
 }
 
 /// The alignment of all presses as a picture.
 pub(crate) fn warp_plot(warps: &[WarpPath]) -> Scene {
     let series = warps.iter().map(|warp| Series {
         name: String::new(),
-        points: warp.time_s.iter().zip(&warp.shift_s).map(|(time_s, shift_s)| [time_s - warp.time_s[0], *shift_s]).collect(),
+        points: warp
+            .time_s
+            .iter()
+            .zip(&warp.shift_s)
+            .map(|(time_s, shift_s)| [time_s - warp.time_s[0], *shift_s])
+            .collect(),
         ink: Ink::Series(0),
         width_px: 0.8,
         dashed: false,
@@ -121,7 +152,11 @@ pub(crate) fn warp_plot(warps: &[WarpPath]) -> Scene {
     Panels {
         title: "How measured and simulated times were matched".into(),
         x_label: "time since the press began (s)".into(),
-        panels: vec![Panel { y_label: "shift (s)".into(), series: series.collect(), ..Panel::default() }],
+        panels: vec![Panel {
+            y_label: "shift (s)".into(),
+            series: series.collect(),
+            ..Panel::default()
+        }],
         panel_height_px: 220.0,
         logarithmic: false,
     }
@@ -129,7 +164,13 @@ pub(crate) fn warp_plot(warps: &[WarpPath]) -> Scene {
 }
 
 fn some_warps(presses: &[PairedPress], test: &[usize]) -> Vec<WarpPath> {
-    let mut chosen = warps(&test.iter().take(6).map(|&index| presses[index].clone()).collect::<Vec<_>>());
+    let mut chosen = warps(
+        &test
+            .iter()
+            .take(6)
+            .map(|&index| presses[index].clone())
+            .collect::<Vec<_>>(),
+    );
     chosen.retain(|warp| warp.time_s.len() > 1);
     chosen
 }
@@ -151,8 +192,18 @@ fn headline(metrics: &Metrics) -> Headline {
     };
     let baselines = &metrics.baselines;
     let mut references = vec![reference("zero", ReferenceKind::Baseline, &baselines.zero)];
-    references.extend(baselines.polynomial.as_ref().map(|f| reference("static polynomial", ReferenceKind::Baseline, f)));
-    references.extend(metrics.repeatability.as_ref().map(|f| reference("repeatability", ReferenceKind::Floor, f)));
+    references.extend(
+        baselines
+            .polynomial
+            .as_ref()
+            .map(|f| reference("static polynomial", ReferenceKind::Baseline, f)),
+    );
+    references.extend(
+        metrics
+            .repeatability
+            .as_ref()
+            .map(|f| reference("repeatability", ReferenceKind::Floor, f)),
+    );
     Headline {
         presses: metrics.held_out_presses,
         nearest_in_contact_percent: metrics.twin.overall.nearest_in_contact_percent,
@@ -187,8 +238,14 @@ fn files(metrics: &Metrics, evaluation: &digitac::Evaluation) -> Vec<FileError> 
         .by_file
         .iter()
         .map(|(file, figures)| {
-            let presses: Vec<_> = evaluation.presses.iter().filter(|press| press.file == *file).collect();
-            let readings = presses.iter().flat_map(|press| press.measured_kpa.iter().flatten());
+            let presses: Vec<_> = evaluation
+                .presses
+                .iter()
+                .filter(|press| press.file == *file)
+                .collect();
+            let readings = presses
+                .iter()
+                .flat_map(|press| press.measured_kpa.iter().flatten());
             FileError {
                 name: file.clone(),
                 role: "held-out presses".into(),
@@ -203,7 +260,11 @@ fn files(metrics: &Metrics, evaluation: &digitac::Evaluation) -> Vec<FileError> 
         .collect()
 }
 
-fn taxels(metrics: &Metrics, sensor: &twintac_sensor::Sensor, evaluation: &digitac::Evaluation) -> Vec<TaxelError> {
+fn taxels(
+    metrics: &Metrics,
+    sensor: &twintac_sensor::Sensor,
+    evaluation: &digitac::Evaluation,
+) -> Vec<TaxelError> {
     sensor
         .taxels
         .iter()
@@ -229,14 +290,34 @@ fn bench(bench: &Bench, taxels: &[String]) -> BenchFit {
         unit: unit.into(),
     };
     let mut parameters = Vec::new();
-    parameters.extend(bench.tip_radius_mm.as_ref().map(|radius| parameter("tip radius".into(), radius, "mm")));
-    parameters.extend(bench.stiffness.as_ref().map(|s| parameter("stiffness over the description's".into(), s, "")));
+    parameters.extend(
+        bench
+            .tip_radius_mm
+            .as_ref()
+            .map(|radius| parameter("tip radius".into(), radius, "mm")),
+    );
+    parameters.extend(
+        bench
+            .stiffness
+            .as_ref()
+            .map(|s| parameter("stiffness over the description's".into(), s, "")),
+    );
     let offsets = bench.contact_offset_mm.iter();
-    parameters.extend(offsets.map(|(file, offset)| parameter(format!("contact deeper by, {file}"), offset, "mm")));
-    let gains = bench.gains.iter().flat_map(|gains| taxels.iter().zip(&gains.gain));
+    parameters
+        .extend(offsets.map(|(file, offset)| parameter(format!("contact deeper by, {file}"), offset, "mm")));
+    let gains = bench
+        .gains
+        .iter()
+        .flat_map(|gains| taxels.iter().zip(&gains.gain));
     BenchFit {
         parameters,
-        gains: gains.map(|(taxel, gain)| Gain { taxel: taxel.clone(), value: *gain, uncertainty: None }).collect(),
+        gains: gains
+            .map(|(taxel, gain)| Gain {
+                taxel: taxel.clone(),
+                value: *gain,
+                uncertainty: None,
+            })
+            .collect(),
         objective_by_radius: Vec::new(),
     }
 }
@@ -248,7 +329,9 @@ fn quality(sweeps: &[Sweep]) -> SimulationQuality {
         converged_frames: frames().filter(|frame| frame.honesty.converged).count(),
         worst_residual: frames().map(|f| f.honesty.residual).fold(0.0, f64::max),
         largest_penetration_mm: frames().map(|f| f.honesty.penetration_mm).fold(0.0, f64::max),
-        smallest_volume_ratio: frames().map(|f| f.honesty.smallest_volume_ratio).fold(f64::INFINITY, f64::min),
+        smallest_volume_ratio: frames()
+            .map(|f| f.honesty.smallest_volume_ratio)
+            .fold(f64::INFINITY, f64::min),
         failures: sweeps.iter().filter_map(|sweep| sweep.failure.clone()).collect(),
     }
 }

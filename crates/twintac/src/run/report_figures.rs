@@ -22,7 +22,11 @@ fn error(press: &PressEvaluation) -> f64 {
 
 /// Presses that touched, from the best to the worst.
 fn ranked(evaluation: &Evaluation) -> Vec<&PressEvaluation> {
-    let mut presses: Vec<_> = evaluation.presses.iter().filter(|p| p.errors.nearest_in_contact.count > 0).collect();
+    let mut presses: Vec<_> = evaluation
+        .presses
+        .iter()
+        .filter(|p| p.errors.nearest_in_contact.count > 0)
+        .collect();
     presses.sort_by(|a, b| error(a).total_cmp(&error(b)));
     presses
 }
@@ -32,7 +36,11 @@ fn three(evaluation: &Evaluation) -> Vec<(&'static str, &PressEvaluation)> {
     let ranked = ranked(evaluation);
     match ranked.len() {
         0 => Vec::new(),
-        n => vec![("best", ranked[0]), ("median", ranked[n / 2]), ("worst", ranked[n - 1])],
+        n => vec![
+            ("best", ranked[0]),
+            ("median", ranked[n / 2]),
+            ("worst", ranked[n - 1]),
+        ],
     }
 }
 
@@ -52,7 +60,9 @@ pub(crate) fn series(evaluation: &Evaluation, presses: &[PairedPress]) -> Vec<Pr
                 sensor_kpa: press.measured_kpa.clone(),
                 twin_kpa: press.predicted_kpa.clone(),
                 depth_mm: press.depth_mm.clone(),
-                sensor_force_n: paired.and_then(|p| p.measured_force_n.clone()).unwrap_or_default(),
+                sensor_force_n: paired
+                    .and_then(|p| p.measured_force_n.clone())
+                    .unwrap_or_default(),
                 twin_force_n: paired.map(|p| p.features.force_n.clone()).unwrap_or_default(),
             }
         })
@@ -84,18 +94,26 @@ fn window(sensor: &Sensor) -> Rectangle {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let margin_mm = high.z;
     let taxels = taxels_mm(sensor);
-    let fold = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| taxels.iter().map(|t| t[axis]).fold(start, pick);
+    let fold =
+        |axis: usize, pick: fn(f64, f64) -> f64, start: f64| taxels.iter().map(|t| t[axis]).fold(start, pick);
     let side = |axis: usize, low: f64, high: f64| {
         let from = fold(axis, f64::min, f64::INFINITY) - margin_mm;
         let to = fold(axis, f64::max, f64::NEG_INFINITY) + margin_mm;
         (from.max(low), to.min(high))
     };
     let ((x0, x1), (y0, y1)) = (side(0, low.x, high.x), side(1, low.y, high.y));
-    Rectangle { min_mm: [x0, y0], max_mm: [x1, y1] }
+    Rectangle {
+        min_mm: [x0, y0],
+        max_mm: [x1, y1],
+    }
 }
 
 fn taxels_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
-    sensor.taxels.iter().map(|taxel| [taxel.position_mm.x, taxel.position_mm.y]).collect()
+    sensor
+        .taxels
+        .iter()
+        .map(|taxel| [taxel.position_mm.x, taxel.position_mm.y])
+        .collect()
 }
 
 /// Errors over the gel, for static presses.
@@ -114,7 +132,12 @@ pub(crate) fn places(evaluation: &Evaluation, sensor: &Sensor) -> Option<PlaceEr
 pub(crate) fn agreement(evaluation: &Evaluation) -> Agreement {
     let mut agreement = Agreement::default();
     for press in &evaluation.presses {
-        for ((measured, predicted), valid) in press.measured_kpa.iter().zip(&press.predicted_kpa).zip(&press.valid) {
+        for ((measured, predicted), valid) in press
+            .measured_kpa
+            .iter()
+            .zip(&press.predicted_kpa)
+            .zip(&press.valid)
+        {
             for taxel in (0..measured.len()).filter(|&taxel| valid[taxel]) {
                 agreement.measured_kpa.push(measured[taxel]);
                 agreement.predicted_kpa.push(predicted[taxel]);
@@ -131,7 +154,12 @@ pub(crate) fn agreement(evaluation: &Evaluation) -> Agreement {
 pub(crate) fn bias_percent(evaluation: &Evaluation, taxel: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0_f64);
     for press in &evaluation.presses {
-        for ((measured, predicted), valid) in press.measured_kpa.iter().zip(&press.predicted_kpa).zip(&press.valid) {
+        for ((measured, predicted), valid) in press
+            .measured_kpa
+            .iter()
+            .zip(&press.predicted_kpa)
+            .zip(&press.valid)
+        {
             if valid[taxel] {
                 sum += predicted[taxel] - measured[taxel];
                 count += 1.0;
@@ -142,20 +170,32 @@ pub(crate) fn bias_percent(evaluation: &Evaluation, taxel: usize) -> f64 {
 }
 
 fn largest_kpa(evaluation: &Evaluation) -> f64 {
-    let readings = evaluation.presses.iter().flat_map(|press| press.measured_kpa.iter().flatten());
+    let readings = evaluation
+        .presses
+        .iter()
+        .flat_map(|press| press.measured_kpa.iter().flatten());
     readings.fold(f64::MIN_POSITIVE, |largest, reading| largest.max(*reading))
 }
 
 /// Errors of the nearest taxel by depth, % of the largest reading of all presses shown.
 pub(crate) fn depths(evaluation: &Evaluation, left_out: &BTreeSet<usize>) -> Vec<DepthError> {
-    let deepest_mm = evaluation.presses.iter().flat_map(|p| &p.depth_mm).fold(0.0, |deepest: f64, d| deepest.max(*d));
+    let deepest_mm = evaluation
+        .presses
+        .iter()
+        .flat_map(|p| &p.depth_mm)
+        .fold(0.0, |deepest: f64, d| deepest.max(*d));
     if deepest_mm <= 0.0 || evaluation.presses.iter().all(|press| press.time_s.len() == 1) {
         return Vec::new();
     }
     let largest_kpa = largest_kpa(evaluation);
     let mut bins = [(0.0, 0_usize); DEPTH_BINS];
     for press in &evaluation.presses {
-        for (frame, depth_mm) in press.depth_mm.iter().enumerate().filter(|(_, depth)| **depth > 0.0) {
+        for (frame, depth_mm) in press
+            .depth_mm
+            .iter()
+            .enumerate()
+            .filter(|(_, depth)| **depth > 0.0)
+        {
             let measured = &press.measured_kpa[frame];
             let usable = (0..measured.len()).filter(|t| press.valid[frame][*t] && !left_out.contains(t));
             let nearest = usable.max_by(|&a, &b| measured[a].total_cmp(&measured[b]));

@@ -51,15 +51,25 @@ impl RunSettings {
 
 /// Whether all presses were made with one ball whose radius the sensor's description only infers.
 fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
-    let Some(first) = recording.presses.first() else { return false };
-    let one = recording.presses.iter().all(|press| press.indenter == first.indenter);
+    let Some(first) = recording.presses.first() else {
+        return false;
+    };
+    let one = recording
+        .presses
+        .iter()
+        .all(|press| press.indenter == first.indenter);
     let is_inferred = |index: usize| sensor.is_inferred(&format!("indenters[{index}].shape.radius_mm"));
     one && sensor.indenters.iter().enumerate().any(|(index, indenter)| {
-        indenter.name == first.indenter && matches!(indenter.shape, Shape::Sphere { .. }) && is_inferred(index)
+        indenter.name == first.indenter
+            && matches!(indenter.shape, Shape::Sphere { .. })
+            && is_inferred(index)
     })
 }
 
 /// Whether the presses are static: one frame each, under a prescribed force.
 pub(crate) fn is_static(recording: &Recording) -> bool {
-    recording.presses.iter().all(|press| press.control == Control::Force && press.time_s.len() == 1)
+    recording
+        .presses
+        .iter()
+        .all(|press| press.control == Control::Force && press.time_s.len() == 1)
 }

@@ -28,12 +28,20 @@ impl Run {
     /// Meshes the gel as it stands, for people to look at; presses refine it where they touch.
     pub(crate) fn mesh(&self) -> Result<()> {
         let settings = &self.record.settings.simulate;
-        let inputs = Inputs::new()?.settings("simulate", settings)?.file(&self.folder.join("sensor.toml"))?;
+        let inputs = Inputs::new()?
+            .settings("simulate", settings)?
+            .file(&self.folder.join("sensor.toml"))?;
         self.run_stage("mesh", inputs, |folder| {
             let gel = self.gel();
             let edge_mm = gel.height_mm() / settings.edges_per_height;
             let sensor = gel.sensor();
-            let mesh = crate::command::mesh_of(sensor, &MeshSettings { edge_mm, ..MeshSettings::default() })?;
+            let mesh = crate::command::mesh_of(
+                sensor,
+                &MeshSettings {
+                    edge_mm,
+                    ..MeshSettings::default()
+                },
+            )?;
             crate::command::write_mesh(folder, sensor, &mesh).map(|_| ())
         })
     }
@@ -55,7 +63,9 @@ impl Run {
             let split = Split::new(&recording, &settings.split)?;
             let bench = fit_bench(&recording, &places, &split.train, &store, &settings.bench)?;
             let places = places.with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value));
-            let sweeps = store.sweeps(&places.requests).map_err(anyhow::Error::from_boxed)?;
+            let sweeps = store
+                .sweeps(&places.requests)
+                .map_err(anyhow::Error::from_boxed)?;
             bar.finish_and_clear();
             write_json(&folder.join("split.json"), &split)?;
             write_json(&folder.join("bench.json"), &bench)?;
@@ -82,7 +92,13 @@ impl Run {
 
     /// The settings with what depends on sensor and presses filled in.
     pub(crate) fn resolved(&self, recording: &Recording, places: &Places) -> super::RunSettings {
-        let n_places = if is_static(recording) { places.requests.len() } else { 0 };
-        self.record.settings.resolve(&self.sensor.sensor, recording, n_places, self.record.seed)
+        let n_places = if is_static(recording) {
+            places.requests.len()
+        } else {
+            0
+        };
+        self.record
+            .settings
+            .resolve(&self.sensor.sensor, recording, n_places, self.record.seed)
     }
 }

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
-use digitac::{Epoch, Model, Origin, Progress, Scale, Score, Split, StaticPolynomial, TrainSettings, Trained, Variant};
+use digitac::{
+    Epoch, Model, Origin, Progress, Scale, Score, Split, StaticPolynomial, TrainSettings, Trained, Variant,
+};
 use serde::{Deserialize, Serialize};
 
 use super::Run;
@@ -54,8 +56,18 @@ impl Run {
             let trained = fit(&simulation.split, &settings, &mut follow)?;
             let chosen = digitac::choose(&trained).context("no variant was trained")?;
 
-            let test: Vec<_> = simulation.split.test.iter().map(|&index| &presses[index]).collect();
-            let teaching: Vec<_> = simulation.split.train.iter().map(|&index| &presses[index]).collect();
+            let test: Vec<_> = simulation
+                .split
+                .test
+                .iter()
+                .map(|&index| &presses[index])
+                .collect();
+            let teaching: Vec<_> = simulation
+                .split
+                .train
+                .iter()
+                .map(|&index| &presses[index])
+                .collect();
             let polynomial = StaticPolynomial::fit(&teaching);
             let mut variants = Vec::new();
             for candidate in &trained {
@@ -79,8 +91,14 @@ impl Run {
                     files: files(&recording),
                     split: split.clone(),
                 };
-                let judged = (!split.test.is_empty()).then(|| digitac::evaluate(&trained.twin, &test, &scale, Some(&polynomial)));
-                let model = Model::new(trained.twin.clone(), origin, trained.validation.clone(), judged.as_ref());
+                let judged = (!split.test.is_empty())
+                    .then(|| digitac::evaluate(&trained.twin, &test, &scale, Some(&polynomial)));
+                let model = Model::new(
+                    trained.twin.clone(),
+                    origin,
+                    trained.validation.clone(),
+                    judged.as_ref(),
+                );
                 model.save(&folder.join(name))?;
                 Ok(())
             };
@@ -89,9 +107,16 @@ impl Run {
             let mut everything = simulation.split.clone();
             everything.train.append(&mut everything.test);
             everything.train.sort_unstable();
-            let again = TrainSettings { variants: vec![chosen.twin.variant()], ..settings.clone() };
+            let again = TrainSettings {
+                variants: vec![chosen.twin.variant()],
+                ..settings.clone()
+            };
             let complete = fit(&everything, &again, &mut |_| bar.inc(1))?;
-            keep(complete.first().context("no variant was trained")?, everything, "complete")?;
+            keep(
+                complete.first().context("no variant was trained")?,
+                everything,
+                "complete",
+            )?;
             bar.finish_and_clear();
             Ok(())
         })?;

@@ -1,0 +1,140 @@
+//! Bad input gets one clear error, exit code 2, and leaves nothing half-written.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn twintac(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_twintac")).args(arguments).output().unwrap()
+}
+
+/// Exit code 2, nothing on standard output, one error that holds all the words.
+fn refused(output: &Output, words: &[&str]) {
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(output.stdout.is_empty());
+    assert_eq!(text.matches("error: ").count(), 1, "{text}");
+    for word in words {
+        assert!(text.contains(word), "no `{word}` in: {text}");
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn a_truncated_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let sensor = root().join("sensors/phystac.toml");
+    let made = twintac(&["mesh", "--sensor", text(&sensor), "--edge-mm", "4", "--out", text(folder.path())]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let whole = fs::read(folder.path().join("gel.msh")).unwrap();
+    let cut = folder.path().join("cut.msh");
+    fs::write(&cut, &whole[..whole.len() / 2]).unwrap();
+    refused(&twintac(&["mesh", "--check", text(&cut)]), &["cut.msh", "line"]);
+}
+
+#[test]
+fn a_taxel_outside_the_gel() {
+    let folder = tempfile::tempdir().unwrap();
+    let description = fs::read_to_string(root().join("sensors/phystac.toml")).unwrap();
+    let path = folder.path().join("sensor.toml");
+    fs::write(&path, description.replacen("position_mm = [-12.0,", "position_mm = [-42.0,", 1)).unwrap();
+    refused(&twintac(&["sensor", "show", text(&path)]), &["sensor.toml:", "taxels[0]"]);
+}
+
+/// A recording of three presses of the strip, with its description, in a folder of its own.
+fn recording(folder: &Path, change: impl Fn(usize, &mut Vec<String>)) -> Output {
+    let mut csv = String::new();
+    let mut time_s = 0.0;
+    for row in 0..900 {
+        let phase = f64::from(row % 300) * 0.061;
+        let depth = (phase - 2.0).clamp(0.0, 4.0).min((16.0 - phase).clamp(0.0, 4.0));
+        let mut cells = vec![format!("{}", 100_000.0 + 900.0 * depth.powi(2)); 4];
+        cells.extend([format!("{}", (row / 300) * 1000), format!("{}", (480.0 * depth).round()), format!("{time_s}")]);
+        change(row as usize, &mut cells);
+        csv += &(cells.join(",") + "\n");
+        time_s += 0.061;
+    }
+    let header = if csv.lines().next().is_some_and(|line| line.split(',').count() == 7) {
+        "Sensor_0,Sensor_1,Sensor_2,Sensor_3,x,z,time\n"
+    } else {
+        "Sensor_0,Sensor_1,Sensor_2,x,z,time\n"
+    };
+    fs::write(folder.join("gelD_invented.csv"), header.to_owned() + &csv).unwrap();
+    let (sensor, file) = (root().join("sensors/strip4-gel-d.toml"), folder.join("gelD_invented.csv"));
+    let out = folder.join("run");
+    twintac(&["import", "--sensor", text(&sensor), "--recordings", text(&file), "--out", text(&out)])
+}
+
+#[test]
+fn a_whole_recording_is_imported() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = recording(folder.path(), |_, _| ());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(folder.path().join("run/recordings/presses.parquet").exists());
+}
+
+#[test]
+fn a_missing_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = recording(folder.path(), |_, cells| {
+        cells.remove(3);
+    });
+    refused(&output, &["gelD_invented.csv", "Sensor_3"]);
+    assert!(!folder.path().join("run/recordings").exists());
+}
+
+#[test]
+fn a_reading_that_is_no_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = recording(folder.path(), |row, cells| {
+        if row == 500 {
+            cells[1] = "NaN".into();
+        }
+    });
+    refused(&output, &["gelD_invented.csv", "502", "Sensor_1"]);
+    assert!(!folder.path().join("run/recordings").exists());
+}
+
+#[test]
+fn times_that_run_backwards() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = recording(folder.path(), |row, cells| {
+        if row == 500 {
+            cells[6] = "1.0".into();
+        }
+    });
+    refused(&output, &["gelD_invented.csv", "502", "time"]);
+    assert!(!folder.path().join("run/recordings").exists());
+}
+
+#[test]
+fn a_model_with_a_flipped_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["checksums.json", "twin.json", "weights.safetensors"];
+    let hash = "0".repeat(64);
+    let sums = format!(
+        r#"{{"format":"twintac-twin","version":1,"sha256":{{"twin.json":"{hash}","weights.safetensors":"{hash}"}}}}"#
+    );
+    for (name, bytes) in names.iter().zip([sums.as_bytes(), b"{}", b"x"]) {
+        fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let recordings = folder.path().join("run/recordings/presses.parquet");
+    assert!(recording(folder.path(), |_, _| ()).status.success());
+    let output =
+        twintac(&["evaluate", "--model", text(folder.path()), "--recordings", text(&recordings), "--json"]);
+    refused(&output, &["twin.json", "SHA-256"]);
+}
+
+#[test]
+fn a_sensor_that_is_not_there() {
+    refused(&twintac(&["sensor", "show", "nowhere.toml"]), &["nowhere.toml"]);
+}
