@@ -1,5 +1,7 @@
 //! House rules and checks: `cargo xtask ci` runs what CI runs.
 
+#![allow(clippy::print_stderr)] // a tool for people at a terminal
+
 #[cfg(test)]
 mod tidy;
 
