@@ -461,9 +461,9 @@ proptest! {
                 assert_sound(&mesh);
                 let expected_mm3 = gel_volume_mm3(&solid, &Surfaces::new(), &chips);
                 let error = (mesh.volume_mm3() / expected_mm3 - 1.0).abs();
-                // Curved tops are made of flat facets.
+                // Curved tops are made of flat facets; faces of chips that nearly coincide are merged, at a cost in volume.
                 let sharp = matches!(solid, Solid::Block { edge_radius_mm: 0.0, .. });
-                prop_assert!(error < if sharp { 1e-9 } else { 0.03 }, "{}", error);
+                prop_assert!(error < if sharp { 1e-5 } else { 0.03 }, "{}", error);
                 prop_assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes()).unwrap(), mesh);
             }
             // A chip of 1.5 mm may reach into the rounding of a low block.

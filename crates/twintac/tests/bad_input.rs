@@ -7,7 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn twintac(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_twintac")).args(arguments).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_twintac"))
+        .args(arguments)
+        .output()
+        .unwrap()
 }
 
 /// Exit code 2, nothing on standard output, one error that holds all the words.
@@ -33,7 +36,15 @@ fn text(path: &Path) -> &str {
 fn a_truncated_mesh() {
     let folder = tempfile::tempdir().unwrap();
     let sensor = root().join("sensors/phystac.toml");
-    let made = twintac(&["mesh", "--sensor", text(&sensor), "--edge-mm", "4", "--out", text(folder.path())]);
+    let made = twintac(&[
+        "mesh",
+        "--sensor",
+        text(&sensor),
+        "--edge-mm",
+        "4",
+        "--out",
+        text(folder.path()),
+    ]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let whole = fs::read(folder.path().join("gel.msh")).unwrap();
     let cut = folder.path().join("cut.msh");
@@ -46,8 +57,15 @@ fn a_taxel_outside_the_gel() {
     let folder = tempfile::tempdir().unwrap();
     let description = fs::read_to_string(root().join("sensors/phystac.toml")).unwrap();
     let path = folder.path().join("sensor.toml");
-    fs::write(&path, description.replacen("position_mm = [-12.0,", "position_mm = [-42.0,", 1)).unwrap();
-    refused(&twintac(&["sensor", "show", text(&path)]), &["sensor.toml:", "taxels[0]"]);
+    fs::write(
+        &path,
+        description.replacen("position_mm = [-12.0,", "position_mm = [-42.0,", 1),
+    )
+    .unwrap();
+    refused(
+        &twintac(&["sensor", "show", text(&path)]),
+        &["sensor.toml:", "taxels[0]"],
+    );
 }
 
 /// A recording of three presses of the strip, with its description, in a folder of its own.
@@ -58,27 +76,50 @@ fn recording(folder: &Path, change: impl Fn(usize, &mut Vec<String>)) -> Output 
         let phase = f64::from(row % 300) * 0.061;
         let depth = (phase - 2.0).clamp(0.0, 4.0).min((16.0 - phase).clamp(0.0, 4.0));
         let mut cells = vec![format!("{}", 100_000.0 + 900.0 * depth.powi(2)); 4];
-        cells.extend([format!("{}", (row / 300) * 1000), format!("{}", (480.0 * depth).round()), format!("{time_s}")]);
+        cells.extend([
+            format!("{}", (row / 300) * 1000),
+            format!("{}", (480.0 * depth).round()),
+            format!("{time_s}"),
+        ]);
         change(row as usize, &mut cells);
         csv += &(cells.join(",") + "\n");
         time_s += 0.061;
     }
-    let header = if csv.lines().next().is_some_and(|line| line.split(',').count() == 7) {
+    let header = if csv
+        .lines()
+        .next()
+        .is_some_and(|line| line.split(',').count() == 7)
+    {
         "Sensor_0,Sensor_1,Sensor_2,Sensor_3,x,z,time\n"
     } else {
         "Sensor_0,Sensor_1,Sensor_2,x,z,time\n"
     };
     fs::write(folder.join("gelD_invented.csv"), header.to_owned() + &csv).unwrap();
-    let (sensor, file) = (root().join("sensors/strip4-gel-d.toml"), folder.join("gelD_invented.csv"));
+    let (sensor, file) = (
+        root().join("sensors/strip4-gel-d.toml"),
+        folder.join("gelD_invented.csv"),
+    );
     let out = folder.join("run");
-    twintac(&["import", "--sensor", text(&sensor), "--recordings", text(&file), "--out", text(&out)])
+    twintac(&[
+        "import",
+        "--sensor",
+        text(&sensor),
+        "--recordings",
+        text(&file),
+        "--out",
+        text(&out),
+    ])
 }
 
 #[test]
 fn a_whole_recording_is_imported() {
     let folder = tempfile::tempdir().unwrap();
     let output = recording(folder.path(), |_, _| ());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     assert!(folder.path().join("run/recordings/presses.parquet").exists());
 }
 
@@ -129,8 +170,14 @@ fn a_model_with_a_flipped_byte() {
     }
     let recordings = folder.path().join("run/recordings/presses.parquet");
     assert!(recording(folder.path(), |_, _| ()).status.success());
-    let output =
-        twintac(&["evaluate", "--model", text(folder.path()), "--recordings", text(&recordings), "--json"]);
+    let output = twintac(&[
+        "evaluate",
+        "--model",
+        text(folder.path()),
+        "--recordings",
+        text(&recordings),
+        "--json",
+    ]);
     refused(&output, &["twin.json", "SHA-256"]);
 }
 

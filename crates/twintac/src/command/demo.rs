@@ -32,7 +32,7 @@ fn settings() -> RunSettings {
     RunSettings {
         simulate: SimulateSettings {
             edges_per_height: 4.0,
-            edges_per_contact_radius: 3.0,
+            edges_per_contact_radius: 2.5,
             ..SimulateSettings::default()
         },
         train: TrainSettings {
