@@ -373,22 +373,28 @@ mod tests {
                 .unwrap_err()
                 .field
         };
-        assert_eq!(wrong("count = 8", "count = 8, margin_mm = 1"), "places.margin_mm");
-        assert_eq!(wrong("count = 8", "count = 0"), "places.count");
-        assert_eq!(wrong("count = 8", "count = 4000000000"), "places.count");
-        assert_eq!(wrong("count = 8", "number = 8"), "places.count");
+        assert_eq!(
+            wrong("count = 16", "count = 16, margin_mm = 1"),
+            "places.margin_mm"
+        );
+        assert_eq!(wrong("count = 16", "count = 0"), "places.count");
+        assert_eq!(wrong("count = 16", "count = 4000000000"), "places.count");
+        assert_eq!(wrong("count = 16", "number = 16"), "places.count");
         assert_eq!(wrong("x_mm = [-9.0, 9.0]", "x_mm = [9.0, -9.0]"), "places.x_mm");
         assert_eq!(
-            wrong("depth_mm = [1.0, 2.0]", "depth_mm = [2.0, 1.0]"),
+            wrong("depth_mm = [0.6, 1.6]", "depth_mm = [1.6, 0.6]"),
             "depth_mm"
         );
-        assert_eq!(wrong("depth_mm = [1.0, 2.0]", "depth_mm = \"deep\""), "depth_mm");
+        assert_eq!(wrong("depth_mm = [0.6, 1.6]", "depth_mm = \"deep\""), "depth_mm");
         assert_eq!(
             wrong("speed_mm_per_s = [1.5, 4.0]", "speed_mm_per_s = 0.0"),
             "speed_mm_per_s"
         );
         assert_eq!(wrong("hold_s = [0.5, 1.5]", "hold_s = inf"), "hold_s");
-        assert_eq!(wrong("indenters = [", "indenters = [\"cube\", "), "indenters[2]");
+        assert_eq!(
+            wrong("indenters = [", "indenters = [\"cylinder\", "),
+            "indenters[2]"
+        );
         let protocol = Protocol::parse("demo.toml", DEMO).unwrap();
         assert!(protocol.plan(&["needle".to_owned()], 1).is_err());
     }
