@@ -85,7 +85,7 @@ impl Default for BenchSettings {
             tip_radii_mm: vec![2.0, 3.0, 4.5, 6.5],
             n_places: 12,
             contact_offset_limit_mm: 0.3,
-            stiffness_limits: [0.25, 4.0],
+            stiffness_limits: [0.5, 2.0],
             time_constants_s: crate::TIME_CONSTANTS_S.to_vec(),
             left_out: std::collections::BTreeSet::new(),
             n_blocks: 6,

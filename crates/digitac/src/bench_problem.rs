@@ -59,7 +59,8 @@ impl<'a> Problem<'a> {
         let here = Places {
             requests: used.iter().map(|&i| places.requests[i].clone()).collect(),
             of_press: Vec::new(),
-        };
+        }
+        .with_stiffness(settings.stiffness_limits[0]);
         let radii: Vec<Option<f64>> = match &settings.tip_radii_mm[..] {
             [] => vec![None],
             radii => radii.iter().copied().map(Some).collect(),

@@ -211,7 +211,7 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
     let mut new = truth.recording(21);
     new.presses.iter_mut().for_each(|press| press.file = "new".into());
     let places = Places::of(&new, &Formula, &PlaceSettings::default()).unwrap();
-    let places = places.with_tip_radius(made.bench.tip_radius_mm.map(|radius| radius.value));
+    let places = places.at_bench(&made.bench);
     let sweeps = Formula.sweeps(&places.requests).unwrap();
     let found = recalibrate(
         &new,

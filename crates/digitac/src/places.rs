@@ -4,12 +4,14 @@ use glam::{DQuat, DVec2};
 use twintac_recording::{Control, Press, Recording};
 use twintac_shape::Pose;
 
-use crate::{DigitacError, SweepRequest, SweepSource};
+use crate::{Bench, DigitacError, SweepRequest, SweepSource};
 
 /// Places closer than this are one, mm.
 const SAME_PLACE_MM: f64 = 0.01;
 /// Turns closer than this are one, radians.
 const SAME_TURN_RAD: f64 = 0.001;
+/// How much more force to simulate than was pressed.
+const FORCE_MARGIN: f64 = 1.1;
 
 /// How deep places are to be simulated.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,7 +19,7 @@ const SAME_TURN_RAD: f64 = 0.001;
 pub struct PlaceSettings {
     /// How much deeper to simulate than was pressed, mm: room for the contact height to be corrected.
     pub margin_mm: f64,
-    /// Depth of places where the force was prescribed instead of the pose, mm.
+    /// Depth at which to give up where the force was prescribed instead of the pose, mm.
     pub force_control_depth_mm: f64,
 }
 
@@ -63,6 +65,7 @@ impl Places {
                     indenter: press.indenter.clone(),
                     gel_from_indenter_at_touch: touch,
                     max_depth_mm: 0.0,
+                    enough_force_n: None,
                     tip_radius_mm: None,
                 });
             }
@@ -73,9 +76,30 @@ impl Places {
                 Control::Force => settings.force_control_depth_mm,
             };
             request.max_depth_mm = request.max_depth_mm.max(depth_mm);
+            if press.control == Control::Force {
+                let pressed_n = press.force_n.iter().flatten().copied().fold(0.0, f64::max);
+                request.enough_force_n = Some(pressed_n.max(request.enough_force_n.unwrap_or(0.0)));
+            }
             places.of_press.push(index);
         }
         Ok(places)
+    }
+
+    /// The same requests for a gel `stiffness` times as stiff as the simulated one, which has to be pressed with less or more force to
+    /// be pressed as deep.
+    #[must_use]
+    pub fn with_stiffness(mut self, stiffness: f64) -> Self {
+        for request in &mut self.requests {
+            request.enough_force_n = request.enough_force_n.map(|force_n| force_n / stiffness);
+        }
+        self
+    }
+
+    /// The same requests as the bench is known to be, with a little room.
+    #[must_use]
+    pub fn at_bench(self, bench: &Bench) -> Self {
+        self.with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value))
+            .with_stiffness(bench.stiffness() / FORCE_MARGIN)
     }
 
     /// The same requests with a tip of another radius.

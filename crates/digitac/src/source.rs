@@ -17,6 +17,8 @@ pub struct SweepRequest {
     pub gel_from_indenter_at_touch: Pose,
     /// Depth below first touch to reach, mm.
     pub max_depth_mm: f64,
+    /// Force that is enough, N: the sweep may end where it is reached. Always there for presses of prescribed force.
+    pub enough_force_n: Option<f64>,
     /// Radius of a spherical tip in place of the described one, mm. The indenter's origin stays where it
     /// touches first.
     pub tip_radius_mm: Option<f64>,

@@ -197,6 +197,7 @@ mod tests {
             indenter: "tip".into(),
             gel_from_indenter_at_touch: touch,
             max_depth_mm: 2.0,
+            enough_force_n: None,
             tip_radius_mm: None,
         };
         Formula.sweeps(&[request]).unwrap().remove(0)

@@ -184,6 +184,7 @@ impl Bench {
             })?;
         let robot = &self.reality.robot;
         Ok(PressPlace {
+            enough_force_n: None,
             indenter: plan.indenter.clone(),
             shape: indenter.shape.clone(),
             x_mm: plan.x_mm + chance.normal(robot.place_deviation_mm),

@@ -39,6 +39,8 @@ pub struct PressPlace {
     pub rotation: DQuat,
     /// Depth below first touch to simulate, mm.
     pub depth_mm: f64,
+    /// Force that is enough, N: the press ends with the frame that reaches it.
+    pub enough_force_n: Option<f64>,
 }
 
 /// A moment of a trajectory.
@@ -164,7 +166,9 @@ impl Gel {
     /// The depths of a table: closer together near the surface, where the contact grows fastest.
     #[must_use]
     pub fn depths(&self, place: &PressPlace) -> Vec<Keyframe> {
-        let n_frames = self.settings.sweep_frames.max(1);
+        let n_frames = (place.depth_mm / self.settings.sweep_step_mm)
+            .ceil()
+            .max(SimulateSettings::MIN_SWEEP_FRAMES) as u32;
         let fraction = |i: u32| (f64::from(i) / f64::from(n_frames)).powf(1.25);
         (0..=n_frames)
             .map(|i| Keyframe {
@@ -254,6 +258,12 @@ impl GelMesh {
                     };
                     frames.push(self.read(&fields, &frame, keyframe));
                     show(&fields);
+                    if place
+                        .enough_force_n
+                        .is_some_and(|enough_n| -frame.indenter_force_n.z >= enough_n)
+                    {
+                        break;
+                    }
                 }
                 Err(error) => {
                     failure = Some(format!("at {:.3} mm: {error}", keyframe.depth_mm));

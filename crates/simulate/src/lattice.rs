@@ -1,7 +1,7 @@
 //! Sweeps on a regular lattice of places, read off anywhere between them.
 //!
-//! An array pressed at thousands of places need not be simulated at each: what a port feels varies over the gel's height, so a lattice
-//! some quarter of that height apart, with cubic interpolation, loses less than the mesh does.
+//! An array pressed at thousands of places need not be simulated at each: what a port feels varies over the gel's height, so splines
+//! through a lattice some third of that height apart lose less than the mesh does.
 
 use glam::DVec2;
 use twintac_shape::Pose;
@@ -46,25 +46,33 @@ impl Lattice {
             .collect()
     }
 
-    /// The sweep at a place inside the lattice, from the sweeps at [`Lattice::places_mm`], by cubic interpolation frame by frame. Frames
-    /// that some neighbour lacks are left out.
+    /// The four corners of the lattice, mm.
+    #[must_use]
+    pub fn corners_mm(&self) -> Vec<DVec2> {
+        let far_mm = self.step_mm * DVec2::new((self.n_x - 1) as f64, (self.n_y - 1) as f64);
+        [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE]
+            .map(|corner| self.low_mm + corner * far_mm)
+            .to_vec()
+    }
+
+    /// The sweep at a place inside the lattice, from the sweeps at [`Lattice::places_mm`], by cubic splines frame by frame. Frames that
+    /// some node lacks are left out.
     #[must_use]
     pub fn at(&self, sweeps: &[Sweep], place_mm: DVec2) -> Sweep {
-        let (i0, wx) = cubic_weights((place_mm.x - self.low_mm.x) / self.step_mm.x, self.n_x);
-        let (j0, wy) = cubic_weights((place_mm.y - self.low_mm.y) / self.step_mm.y, self.n_y);
-        let mut neighbours: Vec<(&Sweep, f64)> = Vec::with_capacity(16);
-        for (j, weight_y) in wy.iter().enumerate() {
-            for (i, weight_x) in wx.iter().enumerate() {
-                neighbours.push((&sweeps[(j0 + j) * self.n_x + i0 + i], weight_x * weight_y));
-            }
-        }
-        let n_frames = neighbours
+        let along_x = spline_weights((place_mm.x - self.low_mm.x) / self.step_mm.x, self.n_x);
+        let along_y = spline_weights((place_mm.y - self.low_mm.y) / self.step_mm.y, self.n_y);
+        let nodes: Vec<(&Sweep, f64)> = sweeps
+            .iter()
+            .enumerate()
+            .map(|(node, sweep)| (sweep, along_x[node % self.n_x] * along_y[node / self.n_x]))
+            .collect();
+        let n_frames = nodes
             .iter()
             .map(|(sweep, _)| sweep.frames.len())
             .min()
             .unwrap_or(0);
-        let nearest = nearest(&neighbours);
-        let z_mm = neighbours
+        let nearest = nearest(&nodes);
+        let z_mm = nodes
             .iter()
             .map(|(s, w)| w * s.gel_from_indenter_at_touch.position_mm.z)
             .sum();
@@ -73,17 +81,15 @@ impl Lattice {
                 position_mm: place_mm.extend(z_mm),
                 ..nearest.gel_from_indenter_at_touch
             },
-            frames: (0..n_frames)
-                .map(|frame| blend(&neighbours, nearest, frame))
-                .collect(),
+            frames: (0..n_frames).map(|frame| blend(&nodes, nearest, frame)).collect(),
             ..nearest.clone()
         }
     }
 }
 
-fn nearest<'a>(neighbours: &[(&'a Sweep, f64)]) -> &'a Sweep {
-    let mut best = neighbours[0];
-    for &candidate in neighbours {
+fn nearest<'a>(nodes: &[(&'a Sweep, f64)]) -> &'a Sweep {
+    let mut best = nodes[0];
+    for &candidate in nodes {
         if candidate.1 > best.1 {
             best = candidate;
         }
@@ -91,9 +97,9 @@ fn nearest<'a>(neighbours: &[(&'a Sweep, f64)]) -> &'a Sweep {
     best.0
 }
 
-fn blend(neighbours: &[(&Sweep, f64)], nearest: &Sweep, frame: usize) -> SweepFrame {
+fn blend(nodes: &[(&Sweep, f64)], nearest: &Sweep, frame: usize) -> SweepFrame {
     let sum = |value: &dyn Fn(&SweepFrame) -> f64| -> f64 {
-        neighbours
+        nodes
             .iter()
             .map(|(sweep, weight)| weight * value(&sweep.frames[frame]))
             .sum()
@@ -112,17 +118,42 @@ fn blend(neighbours: &[(&Sweep, f64)], nearest: &Sweep, frame: usize) -> SweepFr
     }
 }
 
-/// First of the four nodes around a position (in steps) and their Lagrange weights.
-fn cubic_weights(position: f64, n_nodes: usize) -> (usize, [f64; 4]) {
-    let first = (position.floor() - 1.0).clamp(0.0, (n_nodes - 4) as f64);
-    let t = position - first;
-    let weights = [
-        -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
-        t * (t - 2.0) * (t - 3.0) / 2.0,
-        -t * (t - 1.0) * (t - 3.0) / 2.0,
-        t * (t - 1.0) * (t - 2.0) / 6.0,
-    ];
-    (first as usize, weights)
+/// What each node's value counts at a position (in steps), for the cubic spline through equally spaced nodes, its third derivative
+/// continuous at the second and the last but one (not-a-knot). There its curvature is the second difference; between, the curvatures
+/// m solve m₋ + 4 m + m₊ = 6 times the second difference. `[n_nodes]`
+fn spline_weights(position: f64, n_nodes: usize) -> Vec<f64> {
+    let cell = (position.floor().max(0.0) as usize).min(n_nodes - 2);
+    let (b, a) = (position - cell as f64, cell as f64 + 1.0 - position);
+    (0..n_nodes)
+        .map(|node| {
+            let value = |i: usize| f64::from(u8::from(i == node));
+            let curvature = curvatures(n_nodes, &value);
+            a * value(cell)
+                + b * value(cell + 1)
+                + ((a.powi(3) - a) * curvature[cell] + (b.powi(3) - b) * curvature[cell + 1]) / 6.0
+        })
+        .collect()
+}
+
+fn curvatures(n_nodes: usize, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    let difference = |i: usize| value(i - 1) - 2.0 * value(i) + value(i + 1);
+    let last = n_nodes - 1;
+    let mut m = vec![0.0; n_nodes];
+    (m[1], m[last - 1]) = (difference(1), difference(last - 1));
+    // Elimination and back substitution of the tridiagonal system between.
+    let mut pivot = vec![1.0; n_nodes];
+    let mut upper = vec![0.0; n_nodes];
+    for i in 2..last - 1 {
+        pivot[i] = 4.0 - upper[i - 1];
+        upper[i] = 1.0 / pivot[i];
+        m[i] = (6.0 * difference(i) - m[i - 1]) / pivot[i];
+    }
+    for i in (2..last - 1).rev() {
+        m[i] -= upper[i] * m[i + 1];
+    }
+    m[0] = 2.0 * m[1] - m[2];
+    m[last] = 2.0 * m[last - 1] - m[last - 2];
+    m
 }
 
 #[cfg(test)]

@@ -11,10 +11,15 @@ pub struct SimulateSettings {
     pub edges_per_height: f64,
     /// Edges across the radius of the contact at full depth; never longer than away from the indenter.
     pub edges_per_contact_radius: f64,
-    /// Frames of a sweep over depth, after the untouched one.
-    pub sweep_frames: u32,
+    /// Mean distance of a sweep's frames over depth, mm. Shallow sweeps have [`MIN_SWEEP_FRAMES`](Self::MIN_SWEEP_FRAMES).
+    pub sweep_step_mm: f64,
     /// The solver's own settings.
     pub solver: SolverSettings,
+}
+
+impl SimulateSettings {
+    /// Frames of the shallowest sweep, after the untouched one.
+    pub const MIN_SWEEP_FRAMES: f64 = 5.0;
 }
 
 impl Default for SimulateSettings {
@@ -22,7 +27,7 @@ impl Default for SimulateSettings {
         Self {
             edges_per_height: 5.0,
             edges_per_contact_radius: 4.0,
-            sweep_frames: 10,
+            sweep_step_mm: 0.25,
             solver: SolverSettings {
                 tolerance: 1e-4,
                 ..SolverSettings::default()

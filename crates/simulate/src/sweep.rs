@@ -56,3 +56,11 @@ pub struct Sweep {
     /// Why the frames end before they should; `None` if they do not.
     pub failure: Option<String>,
 }
+
+impl Sweep {
+    /// Depth of the last frame, mm.
+    #[must_use]
+    pub fn depth_mm(&self) -> f64 {
+        self.frames.last().map_or(0.0, |frame| frame.depth_mm)
+    }
+}

@@ -16,7 +16,7 @@ use crate::stage::{read_json, sha256, write_json};
 const LATTICE_FROM: usize = 150;
 
 /// Spacing of that lattice over the gel's height.
-const LATTICE_SPACING: f64 = 0.25;
+const LATTICE_SPACING: f64 = 1.0 / 3.0;
 
 /// Sweeps of one gel, kept in a folder: what is there is not computed again.
 pub(crate) struct SweepStore<'a> {
@@ -49,6 +49,7 @@ impl<'a> SweepStore<'a> {
             y_mm: at.position_mm.y,
             rotation: at.rotation,
             depth_mm: request.max_depth_mm,
+            enough_force_n: request.enough_force_n,
         })
     }
 
@@ -110,16 +111,23 @@ impl SweepSource for SweepStore<'_> {
             .map(|request| self.place(request))
             .collect::<Result<Vec<_>, _>>()?;
         if let Some(lattice) = lattice(self.gel, &places) {
-            let nodes: Vec<PressPlace> = lattice
-                .places_mm()
-                .into_iter()
-                .map(|at| PressPlace {
-                    x_mm: at.x,
-                    y_mm: at.y,
-                    ..places[0].clone()
-                })
-                .collect();
-            let sweeps = self.compute(&nodes)?;
+            let mut place = places[0].clone();
+            let moved = |place: &PressPlace, to: Vec<DVec2>| -> Vec<PressPlace> {
+                to.into_iter()
+                    .map(|at| PressPlace {
+                        x_mm: at.x,
+                        y_mm: at.y,
+                        ..place.clone()
+                    })
+                    .collect()
+            };
+            if place.enough_force_n.is_some() {
+                // A gel gives most at its corners: they tell how deep all places have to go.
+                let corners = self.compute(&moved(&place, lattice.corners_mm()))?;
+                place.enough_force_n = None;
+                place.depth_mm = corners.iter().map(Sweep::depth_mm).fold(0.0, f64::max);
+            }
+            let sweeps = self.compute(&moved(&place, lattice.places_mm()))?;
             return Ok(places
                 .iter()
                 .map(|p| lattice.at(&sweeps, DVec2::new(p.x_mm, p.y_mm)))

@@ -55,6 +55,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
                 .shape
                 .clone();
             let place = PressPlace {
+                enough_force_n: None,
                 indenter: plan.indenter.clone(),
                 shape,
                 x_mm: plan.x_mm,

@@ -147,8 +147,7 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
     let folder = tempfile::tempdir().context("making a temporary folder for simulations")?;
     let bar = progress::bar("simulating", 0);
     let store = SweepStore::new(&gel, folder.path().to_owned(), bar.clone());
-    let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?
-        .with_tip_radius(record.bench.tip_radius_mm.map(|radius| radius.value));
+    let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?.at_bench(&record.bench);
     let sweeps = store
         .sweeps(&places.requests)
         .map_err(anyhow::Error::from_boxed)?;

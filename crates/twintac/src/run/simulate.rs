@@ -62,7 +62,7 @@ impl Run {
             let settings = self.resolved(&recording, &places);
             let split = Split::new(&recording, &settings.split)?;
             let bench = fit_bench(&recording, &places, &split.train, &store, &settings.bench)?;
-            let places = places.with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value));
+            let places = places.at_bench(&bench);
             let sweeps = store
                 .sweeps(&places.requests)
                 .map_err(anyhow::Error::from_boxed)?;
@@ -80,8 +80,7 @@ impl Run {
         let bench: Bench = read_json(&folder.join("bench.json"))?;
         let gel = self.gel();
         let store = SweepStore::new(&gel, folder.join("sweeps"), indicatif::ProgressBar::hidden());
-        let places = Places::of(recording, &store, &self.record.settings.places)?
-            .with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value));
+        let places = Places::of(recording, &store, &self.record.settings.places)?.at_bench(&bench);
         Ok(Simulation {
             split: read_json(&folder.join("split.json"))?,
             bench,
