@@ -17,7 +17,7 @@ pub struct Bench {
     /// The same for files that were not fitted: the median of the fitted ones, mm.
     pub contact_offset_elsewhere_mm: f64,
     /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where it
-    /// cannot be told from the gains.
+    /// cannot be told from the gains, and where the tip was fitted.
     pub stiffness: Option<Estimate>,
     /// The gains that went with these values.
     pub gains: Option<Gains>,
@@ -69,7 +69,8 @@ pub struct BenchSettings {
     /// Largest correction of the contact height, mm; not above the margin of
     /// [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
     pub contact_offset_limit_mm: f64,
-    /// Smallest and largest stiffness over the simulated one.
+    /// Smallest and largest stiffness over the simulated one. Fitted to presses of prescribed force, if the tip is known: a blunter tip on a
+    /// stiffer gel makes the same contact.
     pub stiffness_limits: [f64; 2],
     /// Time constants of the barometers' memory, s.
     pub time_constants_s: Vec<f64>,

@@ -75,21 +75,29 @@ fn check(settings: &BenchSettings) -> Result<(), DigitacError> {
     Ok(())
 }
 
-/// Presses at places spread evenly over each file.
+/// Presses at places spread evenly over each file: over its taxels, and over what the one that reads the most reads.
 fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usize) -> Vec<usize> {
-    let mut by_file: BTreeMap<&str, BTreeSet<usize>> = BTreeMap::new();
-    for &press in train {
-        by_file
-            .entry(&recording.presses[press].file)
-            .or_default()
-            .insert(places.of_press[press]);
+    // By file and place, the taxel that reads the most, and what.
+    let mut by_file: BTreeMap<&str, BTreeMap<usize, (usize, f64)>> = BTreeMap::new();
+    for &index in train {
+        let press = &recording.presses[index];
+        let in_file = by_file.entry(&press.file).or_default();
+        let most = in_file.entry(places.of_press[index]).or_insert((0, 0.0));
+        for (row, valid) in press.taxels_kpa.iter().zip(&press.valid) {
+            for taxel in (0..row.len()).filter(|&taxel| valid[taxel]) {
+                if row[taxel] > most.1 {
+                    *most = (taxel, row[taxel]);
+                }
+            }
+        }
     }
     let quota = n_places.div_ceil(by_file.len().max(1));
     let mut chosen = BTreeSet::new();
     for in_file in by_file.into_values() {
-        let in_file: Vec<usize> = in_file.into_iter().collect();
+        let mut in_file: Vec<(usize, (usize, f64))> = in_file.into_iter().collect();
+        in_file.sort_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let count = quota.min(in_file.len());
-        chosen.extend((0..count).map(|i| in_file[(2 * i + 1) * in_file.len() / (2 * count)]));
+        chosen.extend((0..count).map(|i| in_file[(2 * i + 1) * in_file.len() / (2 * count)].0));
     }
     train
         .iter()
@@ -118,7 +126,6 @@ impl Problem<'_> {
             (Some(low), Some(high)) => [*low, *high],
             _ => [0.0, 0.0],
         };
-        let forced = self.presses.iter().any(|p| p.press.control == Control::Force);
         Bounds {
             center: Guess {
                 ln_radius: 0.5 * (ln_radius[0] + ln_radius[1]),
@@ -127,11 +134,7 @@ impl Problem<'_> {
             },
             ln_radius,
             offset_mm: self.settings.contact_offset_limit_mm,
-            ln_stiffness: if forced {
-                self.settings.stiffness_limits.map(f64::ln)
-            } else {
-                [0.0, 0.0]
-            },
+            ln_stiffness: self.ln_stiffness_limits,
         }
     }
 

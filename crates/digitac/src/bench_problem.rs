@@ -39,6 +39,7 @@ pub(crate) struct Problem<'a> {
     /// `[n_radii][n_places]`; a single row if the indenter is as described.
     tables: Vec<Vec<SweepTable>>,
     pub(crate) ln_radii: Vec<f64>,
+    pub(crate) ln_stiffness_limits: [f64; 2],
     pub(crate) settings: &'a BenchSettings,
 }
 
@@ -56,11 +57,19 @@ impl<'a> Problem<'a> {
             .collect::<BTreeSet<_>>()
             .into_iter()
             .collect();
+        let forced = chosen
+            .iter()
+            .any(|&press| recording.presses[press].control == Control::Force);
+        let ln_stiffness_limits = if forced && settings.tip_radii_mm.len() < 2 {
+            settings.stiffness_limits.map(f64::ln)
+        } else {
+            [0.0, 0.0]
+        };
         let here = Places {
             requests: used.iter().map(|&i| places.requests[i].clone()).collect(),
             of_press: Vec::new(),
         }
-        .with_stiffness(settings.stiffness_limits[0]);
+        .with_stiffness(ln_stiffness_limits[0].exp());
         let radii: Vec<Option<f64>> = match &settings.tip_radii_mm[..] {
             [] => vec![None],
             radii => radii.iter().copied().map(Some).collect(),
@@ -88,6 +97,7 @@ impl<'a> Problem<'a> {
             presses: presses.collect(),
             tables,
             ln_radii,
+            ln_stiffness_limits,
             settings,
         })
     }

@@ -56,23 +56,40 @@ pub(crate) struct Demo {
     pub(crate) seed: u64,
 }
 
+/// What every run is started with.
 #[derive(Args, Debug)]
-pub(crate) struct Reproduce {
+pub(crate) struct Start {
+    /// Settings (TOML) that differ from the usual ones: any of those in a run's run.json, in tables like [simulate] and [train].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+/// Recordings and how to read them.
+#[derive(Args, Debug)]
+pub(crate) struct Recorded {
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: PathBuf,
     /// Recordings: CSV files or patterns like 'data/*.csv'.
     #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
     pub(crate) recordings: Vec<String>,
-    /// How to read the recordings [default: the file that the sensor description names].
+    /// How to read the recordings (TOML) [default: the file that the sensor description names].
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Reproduce {
+    #[command(flatten)]
+    pub(crate) recorded: Recorded,
     /// Folder of the run [default: runs/<sensor>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Seed of all that chance decides.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) start: Start,
 }
 
 #[derive(Debug, Subcommand)]
@@ -150,28 +167,19 @@ pub(crate) struct Record {
     /// Folder of the run.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Seed of all that chance decides.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) start: Start,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Import {
-    /// Sensor description (TOML).
-    #[arg(long, value_name = "FILE")]
-    pub(crate) sensor: PathBuf,
-    /// How to read the recordings (TOML) [default: the file that the sensor description names].
-    #[arg(long, value_name = "FILE")]
-    pub(crate) import: Option<PathBuf>,
-    /// Recordings: CSV files or patterns like 'data/*.csv'.
-    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
-    pub(crate) recordings: Vec<String>,
+    #[command(flatten)]
+    pub(crate) recorded: Recorded,
     /// Folder of the run.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Seed of all that chance decides.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) start: Start,
 }
 
 #[derive(Args, Debug)]

@@ -23,7 +23,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Record(arguments) => stages::record(&arguments),
-        Command::Import(arguments) => stages::import(&arguments),
+        Command::Import(arguments) => reproduce::import(&arguments),
         Command::Align(arguments) => stages::align(&arguments),
         Command::Train(arguments) => stages::train(&arguments),
         Command::Evaluate(arguments) => stages::evaluate(&arguments),

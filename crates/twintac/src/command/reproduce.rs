@@ -1,38 +1,46 @@
 //! `twintac reproduce`: recordings of a real sensor in, a judged twin out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
 use super::files::expand;
-use crate::arguments::Reproduce;
+use crate::arguments::{Import, Recorded, Reproduce, Start};
 use crate::run::{Run, RunSettings};
 use crate::sensor_file::read_sensor;
 
 /// Runs every stage on recordings.
 pub(crate) fn run(arguments: &Reproduce) -> Result<()> {
-    let sensor = read_sensor(&arguments.sensor)?;
-    let files = expand(&arguments.recordings)?;
-    let import = arguments
+    let run = start(&arguments.recorded, &arguments.start, arguments.out.as_deref())?;
+    super::stages::finish(&run)
+}
+
+/// `twintac import`: starts a run with a lab's files.
+pub(crate) fn import(arguments: &Import) -> Result<()> {
+    start(&arguments.recorded, &arguments.start, Some(&arguments.out)).map(drop)
+}
+
+fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> {
+    let sensor = read_sensor(&recorded.sensor)?;
+    let settings = RunSettings::of(start)?;
+    let files = expand(&recorded.recordings)?;
+    let import = recorded
         .import
         .clone()
         .or_else(|| sensor.import())
         .with_context(|| {
             format!(
                 "{} names no import description; give one with --import",
-                arguments.sensor.display()
+                recorded.sensor.display()
             )
         })?;
-    let folder = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("runs").join(&sensor.sensor.name));
+    let folder = out.map_or_else(|| PathBuf::from("runs").join(&sensor.sensor.name), Path::to_owned);
     let names = files
         .iter()
         .filter_map(|file| file.file_name())
         .map(|name| name.to_string_lossy());
     let source = names.collect::<Vec<_>>().join(", ");
-    let run = Run::start(&folder, sensor, source, arguments.seed, RunSettings::default())?;
+    let run = Run::start(&folder, sensor, source, start.seed, settings)?;
     run.import(&import, &files)?;
-    super::stages::finish(&run)
+    Ok(run)
 }

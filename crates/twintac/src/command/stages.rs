@@ -5,7 +5,7 @@ use twintac_lab::Reality;
 use twintac_recording::Recording;
 
 use super::files::expand;
-use crate::arguments::{Align, Evaluate, Import, Record, Report, Train};
+use crate::arguments::{Align, Evaluate, Record, Report, Train};
 use crate::run::{Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan};
 use crate::sensor_file::read_sensor;
 
@@ -26,45 +26,11 @@ pub(crate) fn record(arguments: &Record) -> Result<()> {
     let text = std::fs::read_to_string(&arguments.lab)
         .with_context(|| format!("reading {}", arguments.lab.display()))?;
     let reality = Reality::parse(&arguments.lab.display().to_string(), &text)?;
-    let plans = plan(&arguments.protocol, &sensor.sensor, arguments.seed)?;
+    let settings = RunSettings::of(&arguments.start)?;
+    let seed = arguments.start.seed;
+    let plans = plan(&arguments.protocol, &sensor.sensor, seed)?;
     let source = format!("{} presses on the emulated bench", plans.len());
-    Run::start(
-        &arguments.out,
-        sensor,
-        source,
-        arguments.seed,
-        RunSettings::default(),
-    )?
-    .record(&reality, &plans)
-}
-
-/// `twintac import`: starts a run with a lab's files.
-pub(crate) fn import(arguments: &Import) -> Result<()> {
-    let sensor = read_sensor(&arguments.sensor)?;
-    let files = expand(&arguments.recordings)?;
-    let import = arguments
-        .import
-        .clone()
-        .or_else(|| sensor.import())
-        .with_context(|| {
-            format!(
-                "{} names no import description; give one with --import",
-                arguments.sensor.display()
-            )
-        })?;
-    let source = files
-        .iter()
-        .map(|file| file.display().to_string())
-        .collect::<Vec<_>>()
-        .join(", ");
-    Run::start(
-        &arguments.out,
-        sensor,
-        source,
-        arguments.seed,
-        RunSettings::default(),
-    )?
-    .import(&import, &files)
+    Run::start(&arguments.out, sensor, source, seed, settings)?.record(&reality, &plans)
 }
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
@@ -137,47 +103,35 @@ fn print_headline(run: &Run) -> Result<()> {
 }
 
 fn headline(metrics: &Metrics) -> String {
-    let line = |name: &str, figures: &crate::run::Figures| {
-        format!(
-            "{name:<18} {:6.2} %  {:6.2} %",
-            figures.nearest_in_contact_percent, figures.all_percent
-        )
-    };
+    let mut rows = vec![("twin".to_owned(), &metrics.twin.overall)];
+    let by_file = metrics.twin.by_file.iter();
+    rows.extend(by_file.map(|(file, figures)| (format!("  {file}"), figures)));
+    let all_taxels = metrics.twin_all_taxels.iter();
+    rows.extend(all_taxels.map(|figures| ("twin, every taxel".to_owned(), figures)));
+    let polynomial = metrics.baselines.polynomial.iter();
+    rows.extend(polynomial.map(|figures| ("static polynomial".to_owned(), figures)));
+    rows.push(("zero".to_owned(), &metrics.baselines.zero));
+    let repeatability = metrics.repeatability.iter();
+    rows.extend(repeatability.map(|figures| ("repeatability".to_owned(), figures)));
+
+    let width = rows
+        .iter()
+        .map(|(name, _)| name.chars().count())
+        .max()
+        .unwrap_or(0);
     let mut lines = vec![
         format!(
             "{} ({} data), {} presses that the twin never saw, `{}`",
             metrics.sensor, metrics.provenance, metrics.held_out_presses, metrics.variant
         ),
-        format!("{:<18} {:>8}  {:>8}", "", "nearest", "all"),
-        line("twin", &metrics.twin.overall),
+        format!("{:<width$}  {:>8}  {:>8}", "", "nearest", "all"),
     ];
-    lines.extend(
-        metrics
-            .twin
-            .by_file
-            .iter()
-            .map(|(file, figures)| line(&format!("  {}", shortened(file)), figures)),
-    );
-    lines.extend(
-        metrics
-            .twin_all_taxels
-            .as_ref()
-            .map(|figures| line("twin, every taxel", figures)),
-    );
-    lines.extend(
-        metrics
-            .baselines
-            .polynomial
-            .as_ref()
-            .map(|figures| line("static polynomial", figures)),
-    );
-    lines.push(line("zero", &metrics.baselines.zero));
-    lines.extend(
-        metrics
-            .repeatability
-            .as_ref()
-            .map(|figures| line("repeatability", figures)),
-    );
+    lines.extend(rows.iter().map(|(name, figures)| {
+        format!(
+            "{name:<width$}  {:6.2} %  {:6.2} %",
+            figures.nearest_in_contact_percent, figures.all_percent
+        )
+    }));
     lines.push(metrics.definition.clone());
     lines.join("\n")
 }
@@ -209,9 +163,4 @@ fn unseen(found: &UnseenEvaluation) -> String {
     }
     lines.push(found.definition.clone());
     lines.join("\n")
-}
-
-/// A file's name, cut to fit a column.
-fn shortened(name: &str) -> String {
-    name.chars().take(15).collect()
 }

@@ -36,7 +36,7 @@ use crate::sensor_file::{SensorFile, read_sensor};
 use crate::stage::{self, read_json, write_json};
 
 pub(crate) use evaluate::{UnseenEvaluation, evaluate_elsewhere};
-pub(crate) use metrics::{Figures, Metrics};
+pub(crate) use metrics::Metrics;
 pub(crate) use record::{import_files, plan, plan_text};
 pub(crate) use settings::RunSettings;
 

@@ -1,11 +1,14 @@
 //! Settings of every stage of a run.
 
+use anyhow::Result;
 use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings};
 use serde::{Deserialize, Serialize};
 use twintac_recording::{Control, Recording};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::SimulateSettings;
+
+use crate::arguments::Start;
 
 /// From this many places on, presses are told apart for the split by squares of the gel, not by place: neighbours on a dense grid
 /// know too much of each other.
@@ -33,6 +36,28 @@ pub(crate) struct RunSettings {
 }
 
 impl RunSettings {
+    /// The usual settings but for those in the file that a run is started with.
+    pub(crate) fn of(start: &Start) -> Result<Self> {
+        let Some(path) = &start.settings else {
+            return Ok(Self::default());
+        };
+        let document = twintac_config::read::<Self>(path)?;
+        let simulate = &document.value.simulate;
+        for (field, value) in [
+            ("edges_per_height", simulate.edges_per_height),
+            ("edges_per_contact_radius", simulate.edges_per_contact_radius),
+            ("sweep_step_mm", simulate.sweep_step_mm),
+        ] {
+            if value <= 0.0 || !value.is_finite() {
+                let field = format!("simulate.{field}");
+                return Err(document
+                    .error(&field, &format!("is {value}"), "give a number above zero")
+                    .into());
+            }
+        }
+        Ok(document.value)
+    }
+
     /// The settings with all that depends on the seed, the sensor and the presses filled in.
     pub(crate) fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
         let mut resolved = self.clone();
