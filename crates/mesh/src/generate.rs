@@ -23,7 +23,8 @@ const OFF_BOARD_MM: f64 = 0.01;
 /// their path, must be closed and stand on z = 0, and are meshed by isosurface stuffing. The same input gives the same mesh, bit for bit.
 ///
 /// # Errors
-/// Settings, solids or inclusions that make no sense; more than 20 million lattice points; a tetrahedron that came out flat.
+/// Settings, solids or inclusions that make no sense; more than 20 million lattice points; a tetrahedron that came out flat, as where
+/// faces of inclusions lie almost in line along two axes: those closer than a twentieth of the shortest edge are merged, others not.
 pub fn generate(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -76,14 +77,19 @@ fn stuff(
     for (index, inclusion) in inclusions.iter().enumerate() {
         inclusion.check(index, [low_mm, high_mm], high_mm.z)?;
     }
-    // Where a surface happens to graze lattice points, a slightly different lattice does better.
+    // Where a surface happens to graze lattice points, a slightly different lattice does better, and upright lines do where narrow
+    // cells between inclusions lean over their neighbours.
     let mut best: Option<(f64, TetMesh)> = None;
     for factor in [1.0, 0.97, 1.03, 0.94, 1.06] {
         // The lattice has two points a cell.
         let settings = settings.scaled(factor * 2_f64.cbrt());
-        let lattice = Lattice::new([low_mm, high_mm], inclusions, &settings, 0.0)?;
+        let mut lattice = Lattice::new([low_mm, high_mm], inclusions, &settings, 0.0)?;
+        if best.is_some() {
+            lattice = lattice.upright();
+        }
         let tolerance_mm = 1e-4 * settings.smallest_edge_mm();
-        let mesh = stuffing::mesh(&lattice, &Region::new(surface, inclusions, 0.0, tolerance_mm))?;
+        let region = Region::new(surface, &lattice.inclusions(), 0.0, tolerance_mm);
+        let mesh = stuffing::mesh(&lattice, &region)?;
         let least_deg = least_dihedral_deg(&mesh);
         if best.as_ref().is_none_or(|&(best_deg, _)| least_deg > best_deg) {
             best = Some((least_deg, mesh));
@@ -101,7 +107,8 @@ fn stuff(
 /// settings with the edge lengths that were found.
 ///
 /// # Errors
-/// Those of [`generate`]; [`MeshError::NodeCount`] where no factor gives such a number.
+/// Those of [`generate`]; [`MeshError::NodeCount`] where no factor gives such a number: lines come and go as a whole, often two at a
+/// time or along several axes at once, which is a large step where there are few.
 pub fn generate_with_node_count(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -140,6 +147,7 @@ fn search(
         Ok::<_, MeshError>((n_nodes, best))
     };
     // The count goes roughly with the cube of the edge length, in jumps: follow that, with shorter and shorter steps.
+    let (mut too_fine, mut too_coarse) = (0.0_f64, f64::INFINITY);
     let mut factor = 1.0;
     for step in 0..24 {
         let exponent = 0.4 / (1.0 + 0.1 * f64::from(step));
@@ -147,13 +155,24 @@ fn search(
         if 100 * away(best.0) <= target {
             return Ok(settings.scaled(best.1));
         }
+        if n_nodes > target {
+            too_fine = too_fine.max(factor);
+        } else {
+            too_coarse = too_coarse.min(factor);
+        }
         factor *= (n_nodes as f64 / target.max(1) as f64).powf(exponent);
     }
-    // Between two jumps of one axis there may be a narrow step of another.
-    let (_, (nearest, middle)) = attempt(factor)?;
-    if 10 * away(nearest) > target {
-        for step in -80..=80 {
-            attempt(middle * 1.002_f64.powi(step))?;
+    // Between two jumps there may be a step too narrow for that: halve the way until a single jump is left.
+    while too_fine > 0.0 && too_coarse < f64::INFINITY && (too_coarse / too_fine - 1.0).abs() > 1e-9 {
+        factor = (too_fine * too_coarse).sqrt();
+        let (n_nodes, best) = attempt(factor)?;
+        if 10 * away(best.0) <= target {
+            break;
+        }
+        if n_nodes > target {
+            too_fine = factor;
+        } else {
+            too_coarse = factor;
         }
     }
     match best {

@@ -106,6 +106,14 @@ impl Lattice {
         })
     }
 
+    /// The same lattice without leaning lines: they stay where the inclusions want them up to the top.
+    pub(crate) fn upright(mut self) -> Self {
+        for axis in [&mut self.x, &mut self.y] {
+            axis.ideal_mm.clone_from(&axis.snapped_mm);
+        }
+        self
+    }
+
     /// Number of points along each axis.
     pub(crate) fn points(&self) -> [usize; 3] {
         [self.x.ideal_mm.len(), self.y.ideal_mm.len(), self.z_mm.len()]
@@ -132,6 +140,21 @@ impl Lattice {
     /// Height of the tallest inclusion, mm; that of the board without any.
     pub(crate) fn inclusion_top_mm(&self) -> f64 {
         self.z_mm[self.inclusion_top]
+    }
+
+    /// The inclusions as the lattice has them: faces that were merged lie in one plane, boxes without a cell are gone.
+    pub(crate) fn inclusions(&self) -> Vec<Cuboid> {
+        let at_mm =
+            |[i, j, k]: [usize; 3]| DVec3::new(self.x.snapped_mm[i], self.y.snapped_mm[j], self.z_mm[k]);
+        let cuboid = |b: &IndexBox| Cuboid {
+            min_mm: at_mm(b.low),
+            max_mm: at_mm(b.high),
+        };
+        self.boxes
+            .iter()
+            .map(cuboid)
+            .filter(|c| c.min_mm.cmplt(c.max_mm).all())
+            .collect()
     }
 
     /// Whether a cell, named by its lowest point, lies in an inclusion.

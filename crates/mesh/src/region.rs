@@ -61,8 +61,12 @@ impl<'a> Region<'a> {
 
     /// Whether a point of the boundary is on the board or an inclusion.
     pub(crate) fn is_bonded(&self, point_mm: DVec3) -> bool {
-        point_mm.z <= self.board_mm + self.tolerance_mm
-            || self.inclusion_distance_mm(point_mm).abs() <= 2.0 * self.tolerance_mm
+        point_mm.z <= self.board_mm + self.tolerance_mm || self.is_on_inclusion(point_mm)
+    }
+
+    /// Whether a point of the boundary is on an inclusion.
+    pub(crate) fn is_on_inclusion(&self, point_mm: DVec3) -> bool {
+        self.inclusion_distance_mm(point_mm).abs() <= 2.0 * self.tolerance_mm
     }
 
     /// Distance to the nearest inclusion, negative inside; infinite without any.

@@ -13,7 +13,7 @@ pub(crate) enum Side {
 /// A corner of the inner part: a number that all tetrahedra around it agree on, and its position.
 pub(crate) type Corner = (u32, DVec3);
 
-/// Cuts the inner part of a tetrahedron into tetrahedra of positive volume.
+/// Cuts the inner part of a tetrahedron into tetrahedra that are oriented like it.
 ///
 /// `cut(a, b)` gives the point where the edge between corners `a` (inside) and `b` (outside) is cut. Faces that two tetrahedra share are
 /// cut alike in both. `center` makes a new corner for the rare part that has no cut without one.
@@ -33,7 +33,7 @@ pub(crate) fn inner_part(
     let at = |corner: usize| corners[corner];
     match (inside.as_slice(), on.as_slice(), outside.as_slice()) {
         ([], ..) => {}
-        (_, _, []) => push(corners, out),
+        (_, _, []) => push(corners, true, out),
         (&[a], _, _) => {
             // The corners outside are pulled in along their edges.
             push(
@@ -44,18 +44,20 @@ pub(crate) fn inner_part(
                         at(c)
                     }
                 }),
+                true,
                 out,
             );
         }
         (&[a, b], &[apex], &[c]) => {
             for [p, q, r] in halves([at(a), at(b), cut(b, c), cut(a, c)]) {
-                push([at(apex), p, q, r], out);
+                push([at(apex), p, q, r], is_even([apex, a, b, c]), out);
             }
         }
         (&[a, b], _, &[c, d]) => {
             prism(
                 [at(a), cut(a, c), cut(a, d)],
                 [at(b), cut(b, c), cut(b, d)],
+                is_even([a, c, d, b]),
                 &mut center,
                 out,
             );
@@ -64,6 +66,7 @@ pub(crate) fn inner_part(
             prism(
                 [at(a), at(b), at(c)],
                 [cut(a, d), cut(b, d), cut(c, d)],
+                is_even([a, b, c, d]),
                 &mut center,
                 out,
             );
@@ -90,14 +93,16 @@ fn halves(quad: [Corner; 4]) -> [[Corner; 3]; 2] {
     }
 }
 
-/// Cuts a prism between two triangles, corner by corner, into three tetrahedra, or eight around its centre if need be.
+/// Cuts a prism between two triangles, corner by corner, into three tetrahedra, or eight around its centre if need be. `even` where
+/// the bottom and a corner of the top are oriented like the tetrahedron that is cut.
 fn prism(
     bottom: [Corner; 3],
     top: [Corner; 3],
+    even: bool,
     center: &mut impl FnMut(DVec3) -> Corner,
     out: &mut Vec<[u32; 4]>,
 ) {
-    let mut triangles = vec![bottom, top];
+    let mut triangles = vec![[bottom[0], bottom[2], bottom[1]], top];
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
         triangles.extend(halves([bottom[i], bottom[j], top[j], top[i]]));
     }
@@ -115,16 +120,19 @@ fn prism(
     let hub = hub.unwrap_or_else(|| center(bottom.iter().chain(&top).map(|c| c.1).sum::<DVec3>() / 6.0));
     for [a, b, c] in triangles {
         if [a, b, c].iter().all(|corner| corner.0 != hub.0) {
-            push([hub, a, b, c], out);
+            push([hub, a, b, c], even, out);
         }
     }
 }
 
-/// Adds a tetrahedron, turned to have a positive volume.
-fn push(corners: [Corner; 4], out: &mut Vec<[u32; 4]>) {
-    let mut numbers = corners.map(|corner| corner.0);
-    if crate::tet_mesh::signed_volume_mm3(corners.map(|corner| corner.1)) < 0.0 {
-        numbers.swap(2, 3);
-    }
-    out.push(numbers);
+/// Whether an order of the corners has the orientation of `[0, 1, 2, 3]`.
+fn is_even([a, b, c, d]: [usize; 4]) -> bool {
+    let swaps = [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)];
+    swaps.iter().filter(|(first, second)| first > second).count() % 2 == 0
+}
+
+/// Adds a tetrahedron, turned over unless `even`.
+fn push(corners: [Corner; 4], even: bool, out: &mut Vec<[u32; 4]>) {
+    let [a, b, c, d] = corners.map(|corner| corner.0);
+    out.push(if even { [a, b, c, d] } else { [a, b, d, c] });
 }

@@ -130,7 +130,7 @@ fn background(lattice: &Lattice) -> Background {
         if k == 0 {
             let face = [[i, j, 0], [i + 1, j, 0], [i + 1, j + 1, 0], [i, j + 1, 0]];
             let middle: DVec3 = face.iter().map(|&c| points_mm[corner(c)]).sum::<DVec3>() / 4.0;
-            ring([cell(at), points_mm.len()], face);
+            ring([points_mm.len(), cell(at)], face);
             points_mm.push(middle);
         }
     }
@@ -229,6 +229,10 @@ fn move_points(
             continue;
         }
         let cut_mm = cuts_mm[place];
+        // Inclusions lie between planes of the lattice, which cut them well as they are.
+        if region.is_on_inclusion(cut_mm) {
+            continue;
+        }
         if !background.on_board[node] || background.on_board[other as usize] {
             background.points_mm[node] = cut_mm;
         } else {

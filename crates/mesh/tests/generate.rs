@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use twintac_mesh::{
     Cuboid, Focus, MeshError, MeshSettings, Quality, TetMesh, gel_volume_mm3, generate,
     generate_with_node_count, gmsh,
@@ -451,21 +452,89 @@ fn any_settings() -> impl Strategy<Value = MeshSettings> {
     )
 }
 
-/// The most that chips can change in volume: faces closer than a twentieth of the shortest edge are merged.
+/// Part of a regular tetrahedron's volume below which the generator takes a tetrahedron for flat.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Shortest and longest edge that is asked for, mm.
+fn edge_range_mm(settings: &MeshSettings) -> [f64; 2] {
+    let edges_mm = settings.focuses.iter().map(|focus| focus.edge_mm);
+    edges_mm.fold([settings.edge_mm; 2], |[low, high], edge| {
+        [low.min(edge), high.max(edge)]
+    })
+}
+
+/// Faces of inclusions closer than this are merged, mm.
+fn merging_mm(settings: &MeshSettings) -> f64 {
+    0.05 * edge_range_mm(settings)[0]
+}
+
+/// The most that merged faces can change in the volume of chips, mm³: every face moves out.
 fn merged_faces_mm3(chips: &[Cuboid], settings: &MeshSettings) -> f64 {
-    let shortest_mm = settings
-        .focuses
-        .iter()
-        .fold(settings.edge_mm, |edge, focus| edge.min(focus.edge_mm));
-    let area_mm2 = |chip: &Cuboid| {
-        let size = chip.max_mm - chip.min_mm;
-        2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
+    let grown_mm3 = |chip: &Cuboid| {
+        let size_mm = chip.max_mm - chip.min_mm;
+        (size_mm + 2.0 * merging_mm(settings)).element_product() - size_mm.element_product()
     };
-    0.05 * shortest_mm * chips.iter().map(area_mm2).sum::<f64>()
+    chips.iter().map(grown_mm3).sum()
+}
+
+/// The most that flat facets, an edge and a quarter long, can cut off a curved top, mm³.
+fn facets_mm3(solid: &Solid, settings: &MeshSettings) -> f64 {
+    let e = 1.25 * edge_range_mm(settings)[1];
+    match solid {
+        // A node lies in the middle of each rounded edge. Chords of its halves, which turn by 45°, cut off at most e²/4 tan 22.5° of a
+        // half's cross-section; and at most the triangle r tan 22.5° high whose legs are that long and e.
+        Solid::Block {
+            size_mm,
+            edge_radius_mm,
+            ..
+        } => 4.0 * (size_mm[0] + size_mm[1]) * e * (0.104 * e).min(0.147 * edge_radius_mm),
+        // A quadratic fall c s² is cut off by c e²/6 on average; the facet across the crown may belong to either side.
+        Solid::Dome(dome) => {
+            let side = |ends: [f64; 2], crown: f64, drops: [f64; 2]| -> f64 {
+                let cut_mm2 = |end: f64, drop_mm: f64| {
+                    let reach_mm = (end - crown).abs();
+                    drop_mm / reach_mm.powi(2) * (reach_mm + e) * e.powi(2) / 6.0
+                };
+                cut_mm2(ends[0], drops[0]) + cut_mm2(ends[1], drops[1])
+            };
+            let [x_mm, y_mm] = [dome.x_mm, dome.y_mm].map(|[from, to]| to - from);
+            y_mm * side(dome.x_mm, dome.crown_at_mm[0], dome.drop_x_mm)
+                + x_mm * side(dome.y_mm, dome.crown_at_mm[1], dome.drop_y_mm)
+        }
+        Solid::Stl { .. } => 0.0,
+    }
+}
+
+/// How flat cells between faces of chips that lie almost in line can be: a cell `a` long and `b` and `c` thick consists of tetrahedra with
+/// √2 bc/a² of the volume of regular ones. Lines move by half a cell at most, so that `a` is at most twice what was asked for; cells beside
+/// a gap are at least half as thick as it is.
+fn flattest_share([low_mm, high_mm]: [DVec3; 2], chips: &[Cuboid], settings: &MeshSettings) -> f64 {
+    let [shortest_mm, longest_mm] = edge_range_mm(settings);
+    let thinnest_mm = |axis: usize| {
+        let chip_faces = chips.iter().flat_map(|c| [c.min_mm[axis], c.max_mm[axis]]);
+        let faces: Vec<f64> = chip_faces.chain([low_mm[axis], high_mm[axis]]).collect();
+        let gaps = faces.iter().flat_map(|a| faces.iter().map(move |b| b - a));
+        let edge_mm = if axis == 2 {
+            shortest_mm.min(settings.edge_mm * settings.top_edge_ratio)
+        } else {
+            shortest_mm
+        };
+        0.5 * gaps
+            .filter(|&gap| gap >= merging_mm(settings))
+            .fold(edge_mm, f64::min)
+    };
+    let mut thick_mm = [0, 1, 2].map(thinnest_mm);
+    thick_mm.sort_by(f64::total_cmp);
+    SQRT_2 * thick_mm[0] * thick_mm[1] / (2.0 * longest_mm).powi(2)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(48) })]
+    // PROPTEST_CASES and PROPTEST_RNG_SEED try more and others.
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::with_cases(48)
+    })]
 
     #[test]
     fn meshes_are_sound_and_conserve_volume(solid in any_solid(), chips in any_chips(), settings in any_settings()) {
@@ -474,14 +543,16 @@ proptest! {
                 assert_sound(&mesh);
                 let expected_mm3 = gel_volume_mm3(&solid, &Surfaces::new(), &chips);
                 let error_mm3 = (mesh.volume_mm3() - expected_mm3).abs();
-                // Curved tops are made of flat facets.
-                let sharp = matches!(solid, Solid::Block { edge_radius_mm: 0.0, .. });
-                let facets_mm3 = expected_mm3 * if sharp { 1e-9 } else { 0.03 };
-                prop_assert!(error_mm3 < facets_mm3 + merged_faces_mm3(&chips, &settings), "{}", error_mm3);
+                let most_mm3 = facets_mm3(&solid, &settings) + merged_faces_mm3(&chips, &settings);
+                prop_assert!(error_mm3 < most_mm3 + 1e-9 * expected_mm3, "{} {}", error_mm3, most_mm3);
                 prop_assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes()).unwrap(), mesh);
             }
             // A chip of 1.5 mm may reach into the rounding of a low block.
             Err(MeshError::Inclusion { .. }) => {}
+            Err(MeshError::Degenerate { .. }) => {
+                let (low_mm, high_mm) = solid.bounds_mm(&Surfaces::new());
+                prop_assert!(flattest_share([low_mm, high_mm], &chips, &settings) < LEAST_SHARE);
+            }
             Err(other) => prop_assert!(false, "{}", other),
         }
     }
@@ -508,8 +579,21 @@ proptest! {
 
     #[test]
     fn the_wanted_number_of_nodes_is_met(solid in any_solid(), settings in any_settings(), n_nodes in 1000..6000_usize) {
-        let (mesh, _) = generate_with_node_count(&solid, &Surfaces::new(), &[], &settings, n_nodes).unwrap();
-        prop_assert!(10 * mesh.nodes_mm.len().abs_diff(n_nodes) <= n_nodes);
+        let is_met = |found: usize| 10 * found.abs_diff(n_nodes) <= n_nodes;
+        match generate_with_node_count(&solid, &Surfaces::new(), &[], &settings, n_nodes) {
+            Ok((mesh, _)) => prop_assert!(is_met(mesh.nodes_mm.len())),
+            // About one in a thousand: the number jumps over all that would do. It does so at every factor from coarse to fine.
+            Err(MeshError::NodeCount { nearest, .. }) => {
+                let counts: Vec<usize> = (0..)
+                    .map(|step| settings.scaled(8.0 * 0.999_f64.powi(step)))
+                    .map(|scaled| mesh_of(&solid, &[], &scaled).nodes_mm.len())
+                    .take_while(|&found| found < 2 * n_nodes)
+                    .collect();
+                prop_assert!(!is_met(nearest) && !counts.iter().any(|&found| is_met(found)));
+                prop_assert!(counts.iter().any(|&found| found < n_nodes));
+            }
+            Err(other) => prop_assert!(false, "{}", other),
+        }
     }
 
     #[test]
@@ -541,8 +625,16 @@ proptest! {
                             max_mm: c.max_mm.with_z(1.1),
                         })
                         .collect();
-                    let with_chips = generate(&solid, &surfaces, &chips, &settings).unwrap();
-                    assert_sound(&with_chips);
+                    match generate(&solid, &surfaces, &chips, &settings) {
+                        Ok(with_chips) => assert_sound(&with_chips),
+                        Err(MeshError::Degenerate { .. }) => {
+                            let (low_mm, high_mm) = solid.bounds_mm(&surfaces);
+                            // The longest cells that are tried; twelve tetrahedra each, not six.
+                            let share = 0.5 * flattest_share([low_mm, high_mm], &chips, &settings.scaled(1.06 * 2_f64.cbrt()));
+                            prop_assert!(share < LEAST_SHARE);
+                        }
+                        Err(other) => prop_assert!(false, "{}", other),
+                    }
                 }
             }
             Err(other) => prop_assert!(false, "{}", other),

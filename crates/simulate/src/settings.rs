@@ -27,7 +27,7 @@ impl Default for SimulateSettings {
         Self {
             edges_per_height: 5.0,
             edges_per_contact_radius: 4.0,
-            sweep_step_mm: 0.25,
+            sweep_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-4,
                 ..SolverSettings::default()
