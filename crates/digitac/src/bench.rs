@@ -64,7 +64,7 @@ pub struct BenchSettings {
     /// Tip radii to simulate, mm, at increasing size; the fit interpolates between them. Empty takes the
     /// described indenter.
     pub tip_radii_mm: Vec<f64>,
-    /// How many places, spread over each file, the fit looks at.
+    /// How many places, spread over taxels and readings, the fit looks at; more where a file would have too few.
     pub n_places: usize,
     /// Largest correction of the contact height, mm; not above the margin of
     /// [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
@@ -84,7 +84,7 @@ impl Default for BenchSettings {
     fn default() -> Self {
         Self {
             tip_radii_mm: vec![2.0, 3.0, 4.5, 6.5],
-            n_places: 12,
+            n_places: 10,
             contact_offset_limit_mm: 0.3,
             stiffness_limits: [0.5, 2.0],
             time_constants_s: crate::TIME_CONSTANTS_S.to_vec(),

@@ -11,6 +11,8 @@ use crate::{Bench, BenchSettings, DigitacError, Estimate, Places, SweepSource};
 
 /// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
 const TOLERANCE: f64 = 2e-3;
+/// Places of each file that the fit looks at, at least.
+const MIN_PLACES_OF_FILE: usize = 3;
 /// Rounds over the contact heights.
 const MAX_ROUNDS: usize = 8;
 /// Reach around the best values in fits that leave a block out, in the same units.
@@ -75,14 +77,16 @@ fn check(settings: &BenchSettings) -> Result<(), DigitacError> {
     Ok(())
 }
 
-/// Presses at places spread evenly over each file: over its taxels, and over what the one that reads the most reads.
+/// Presses at places spread evenly over the taxels, and over what the one that reads the most reads; every file has some.
 fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usize) -> Vec<usize> {
-    // By file and place, the taxel that reads the most, and what.
-    let mut by_file: BTreeMap<&str, BTreeMap<usize, (usize, f64)>> = BTreeMap::new();
+    // By place, the taxel that reads the most, and what.
+    let mut most: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
+    let mut by_file: BTreeMap<&str, BTreeSet<usize>> = BTreeMap::new();
     for &index in train {
         let press = &recording.presses[index];
-        let in_file = by_file.entry(&press.file).or_default();
-        let most = in_file.entry(places.of_press[index]).or_insert((0, 0.0));
+        let place = places.of_press[index];
+        by_file.entry(&press.file).or_default().insert(place);
+        let most = most.entry(place).or_insert((0, 0.0));
         for (row, valid) in press.taxels_kpa.iter().zip(&press.valid) {
             for taxel in (0..row.len()).filter(|&taxel| valid[taxel]) {
                 if row[taxel] > most.1 {
@@ -91,13 +95,24 @@ fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usi
             }
         }
     }
-    let quota = n_places.div_ceil(by_file.len().max(1));
-    let mut chosen = BTreeSet::new();
-    for in_file in by_file.into_values() {
-        let mut in_file: Vec<(usize, (usize, f64))> = in_file.into_iter().collect();
-        in_file.sort_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let count = quota.min(in_file.len());
-        chosen.extend((0..count).map(|i| in_file[(2 * i + 1) * in_file.len() / (2 * count)].0));
+    let evenly = |among: Vec<usize>, count: usize| -> Vec<usize> {
+        let mut sorted = among;
+        sorted.sort_by(|a, b| {
+            let ((taxel_a, reading_a), (taxel_b, reading_b)) = (most[a], most[b]);
+            taxel_a.cmp(&taxel_b).then(reading_a.total_cmp(&reading_b))
+        });
+        let count = count.min(sorted.len());
+        (0..count)
+            .map(|i| sorted[(2 * i + 1) * sorted.len() / (2 * count)])
+            .collect()
+    };
+    let mut chosen: BTreeSet<usize> = evenly(most.keys().copied().collect(), n_places)
+        .into_iter()
+        .collect();
+    for in_file in by_file.values() {
+        let has = in_file.intersection(&chosen).count();
+        let others = in_file.difference(&chosen).copied().collect();
+        chosen.extend(evenly(others, MIN_PLACES_OF_FILE.saturating_sub(has)));
     }
     train
         .iter()

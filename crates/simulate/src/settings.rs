@@ -30,6 +30,9 @@ impl Default for SimulateSettings {
             sweep_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-4,
+                // A table that ends a little early costs less than the search for where exactly it has to.
+                max_iterations: 25,
+                min_substep: 0.25,
                 ..SolverSettings::default()
             },
         }
