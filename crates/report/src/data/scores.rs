@@ -89,7 +89,7 @@ pub struct FileError {
 pub struct TaxelError {
     /// The taxel.
     pub name: String,
-    /// Error where it is the nearest and in contact, %.
+    /// Error where it is the nearest and in contact, %; NaN where it never is.
     pub nearest_in_contact_percent: f64,
     /// Error in all frames, %.
     pub all_percent: f64,

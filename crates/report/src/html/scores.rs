@@ -103,6 +103,7 @@ pub(super) fn where_it_errs(data: &ReportData) -> Option<Section> {
         let bars = data
             .taxels
             .iter()
+            .filter(|taxel| taxel.nearest_in_contact_percent.is_finite())
             .map(|taxel| bar(&taxel.name, taxel.nearest_in_contact_percent, Ink::Twin));
         let chart = Bars {
             title: "Error by taxel".into(),

@@ -273,7 +273,11 @@ fn taxels(
             let figures = metrics.twin.by_taxel.get(&taxel.name)?;
             Some(TaxelError {
                 name: taxel.name.clone(),
-                nearest_in_contact_percent: figures.nearest_in_contact_percent,
+                nearest_in_contact_percent: if figures.frames_in_contact == 0 {
+                    f64::NAN
+                } else {
+                    figures.nearest_in_contact_percent
+                },
                 all_percent: figures.all_percent,
                 bias_percent: report_figures::bias_percent(evaluation, index),
                 note: taxel.doubtful.clone().unwrap_or_default(),

@@ -51,7 +51,7 @@ impl RunSettings {
             if value <= 0.0 || !value.is_finite() {
                 let field = format!("simulate.{field}");
                 return Err(document
-                    .error(&field, &format!("is {value}"), "give a number above zero")
+                    .error(&field, format!("is {value}"), "give a number above zero")
                     .into());
             }
         }
