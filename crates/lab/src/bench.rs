@@ -81,6 +81,7 @@ impl Bench {
         let settings = SimulateSettings {
             edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
+            max_nodes: usize::MAX,
             ..SimulateSettings::default()
         };
         let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));

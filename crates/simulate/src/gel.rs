@@ -16,6 +16,9 @@ use crate::{Honesty, SimulateError, SimulateSettings, Sweep, SweepFrame};
 /// Part of the depth at which the indenter is about as wide as its contact: half, exactly so for a sphere by Hertz's theory.
 const CONTACT_DEPTH: f64 = 0.5;
 
+/// By how much edges grow at least when a mesh has too many nodes.
+const MIN_COARSENING: f64 = 1.05;
+
 /// A gel and how finely it is to be simulated. Shared by many presses.
 #[derive(Clone, Debug)]
 pub struct Gel {
@@ -130,15 +133,6 @@ impl Gel {
         let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, CONTACT_DEPTH * place.depth_mm);
         let coarse_mm = self.height_mm() / self.settings.edges_per_height;
         let fine_mm = (radius_mm / self.settings.edges_per_contact_radius).min(coarse_mm);
-        let settings = MeshSettings {
-            edge_mm: coarse_mm,
-            focuses: vec![Focus {
-                center_mm: touched,
-                radius_mm,
-                edge_mm: fine_mm,
-            }],
-            ..MeshSettings::default()
-        };
         let inclusions: Vec<Cuboid> = sensor
             .inclusions
             .iter()
@@ -147,7 +141,29 @@ impl Gel {
                 max_mm: i.max_mm,
             })
             .collect();
-        let mesh = twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings)?;
+        let generate = |scale: f64| {
+            let settings = MeshSettings {
+                edge_mm: scale * coarse_mm,
+                focuses: vec![Focus {
+                    center_mm: touched,
+                    radius_mm,
+                    edge_mm: scale * fine_mm,
+                }],
+                ..MeshSettings::default()
+            };
+            twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings)
+        };
+        let mut scale = 1.0;
+        let mut mesh = generate(scale)?;
+        while mesh.nodes_mm.len() > self.settings.max_nodes {
+            let excess = mesh.nodes_mm.len() as f64 / self.settings.max_nodes as f64;
+            let coarser = scale * excess.cbrt().max(MIN_COARSENING);
+            if coarser * fine_mm > radius_mm || coarser * coarse_mm > self.height_mm() {
+                break;
+            }
+            scale = coarser;
+            mesh = generate(scale)?;
+        }
         GelMesh::new(
             sensor,
             mesh,

@@ -11,6 +11,8 @@ pub struct SimulateSettings {
     pub edges_per_height: f64,
     /// Edges across the radius of the contact at full depth; never longer than away from the indenter.
     pub edges_per_contact_radius: f64,
+    /// Nodes that a press may have: where the edges asked for make more, all are made longer.
+    pub max_nodes: usize,
     /// Mean distance of a sweep's frames over depth, mm. Shallow sweeps have [`MIN_SWEEP_FRAMES`](Self::MIN_SWEEP_FRAMES).
     pub sweep_step_mm: f64,
     /// The solver's own settings.
@@ -27,6 +29,7 @@ impl Default for SimulateSettings {
         Self {
             edges_per_height: 5.0,
             edges_per_contact_radius: 4.0,
+            max_nodes: 5000,
             sweep_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-4,

@@ -6,6 +6,9 @@ use twintac_shape::{Pose, SignedDistance};
 /// Samples along each axis of the search; the second search refines about the first one's best.
 const SAMPLES: i32 = 40;
 
+/// Heights that differ by less than this are the same, mm.
+const SAME_HEIGHT_MM: f64 = 1e-9;
+
 /// The pose at which an indenter, coming straight down above `(x_mm, y_mm)`, touches the gel, together with the touched point.
 /// `top_height_mm` gives the gel's top, `None` beside it. `None` if the indenter misses the gel.
 pub(crate) fn first_touch(
@@ -30,12 +33,12 @@ pub(crate) fn first_touch(
                 let Some(height_mm) = top_height_mm(point.x, point.y) else {
                     continue;
                 };
-                let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm) else {
-                    continue;
-                };
-                let z_mm = height_mm - lowest_mm;
-                if best.is_none_or(|(best_mm, _)| z_mm > best_mm + 1e-12) {
-                    best = Some((z_mm, point.extend(height_mm)));
+                // Only an underside lower than this would touch earlier than the best so far.
+                let ceiling_mm = best.map_or(1.5 * reach_mm, |(best_mm, _)| {
+                    height_mm - best_mm - SAME_HEIGHT_MM
+                });
+                if let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm, ceiling_mm) {
+                    best = Some((height_mm - lowest_mm, point.extend(height_mm)));
                 }
             }
         }
@@ -50,8 +53,15 @@ pub(crate) fn first_touch(
     })
 }
 
-/// Height of the indenter's underside above its origin at a place in the gel's plane, mm; `None` beside the indenter.
-fn underside_mm(indenter: &dyn SignedDistance, pose: &Pose, place: DVec2, reach_mm: f64) -> Option<f64> {
+/// Height of the indenter's underside above its origin at a place in the gel's plane, mm; `None` beside the indenter, and where it is
+/// above the ceiling.
+fn underside_mm(
+    indenter: &dyn SignedDistance,
+    pose: &Pose,
+    place: DVec2,
+    reach_mm: f64,
+    ceiling_mm: f64,
+) -> Option<f64> {
     let flat = Pose {
         position_mm: pose.position_mm.truncate().extend(0.0),
         rotation: pose.rotation,
@@ -65,7 +75,7 @@ fn underside_mm(indenter: &dyn SignedDistance, pose: &Pose, place: DVec2, reach_
             return Some(z_mm);
         }
         z_mm += distance_mm;
-        if z_mm > 1.5 * reach_mm {
+        if z_mm > ceiling_mm {
             return None;
         }
     }
