@@ -9,7 +9,7 @@ use twintac_shape::Pose;
 use twintac_simulate::{
     Gel, Keyframe, Pchip, PressPlace, SimulateError, SimulateSettings, Sweep, SweepFrame,
 };
-use twintac_softbody::{Isochoric, Material, PronyTerm};
+use twintac_softbody::{Isochoric, Material, PronyTerm, SolverSettings};
 
 use crate::Reality;
 use crate::imperfect::Chance;
@@ -82,6 +82,13 @@ impl Bench {
             edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
             max_nodes: usize::MAX,
+            // Reality never ends early.
+            solver: SolverSettings {
+                tolerance: 1e-4,
+                max_iterations: 60,
+                min_substep: 1.0 / 64.0,
+                ..SolverSettings::default()
+            },
             ..SimulateSettings::default()
         };
         let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));
