@@ -21,11 +21,11 @@ pub enum SimulateError {
         /// Place of the press, mm.
         y_mm: f64,
     },
-    /// A taxel's port lies outside the mesh.
-    #[error("the port of taxel `{taxel}` lies {distance_mm:.2} mm outside the mesh")]
+    /// A taxel's port, or a point, reaches outside the mesh.
+    #[error("`{place}` reaches more than {distance_mm:.2} mm outside the gel's mesh")]
     PortOutside {
-        /// The taxel's name.
-        taxel: String,
+        /// The taxel's or the point's name.
+        place: String,
         /// How far out, mm.
         distance_mm: f64,
     },

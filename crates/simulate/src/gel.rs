@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
 use twintac_mesh::{Cuboid, Focus, MeshSettings, TetMesh};
 use twintac_sensor::{Model, Sensor};
@@ -57,10 +57,10 @@ pub struct Keyframe {
 
 /// One press's mesh and model, with where the indenter touches first.
 pub struct GelMesh {
-    body: SoftBody,
-    indenter: Box<dyn SignedDistance>,
-    touch: Pose,
-    ports: Vec<PortReadout>,
+    pub(crate) body: SoftBody,
+    pub(crate) indenter: Box<dyn SignedDistance>,
+    pub(crate) touch: Pose,
+    pub(crate) ports: Vec<PortReadout>,
     clusters: Vec<StressCluster>,
 }
 
@@ -122,15 +122,26 @@ impl Gel {
 
     /// Meshes the gel for a press: fine under the indenter, coarser elsewhere.
     pub fn mesh(&self, place: &PressPlace) -> Result<GelMesh, SimulateError> {
-        let sensor = &*self.sensor;
-        let solid = &sensor.gel.solid;
-        let indenter = place.shape.signed_distance_field(&sensor.surfaces)?;
         let above = Pose {
             position_mm: DVec3::new(place.x_mm, place.y_mm, 0.0),
             rotation: place.rotation,
         };
-        let (touch, touched) = self.first_touch(indenter.as_ref(), &above)?;
-        let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, CONTACT_DEPTH * place.depth_mm);
+        self.mesh_along(&place.shape, &above, place.depth_mm, &[])
+    }
+
+    /// Meshes the gel for an indenter that touches first below a pose, goes this deep, and moves on by these ways.
+    pub(crate) fn mesh_along(
+        &self,
+        shape: &Shape,
+        above: &Pose,
+        depth_mm: f64,
+        ways_mm: &[DVec2],
+    ) -> Result<GelMesh, SimulateError> {
+        let sensor = &*self.sensor;
+        let solid = &sensor.gel.solid;
+        let indenter = shape.signed_distance_field(&sensor.surfaces)?;
+        let (touch, touched) = self.first_touch(indenter.as_ref(), above)?;
+        let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, CONTACT_DEPTH * depth_mm);
         let coarse_mm = self.height_mm() / self.settings.edges_per_height;
         let fine_mm = (radius_mm / self.settings.edges_per_contact_radius).min(coarse_mm);
         let inclusions: Vec<Cuboid> = sensor
@@ -144,11 +155,14 @@ impl Gel {
         let generate = |scale: f64| {
             let settings = MeshSettings {
                 edge_mm: scale * coarse_mm,
-                focuses: vec![Focus {
-                    center_mm: touched,
-                    radius_mm,
-                    edge_mm: scale * fine_mm,
-                }],
+                focuses: std::iter::once(&DVec2::ZERO)
+                    .chain(ways_mm)
+                    .map(|way_mm| Focus {
+                        center_mm: touched + way_mm.extend(0.0),
+                        radius_mm,
+                        edge_mm: scale * fine_mm,
+                    })
+                    .collect(),
                 ..MeshSettings::default()
             };
             twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings)
@@ -212,7 +226,7 @@ impl GelMesh {
         let ports = sensor
             .taxels
             .iter()
-            .map(|taxel| PortReadout::new(&mesh, taxel))
+            .map(|taxel| PortReadout::of_taxel(&mesh, taxel))
             .collect::<Result<Vec<_>, _>>()?;
         let clusters = StressCluster::for_each_taxel(&mesh, sensor);
         let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
@@ -309,14 +323,7 @@ impl GelMesh {
                 .map(|port| port.read(&fields.pressure_kpa))
                 .collect(),
             stress_feature_kpa_per_mm: self.clusters.iter().map(feature).collect(),
-            honesty: Honesty {
-                converged: frame.converged,
-                iterations: frame.iterations,
-                residual: frame.residual,
-                penetration_mm: frame.penetration_mm,
-                smallest_volume_ratio: frame.smallest_volume_ratio,
-                wall_time_s: frame.wall_time_s,
-            },
+            honesty: Honesty::of(frame),
         }
     }
 }

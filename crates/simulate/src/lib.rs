@@ -7,6 +7,7 @@
 //! along, so that neighbouring places differ by physics and not by where nodes happen to lie.
 
 mod error;
+mod follow;
 mod gel;
 mod lattice;
 mod pchip;
@@ -16,6 +17,7 @@ mod sweep;
 mod touch;
 
 pub use error::SimulateError;
+pub use follow::{Followed, FollowedFrame};
 pub use gel::{Fields, Gel, GelMesh, Keyframe, PressPlace};
 pub use lattice::Lattice;
 pub use pchip::Pchip;

@@ -18,17 +18,27 @@ pub(crate) struct PortReadout {
 }
 
 impl PortReadout {
-    /// Samples the disc of the port (normal z) at points of equal area and spreads each over its tetrahedron's nodes.
-    pub(crate) fn new(mesh: &TetMesh, taxel: &Taxel) -> Result<Self, SimulateError> {
-        let samples = disc_samples(taxel.port_radius_mm);
+    /// The port of a taxel.
+    pub(crate) fn of_taxel(mesh: &TetMesh, taxel: &Taxel) -> Result<Self, SimulateError> {
+        Self::new(mesh, &taxel.name, taxel.position_mm, taxel.port_radius_mm)
+    }
+
+    /// Samples a disc (normal z) at points of equal area and spreads each over its tetrahedron's nodes.
+    pub(crate) fn new(
+        mesh: &TetMesh,
+        name: &str,
+        center_mm: DVec3,
+        radius_mm: f64,
+    ) -> Result<Self, SimulateError> {
+        let samples = disc_samples(radius_mm);
         let share = 1.0 / samples.len() as f64;
         let mut weights = std::collections::BTreeMap::new();
         for sample in &samples {
-            let point = taxel.position_mm + sample.extend(0.0);
+            let point = center_mm + sample.extend(0.0);
             let (tet, barycentric) =
                 mesh.locate(point, PORT_TOLERANCE_MM)
                     .ok_or_else(|| SimulateError::PortOutside {
-                        taxel: taxel.name.clone(),
+                        place: name.to_owned(),
                         distance_mm: PORT_TOLERANCE_MM,
                     })?;
             for (node, weight) in mesh.tets[tet].iter().zip(barycentric) {

@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 use twintac_shape::Pose;
+use twintac_softbody::Frame;
 
 /// How far a simulated frame can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +23,19 @@ pub struct Honesty {
     /// Wall time, s. Not part of any result that has to repeat.
     #[serde(skip)]
     pub wall_time_s: f64,
+}
+
+impl Honesty {
+    pub(crate) fn of(frame: &Frame) -> Self {
+        Self {
+            converged: frame.converged,
+            iterations: frame.iterations,
+            residual: frame.residual,
+            penetration_mm: frame.penetration_mm,
+            smallest_volume_ratio: frame.smallest_volume_ratio,
+            wall_time_s: frame.wall_time_s,
+        }
+    }
 }
 
 /// The gel at one depth.

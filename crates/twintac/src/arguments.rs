@@ -134,19 +134,28 @@ pub(crate) struct Mesh {
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
     /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out"])]
+    #[arg(long, value_name = "DIR", conflicts_with = "sensor")]
     pub(crate) run: Option<PathBuf>,
     /// Sensor description (TOML).
-    #[arg(long, value_name = "FILE", requires = "protocol")]
+    #[arg(long, value_name = "FILE")]
     pub(crate) sensor: Option<PathBuf>,
     /// Press protocol (TOML).
-    #[arg(long, value_name = "FILE", requires = "out")]
+    #[arg(long, value_name = "FILE", requires = "sensor", requires = "out")]
     pub(crate) protocol: Option<PathBuf>,
     /// Folder to write one table over depth per press to.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", requires = "protocol")]
     pub(crate) out: Option<PathBuf>,
+    /// Path of one indenter (TOML): prints force and pressures along it.
+    #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with = "protocol")]
+    pub(crate) path: Option<PathBuf>,
+    /// Print what comes of a path as JSON.
+    #[arg(long, requires = "path")]
+    pub(crate) json: bool,
+    /// Settings (TOML) that differ from the usual ones, in a table [simulate].
+    #[arg(long, value_name = "FILE", requires = "sensor")]
+    pub(crate) settings: Option<PathBuf>,
     /// Also write the pressed gel of every frame for ParaView.
-    #[arg(long)]
+    #[arg(long, requires = "protocol")]
     pub(crate) vtk: bool,
     /// Seed of the protocol's random places.
     #[arg(long, default_value_t = 1)]

@@ -2,6 +2,7 @@
 
 mod demo;
 mod files;
+mod follow;
 mod mesh;
 mod reproduce;
 mod sensor;

@@ -1,9 +1,9 @@
-//! `twintac simulate`: a protocol on the simulated gel, or the places of a run.
+//! `twintac simulate`: a protocol or a path on the simulated gel, or the places of a run.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 use twintac_mesh::vtk::{self, Field, Values};
@@ -13,7 +13,7 @@ use twintac_simulate::{Fields, Gel, PressPlace, SimulateSettings, Sweep};
 
 use crate::arguments::Simulate;
 use crate::progress;
-use crate::run::{Run, plan};
+use crate::run::{Run, RunSettings, plan};
 use crate::sensor_file::read_sensor;
 use crate::stage::{write_file, write_json};
 
@@ -33,27 +33,25 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
         run.mesh()?;
         return run.simulate();
     }
-    let (Some(sensor), Some(protocol), Some(out)) = (&arguments.sensor, &arguments.protocol, &arguments.out)
-    else {
-        anyhow::bail!("give --run, or --sensor, --protocol and --out");
+    let Some(sensor) = &arguments.sensor else {
+        anyhow::bail!("give --run, or --sensor with --protocol or --path");
     };
     let sensor = read_sensor(sensor)?.sensor;
-    let plans = plan(protocol, &sensor, arguments.seed)?;
-    let settings = SimulateSettings::default();
+    let settings = RunSettings::read(arguments.settings.as_deref())?.simulate;
     let gel = Gel::new(Arc::clone(&sensor), settings.clone());
+    if let Some(path) = &arguments.path {
+        return super::follow::run(&gel, path, arguments.json);
+    }
+    let (Some(protocol), Some(out)) = (&arguments.protocol, &arguments.out) else {
+        anyhow::bail!("give --protocol and --out, or --path");
+    };
+    let plans = plan(protocol, &sensor, arguments.seed)?;
     let bar = progress::bar("simulating", plans.len() as u64);
     plans
         .par_iter()
         .with_max_len(1)
         .try_for_each(|plan| -> Result<()> {
-            let indenter = sensor
-                .indenters
-                .iter()
-                .find(|indenter| indenter.name == plan.indenter);
-            let shape = indenter
-                .with_context(|| format!("there is no indenter `{}`", plan.indenter))?
-                .shape
-                .clone();
+            let shape = super::follow::indenter(&sensor, &plan.indenter)?.clone();
             let place = PressPlace {
                 enough_force_n: None,
                 indenter: plan.indenter.clone(),

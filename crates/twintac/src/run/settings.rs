@@ -1,5 +1,7 @@
 //! Settings of every stage of a run.
 
+use std::path::Path;
+
 use anyhow::Result;
 use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings};
 use serde::{Deserialize, Serialize};
@@ -38,7 +40,12 @@ pub(crate) struct RunSettings {
 impl RunSettings {
     /// The usual settings but for those in the file that a run is started with.
     pub(crate) fn of(start: &Start) -> Result<Self> {
-        let Some(path) = &start.settings else {
+        Self::read(start.settings.as_deref())
+    }
+
+    /// The usual settings but for those in the file, if there is one.
+    pub(crate) fn read(path: Option<&Path>) -> Result<Self> {
+        let Some(path) = path else {
             return Ok(Self::default());
         };
         let document = twintac_config::read::<Self>(path)?;

@@ -1,0 +1,100 @@
+//! `twintac simulate --path`: force and pressures along a path.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+use twintac_protocol::PressPath;
+use twintac_recording::Provenance;
+use twintac_sensor::Sensor;
+use twintac_shape::Shape;
+use twintac_simulate::{Followed, Gel};
+
+use crate::progress;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Answer<'a> {
+    provenance: Provenance,
+    sensor: &'a str,
+    path: &'a PressPath,
+    #[serde(flatten)]
+    followed: &'a Followed,
+}
+
+/// Follows a path and prints what came of it.
+pub(super) fn run(gel: &Gel, path: &Path, as_json: bool) -> Result<()> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
+    let press = PressPath::parse(&path.display().to_string(), &text)?;
+    let shape = indenter(gel.sensor(), &press.indenter)?;
+    let bar = progress::bar("simulating", press.frames().len() as u64);
+    let followed = gel
+        .follow(shape, &press, &mut || bar.inc(1))
+        .with_context(|| format!("{}", path.display()))?;
+    bar.finish_and_clear();
+    let mut out = std::io::stdout().lock();
+    if as_json {
+        let answer = Answer {
+            provenance: Provenance::Simulated,
+            sensor: &gel.sensor().name,
+            path: &press,
+            followed: &followed,
+        };
+        serde_json::to_writer_pretty(&mut out, &answer)?;
+        writeln!(out)?;
+    } else {
+        write_table(&mut out, &followed)?;
+    }
+    match &followed.failure {
+        Some(failure) => anyhow::bail!(
+            "{}: the path could not be followed to its end: {failure}; the {} frames printed are good",
+            path.display(),
+            followed.frames.len()
+        ),
+        None => Ok(()),
+    }
+}
+
+/// The shape of a sensor's indenter.
+pub(super) fn indenter<'a>(sensor: &'a Sensor, name: &str) -> Result<&'a Shape> {
+    let known = sensor.indenters.iter();
+    let names = || {
+        known
+            .clone()
+            .map(|indenter| indenter.name.as_str())
+            .collect::<Vec<_>>()
+    };
+    let found = known.clone().find(|indenter| indenter.name == name);
+    Ok(&found
+        .with_context(|| {
+            format!(
+                "there is no indenter `{name}`; the sensor has {}",
+                names().join(", ")
+            )
+        })?
+        .shape)
+}
+
+/// Comma-separated columns with their units.
+fn write_table(out: &mut dyn Write, followed: &Followed) -> Result<()> {
+    let names = followed.frames.first().map(|frame| frame.pressure_kpa.keys());
+    write!(
+        out,
+        "provenance,time_s,x_mm,y_mm,z_mm,force_x_n,force_y_n,force_z_n"
+    )?;
+    for name in names.into_iter().flatten() {
+        write!(out, ",{name}_kpa")?;
+    }
+    writeln!(out)?;
+    for frame in &followed.frames {
+        let (at, force) = (frame.position_mm, frame.force_n);
+        write!(out, "simulated,{},{},{},{}", frame.time_s, at.x, at.y, at.z)?;
+        write!(out, ",{:.6},{:.6},{:.6}", force.x, force.y, force.z)?;
+        for pressure_kpa in frame.pressure_kpa.values() {
+            write!(out, ",{pressure_kpa:.5}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}

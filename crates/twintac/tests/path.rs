@@ -1,0 +1,120 @@
+//! `simulate --path`: a case set up from two files, against converged results of two other finite-element codes.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const SENSOR: &str = r#"
+name = "block"
+summary = "a bonded block without a shell"
+source = "a case of its own"
+inferred = []
+
+[gel.solid]
+kind = "block"
+size_mm = [34.0, 18.0, 8.5]
+
+[gel.material]
+youngs_modulus_kpa = 70.0
+poissons_ratio = 0.49
+source = "chosen"
+
+[readout]
+min_kpa = 0.0
+max_kpa = 1500.0
+resolution_kpa = 0.01
+rate_hz = 55.0
+
+[[taxels]]
+name = "corner"
+position_mm = [4.0, 4.0, 0.0]
+port_radius_mm = 1.0
+channel = 0
+
+[[indenters]]
+name = "ball"
+shape = { kind = "sphere", radius_mm = 12.5 }
+"#;
+
+const PATH: &str = r#"
+summary = "four depths"
+indenter = "ball"
+zero = "touch"
+poses = [
+  { time_s = 0.0, position_mm = [0.0, 0.0, -0.5] },
+  { time_s = 1.0, position_mm = [0.0, 0.0, -1.0] },
+  { time_s = 2.0, position_mm = [0.0, 0.0, -2.0] },
+  { time_s = 3.0, position_mm = [0.0, 0.0, -4.0] },
+]
+points = [{ name = "opposite", position_mm = [-4.0, -4.0, 0.0], radius_mm = 1.0 }]
+"#;
+
+/// Depth, mm; force, N; pressure at the bottom at (±4, ±4) mm, mean over a disc of 1 mm, kPa. 20-node hexahedra of one code and
+/// quadratic tetrahedra with a pressure field of another agree to 0.5 % in force and 1 % in pressure.
+const CONVERGED: [(f64, f64, f64); 4] = [
+    (0.5, 0.2155, 0.642),
+    (1.0, 0.7100, 2.109),
+    (2.0, 2.4585, 7.00),
+    (4.0, 8.881, 21.96),
+];
+
+fn simulate(folder: &Path, path: &str) -> Output {
+    fs::write(folder.join("sensor.toml"), SENSOR).unwrap();
+    fs::write(folder.join("path.toml"), path).unwrap();
+    Command::new(env!("CARGO_BIN_EXE_twintac"))
+        .args([
+            "simulate",
+            "--sensor",
+            "sensor.toml",
+            "--path",
+            "path.toml",
+            "--json",
+        ])
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn force_and_pressures_are_those_of_other_codes() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = simulate(folder.path(), PATH);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["provenance"], "simulated");
+    let frames = answer["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), CONVERGED.len());
+    for (frame, (depth_mm, force_n, pressure_kpa)) in frames.iter().zip(CONVERGED) {
+        let force = -frame["force_n"][2].as_f64().unwrap() / force_n - 1.0;
+        assert!(force.abs() < 0.05, "{depth_mm} mm: force {force}");
+        for place in ["corner", "opposite"] {
+            let pressure = frame["pressure_kpa"][place].as_f64().unwrap() / pressure_kpa - 1.0;
+            assert!(
+                pressure.abs() < 0.06,
+                "{depth_mm} mm, {place}: pressure {pressure}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_point_outside_the_gel_is_one_clear_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = simulate(
+        folder.path(),
+        &PATH.replace("[-4.0, -4.0, 0.0]", "[-40.0, -4.0, 0.0]"),
+    );
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(output.stdout.is_empty());
+    assert!(
+        text.contains("path.toml") && text.contains("`opposite`"),
+        "{text}"
+    );
+}
