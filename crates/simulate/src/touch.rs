@@ -7,7 +7,7 @@ use twintac_shape::{Pose, SignedDistance};
 const SAMPLES: i32 = 40;
 
 /// Heights that differ by less than this are the same, mm.
-const SAME_HEIGHT_MM: f64 = 1e-9;
+const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// The pose at which an indenter, coming straight down above `(x_mm, y_mm)`, touches the gel, together with the touched point.
 /// `top_height_mm` gives the gel's top, `None` beside it. `None` if the indenter misses the gel.
@@ -20,12 +20,14 @@ pub(crate) fn first_touch(
     let (low, high) = indenter.bounds_mm();
     let reach_mm = low.abs().max(high.abs()).length();
     let mut centre = place;
-    let mut best: Option<(f64, DVec3)> = None;
+    let mut best_mm = f64::NEG_INFINITY;
     for half_width_mm in [
         reach_mm,
         reach_mm / f64::from(SAMPLES),
         reach_mm / f64::from(SAMPLES * SAMPLES),
     ] {
+        // Of all points that touch at once, such as those under a flat punch, the middle.
+        let (mut sum, mut count) = (DVec2::ZERO, 0.0);
         for i in -SAMPLES..=SAMPLES {
             for j in -SAMPLES..=SAMPLES {
                 let offset = DVec2::new(f64::from(i), f64::from(j)) * (half_width_mm / f64::from(SAMPLES));
@@ -33,23 +35,31 @@ pub(crate) fn first_touch(
                 let Some(height_mm) = top_height_mm(point.x, point.y) else {
                     continue;
                 };
-                // Only an underside lower than this would touch earlier than the best so far.
-                let ceiling_mm = best.map_or(1.5 * reach_mm, |(best_mm, _)| {
-                    height_mm - best_mm - SAME_HEIGHT_MM
-                });
-                if let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm, ceiling_mm) {
-                    best = Some((height_mm - lowest_mm, point.extend(height_mm)));
+                // No underside above this touches earlier than the best so far.
+                let ceiling_mm = (height_mm - best_mm + SAME_HEIGHT_MM).min(1.5 * reach_mm);
+                let Some(lowest_mm) = underside_mm(indenter, at_origin, point, reach_mm, ceiling_mm) else {
+                    continue;
+                };
+                let z_mm = height_mm - lowest_mm;
+                if z_mm > best_mm + SAME_HEIGHT_MM {
+                    (sum, count) = (DVec2::ZERO, 0.0);
                 }
+                best_mm = best_mm.max(z_mm);
+                sum += point;
+                count += 1.0;
             }
         }
-        centre = best?.1.truncate();
+        if count > 0.0 {
+            centre = sum / count;
+        }
     }
-    best.map(|(z_mm, touched)| {
+    let height_mm = top_height_mm(centre.x, centre.y)?;
+    best_mm.is_finite().then(|| {
         let pose = Pose {
-            position_mm: place.extend(z_mm),
+            position_mm: place.extend(best_mm),
             rotation: at_origin.rotation,
         };
-        (pose, touched)
+        (pose, centre.extend(height_mm))
     })
 }
 
