@@ -28,6 +28,15 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool) -> Result<()> {
     let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
     let press = PressPath::parse(&path.display().to_string(), &text)?;
     let shape = indenter(gel.sensor(), &press.indenter)?;
+    for point in &press.points {
+        if gel.sensor().taxels.iter().any(|taxel| taxel.name == point.name) {
+            anyhow::bail!(
+                "{}: the point `{}` is called like a taxel; give it another name",
+                path.display(),
+                point.name
+            );
+        }
+    }
     let bar = progress::bar("simulating", press.frames().len() as u64);
     let followed = gel
         .follow(shape, &press, &mut || bar.inc(1))
