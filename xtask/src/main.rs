@@ -9,10 +9,11 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test>
-  ci    lint, then test: what CI runs
-  lint  formatting and clippy, warnings are errors
-  test  every test, optimised";
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json]>
+  ci     lint, then test: what CI runs
+  lint   formatting and clippy, warnings are errors
+  test   every test, optimised
+  bench  how fast presses are followed, and how far off tight solutions they are";
 
 fn main() -> ExitCode {
     let task = std::env::args().nth(1).unwrap_or_default();
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
         "ci" => lint().and_then(|()| test()),
         "lint" => lint(),
         "test" => test(),
+        "bench" => bench(),
         _ => Err(anyhow::anyhow!("there is no task `{task}`\n{USAGE}")),
     };
     match result {
@@ -46,6 +48,13 @@ fn lint() -> Result<()> {
 
 fn test() -> Result<()> {
     cargo(&["test", "--release", "--workspace"])
+}
+
+fn bench() -> Result<()> {
+    let given: Vec<String> = std::env::args().skip(2).collect();
+    let mut arguments = vec!["run", "--release", "--quiet", "--package", "twintac-verify", "--"];
+    arguments.extend(given.iter().map(String::as_str));
+    cargo(&arguments)
 }
 
 fn cargo(arguments: &[&str]) -> Result<()> {

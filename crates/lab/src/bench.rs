@@ -85,8 +85,8 @@ impl Bench {
             // Reality never ends early.
             solver: SolverSettings {
                 tolerance: 1e-4,
-                max_iterations: 60,
-                min_substep: 1.0 / 64.0,
+                max_iterations: 100,
+                min_substep: 1.0 / 16.0,
                 ..SolverSettings::default()
             },
             ..SimulateSettings::default()

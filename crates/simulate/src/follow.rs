@@ -75,7 +75,10 @@ impl Gel {
                 ways_mm.push(way_mm);
             }
         }
-        let gel = self.mesh_along(shape, &first, deepest_mm.max(1e-3), &ways_mm[1..])?;
+        // Somebody waits for this one press.
+        let gel = self
+            .mesh_along(shape, &first, deepest_mm.max(1e-3), &ways_mm[1..])?
+            .on_two_threads();
         let mesh = gel.body.mesh();
         let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
         let mut ports: Vec<(String, &PortReadout)> = taxels.zip(&gel.ports).collect();

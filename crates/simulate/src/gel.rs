@@ -152,7 +152,9 @@ impl Gel {
                 max_mm: i.max_mm,
             })
             .collect();
+        // Each of its tetrahedra will be cut into eight, with edges half as long.
         let generate = |scale: f64| {
+            let scale = 2.0 * scale;
             let settings = MeshSettings {
                 edge_mm: scale * coarse_mm,
                 focuses: std::iter::once(&DVec2::ZERO)
@@ -169,8 +171,8 @@ impl Gel {
         };
         let mut scale = 1.0;
         let mut mesh = generate(scale)?;
-        while mesh.nodes_mm.len() > self.settings.max_nodes {
-            let excess = mesh.nodes_mm.len() as f64 / self.settings.max_nodes as f64;
+        while mesh.n_nodes_refined() > self.settings.max_nodes {
+            let excess = mesh.n_nodes_refined() as f64 / self.settings.max_nodes as f64;
             let coarser = scale * excess.cbrt().max(MIN_COARSENING);
             if coarser * fine_mm > radius_mm || coarser * coarse_mm > self.height_mm() {
                 break;
@@ -180,7 +182,7 @@ impl Gel {
         }
         GelMesh::new(
             sensor,
-            mesh,
+            &mesh,
             self.material.clone(),
             &self.settings,
             indenter,
@@ -217,19 +219,20 @@ impl Gel {
 impl GelMesh {
     fn new(
         sensor: &Sensor,
-        mesh: TetMesh,
+        mesh: &TetMesh,
         material: Material,
         settings: &SimulateSettings,
         indenter: Box<dyn SignedDistance>,
         touch: Pose,
     ) -> Result<Self, SimulateError> {
+        let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
+        let mesh = body.mesh();
         let ports = sensor
             .taxels
             .iter()
-            .map(|taxel| PortReadout::of_taxel(&mesh, taxel))
+            .map(|taxel| PortReadout::of_taxel(mesh, taxel))
             .collect::<Result<Vec<_>, _>>()?;
-        let clusters = StressCluster::for_each_taxel(&mesh, sensor);
-        let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
+        let clusters = StressCluster::for_each_taxel(mesh, sensor);
         if let Some(shell) = &sensor.shell {
             let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
             let cavity = Cavity::around(low.truncate(), high.truncate(), shell.gap_mm, shell.height_mm);
@@ -242,6 +245,13 @@ impl GelMesh {
             ports,
             clusters,
         })
+    }
+
+    /// Solves on two threads.
+    #[must_use]
+    pub(crate) fn on_two_threads(mut self) -> Self {
+        self.body = self.body.on_two_threads();
+        self
     }
 
     /// The soft body of this press.

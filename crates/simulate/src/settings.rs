@@ -7,9 +7,9 @@ use twintac_softbody::SolverSettings;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SimulateSettings {
-    /// Edges over the gel's height, away from the indenter.
+    /// Edges over the gel's height, away from the indenter; the pressure has half as many.
     pub edges_per_height: f64,
-    /// Edges across the radius of the contact at full depth; never longer than away from the indenter.
+    /// Edges across the radius of the contact at full depth; never longer than away from the indenter. The pressure has half as many.
     pub edges_per_contact_radius: f64,
     /// Nodes that a press may have: where the edges asked for make more, all are made longer.
     pub max_nodes: usize,
@@ -27,14 +27,14 @@ impl SimulateSettings {
 impl Default for SimulateSettings {
     fn default() -> Self {
         Self {
-            edges_per_height: 5.0,
-            edges_per_contact_radius: 4.0,
-            max_nodes: 5000,
+            edges_per_height: 8.0,
+            edges_per_contact_radius: 7.0,
+            max_nodes: 16_000,
             sweep_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-4,
                 // A table that ends a little early costs less than the search for where exactly it has to.
-                max_iterations: 25,
+                max_iterations: 100,
                 min_substep: 0.25,
                 ..SolverSettings::default()
             },

@@ -7,9 +7,11 @@ use twintac_shape::{Pose, SignedDistance};
 
 use crate::SolveError;
 use crate::body::SoftBody;
-use crate::contact::RigidBody;
+use crate::contact::{Contact, RigidBody};
+use crate::element::{self, Forces, Response};
 use crate::material::Relaxation;
 use crate::newton::{Equilibrium, Failure, Step, Unknowns};
+use crate::parallel::on_two_threads;
 use crate::state::{Frame, Motion, State};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
@@ -77,6 +79,14 @@ impl SoftBody {
     }
 
     fn drive(&self, state: &mut State, drive: &Drive, time_step_s: f64) -> Result<Frame, SolveError> {
+        if self.on_two_threads {
+            on_two_threads(|| self.drive_alone(state, drive, time_step_s))
+        } else {
+            self.drive_alone(state, drive, time_step_s)
+        }
+    }
+
+    fn drive_alone(&self, state: &mut State, drive: &Drive, time_step_s: f64) -> Result<Frame, SolveError> {
         let started = Instant::now();
         if !(time_step_s.is_finite() && time_step_s >= 0.0) {
             return Err(SolveError::Input {
@@ -108,7 +118,10 @@ impl SoftBody {
                     return Ok(self.frame(state, &equilibrium, iterations, wall_time_s));
                 }
                 Ok(_) => (done, size) = (next, (2.0 * size).min(largest)),
-                Err(_) if 0.5 * size >= self.settings.min_substep * largest => size *= 0.5,
+                Err(_) if 0.5 * size >= self.settings.min_substep * largest => {
+                    size *= 0.5;
+                    state.contacts[0].drop_carried();
+                }
                 Err(failure) => {
                     let workspace = std::mem::take(&mut state.workspace);
                     *state = State { workspace, ..before };
@@ -147,6 +160,7 @@ impl SoftBody {
             gel_from_shape: *pose,
         }));
         let old = state.clone();
+        state.contacts[0].carry();
         state.contacts[0].forget_distances();
         drive.hold(self, part[1], &mut state.displacements_mm);
 
@@ -161,8 +175,11 @@ impl SoftBody {
         } = &mut *state;
         let buffers = workspace.buffers(self);
         let step = Step {
-            relaxation: &relaxation,
-            memory,
+            response: Response {
+                material: self.material(),
+                relaxation: &relaxation,
+                memory,
+            },
             shapes: &shapes,
         };
         let mut x = Unknowns {
@@ -175,28 +192,23 @@ impl SoftBody {
             .as_ref()
             .map_or(0.0, |last| extrapolation(last.travel_mm, travel_mm));
         if let Some(last) = last.as_ref().filter(|_| ratio != 0.0) {
-            // The better of the two starts: where the body is, or where it would be if it went on as before.
-            let plain = buffers.energy(self, &step, &mut x);
-            let as_before = x.displacements_mm.clone();
             for (u, change) in x.displacements_mm.iter_mut().zip(&last.displacements_mm) {
                 *u += *change * ratio;
             }
-            let extrapolated = buffers.energy(self, &step, &mut x);
-            let is_better = match (plain, extrapolated) {
-                (Some(plain), Some(extrapolated)) => extrapolated < plain,
-                (None, Some(_)) => true,
-                _ => false,
-            };
-            if !is_better {
-                *x.displacements_mm = as_before;
+            if !buffers.is_valid(self, &mut x) {
+                x.displacements_mm.copy_from_slice(&old.displacements_mm);
+                drive.hold(self, part[1], x.displacements_mm);
             }
         }
         match buffers.solve(self, &step, &mut x, iterations) {
             Ok(equilibrium) => {
-                for (tet, element) in self.elements.iter().enumerate() {
-                    let deformation = element.deformation(displacements_mm);
-                    memory.remember(&relaxation, &self.material().isochoric, tet, &deformation);
-                }
+                element::remember(
+                    &self.elements,
+                    self.material(),
+                    &relaxation,
+                    displacements_mm,
+                    memory,
+                );
                 if let Drive::Indenter { .. } = drive {
                     let displacements_mm = state
                         .displacements_mm
@@ -235,29 +247,39 @@ impl SoftBody {
         let at_mm = |node: usize| self.mesh().nodes_mm[node] + state.displacements_mm[node];
         let mut torque = DVec3::ZERO;
         let mut forces = vec![DVec3::ZERO; state.contacts.len()];
-        let mut penetration_mm: f64 = 0.0;
+        let gradient_n = std::mem::take(&mut state.workspace.buffers(self).gradient_n);
         for (shape, contact) in state.contacts.iter().enumerate() {
             for (boundary, touch) in self.boundary.iter().zip(&contact.touches) {
-                let force = touch.normal * touch.force_n;
+                // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
+                let force = if shape == 0 && touch.force_n > 0.0 {
+                    touch.normal * touch.force_n + gradient_n[boundary.node as usize]
+                } else {
+                    touch.normal * touch.force_n
+                };
                 forces[shape] += force;
                 if shape == 0 {
                     torque += (at_mm(boundary.node as usize) - origin_mm).cross(force);
                 }
-                penetration_mm = penetration_mm.max(-touch.gap_mm);
             }
         }
-        let held = self.bonded_forces_n(state);
+        let held: DVec3 = gradient_n[self.pattern.halves.free..].iter().sum();
+        state.workspace.buffers(self).gradient_n = gradient_n;
         Frame {
             indenter_force_n: forces[0],
             indenter_torque_n_mm: torque,
-            board_reaction_n: held.iter().sum(),
+            board_reaction_n: held,
             obstacle_reaction_n: forces[1..].iter().sum(),
             converged: true,
             iterations,
             residual: equilibrium.residual,
-            penetration_mm,
+            penetration_mm: state
+                .contacts
+                .iter()
+                .map(Contact::penetration_mm)
+                .fold(0.0, f64::max),
             smallest_volume_ratio: equilibrium.smallest_volume_ratio,
             wall_time_s,
+            cost: std::mem::take(&mut state.workspace.buffers(self).cost),
         }
     }
 
@@ -265,22 +287,25 @@ impl SoftBody {
     #[must_use]
     pub fn bonded_forces_n(&self, state: &State) -> Vec<DVec3> {
         let now = Relaxation::new(&self.material().prony, 0.0);
-        let mut forces = vec![DVec3::ZERO; self.mesh().nodes_mm.len()];
-        for (tet, element) in self.elements.iter().enumerate() {
-            let deformation = element.deformation(&state.displacements_mm);
-            let offset = now.offset(&state.memory, tet);
-            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
-            let response = now.response_mpa(&self.material().isochoric, &offset, &right_cauchy_green);
-            let element_forces = element.forces(&deformation, &response, element.mean(&state.pressures_mpa));
-            for (&node, force) in element.nodes.iter().zip(element_forces) {
-                forces[node as usize] += force;
-            }
-        }
+        let response = Response {
+            material: self.material(),
+            relaxation: &now,
+            memory: &state.memory,
+        };
+        let (mut forces, mut corners) = (Forces::default(), Vec::new());
+        self.corner_pressures(&state.pressures_mpa, &mut corners);
+        self.elements
+            .forces(response, &state.displacements_mm, &corners, &mut forces);
+        let forces = forces.forces_n.as_flattened();
         self.mesh()
             .sets
             .bonded
             .iter()
-            .map(|&node| forces[node as usize])
+            .map(|&node| {
+                let range = self.force_starts[node as usize]..self.force_starts[node as usize + 1];
+                let sources = &self.force_sources[range.start as usize..range.end as usize];
+                sources.iter().map(|&source| forces[source as usize]).sum()
+            })
             .collect()
     }
 

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use twintac_mesh::TetMesh;
 use twintac_shape::{Pose, SignedDistance};
 
 use crate::contact::{BoundaryNode, Contact};
-use crate::element::Element;
+use crate::element::{self, Elements, NODES, Response, Side};
+use crate::linear::coarse::CoarseSystem;
+use crate::linear::matrix::Pattern;
+use crate::linear::numbering::{Numbered, number};
 use crate::material::{KPA_PER_MPA, Material, Memory, Relaxation};
-use crate::ordering::elimination_order;
-use crate::pressure::{Compressibility, element_compressibility};
 use crate::state::State;
-use crate::system::System;
 use crate::{SoftBodyError, SolverSettings};
 
 /// A soft body that rigid shapes press, bonded where its mesh says so. Shared by many presses; each has its own [`State`].
@@ -20,45 +20,105 @@ pub struct SoftBody {
     mesh: TetMesh,
     material: Material,
     pub(crate) settings: SolverSettings,
-    pub(crate) elements: Vec<Element>,
+    pub(crate) elements: Elements,
     pub(crate) boundary: Vec<BoundaryNode>,
     pub(crate) obstacles: Vec<(Arc<dyn SignedDistance>, Pose)>,
-    pub(crate) system: System,
-    pub(crate) compressibility: Compressibility,
-    /// Sum over the tetrahedra around each node of `μ V |G|²`, N/mm: what a node's own stiffness is like.
+    pub(crate) on_two_threads: bool,
+    /// Corners of the coarse tetrahedra, and of what is in each of the elements' slots.
+    pub(crate) slot_corners: Vec<[u32; 4]>,
+    /// The coarse nodes that each node lies midway between; the same twice for a coarse node. `[n_nodes]`
+    pub(crate) ends: Vec<[u32; 2]>,
+    /// Bulk modulus over volume of each coarse node, MPa/mm³.
+    pub(crate) volume_stiffness: Vec<f64>,
+    pub(crate) pattern: Pattern,
+    pub(crate) coarse: CoarseSystem,
+    /// Where forces on each node come from: `slot NODES + node`. `[n_nodes + 1]`, and the places.
+    pub(crate) force_starts: Vec<u32>,
+    pub(crate) force_sources: Vec<u32>,
+    /// Where volume changes of each coarse node come from: `4 slot + corner`. `[n_coarse + 1]`, and the places.
+    pub(crate) volume_starts: Vec<u32>,
+    pub(crate) volume_sources: Vec<u32>,
+    /// Sum over the points around each node of `μ V |G|²`, N/mm: what a node's own stiffness is like.
     pub(crate) node_stiffness: Vec<f64>,
     size_mm: f64,
 }
 
 impl SoftBody {
-    /// Builds the model of a mesh: its bonded nodes are held, the rest of its boundary can touch.
-    pub fn new(mesh: TetMesh, material: Material, settings: SolverSettings) -> Result<Self, SoftBodyError> {
+    /// Builds the model of a mesh, whose bonded nodes are held while the rest of its boundary can touch. Every tetrahedron is cut into
+    /// eight: displacements live on all nodes of the finer mesh, pressures on those of the mesh given.
+    ///
+    /// # Errors
+    /// A mesh that is empty, held nowhere, or has nodes or tetrahedra that make no sense; a material or settings that make none.
+    pub fn new(mesh: &TetMesh, material: Material, settings: SolverSettings) -> Result<Self, SoftBodyError> {
         material.check()?;
         settings.check()?;
-        check(&mesh)?;
-        let n_nodes = mesh.nodes_mm.len();
-        let neighbours = neighbours(&mesh)?;
-        let order = elimination_order(&mesh.nodes_mm, &neighbours);
-        let elements = elements(&mesh, &order);
-        let mut free = vec![true; n_nodes];
-        mesh.sets
-            .bonded
-            .iter()
-            .for_each(|&node| free[node as usize] = false);
+        check(mesh)?;
+        let Numbered {
+            mesh,
+            coarse_nodes_mm,
+            coarse_bonded,
+            coarse_tets,
+            ends,
+            halves,
+        } = number(mesh);
+        let children: Vec<[[u32; 4]; 8]> = mesh
+            .tets
+            .chunks_exact(8)
+            .map(|eight| std::array::from_fn(|child| eight[child]))
+            .collect();
+        let parents = parents(&coarse_tets, &ends);
+        let sides: Vec<Side> = parents.iter().map(|nodes| halves.side(nodes)).collect();
+        let elements = Elements::new(settings.element, &mesh.nodes_mm, &parents, &children, &sides);
 
-        let shear_mpa = material.isochoric.shear_modulus_kpa() / KPA_PER_MPA;
         let bulk_mpa = material.bulk_modulus_kpa / KPA_PER_MPA;
-        let of_element =
-            |element: &Element| element_compressibility(element, bulk_mpa, shear_mpa, settings.stabilisation);
-        let compressibility = Compressibility::new(&elements, n_nodes, of_element)?;
-        let system = System::new(&elements, &order, &neighbours, free, of_element)?;
-
-        let mut node_stiffness = vec![0.0; n_nodes];
-        for element in &elements {
-            for (&node, gradient) in element.nodes.iter().zip(&element.gradients) {
-                node_stiffness[node as usize] += shear_mpa * element.volume_mm3 * gradient.length_squared();
+        let corner_volumes_mm3 = elements.corner_volumes_mm3();
+        let mut volumes_mm3 = vec![0.0; coarse_nodes_mm.len()];
+        // Slots without a tetrahedron have no volume; their corners stand for nothing.
+        let mut slot_corners = vec![[0; 4]; elements.n_slots()];
+        for (corners, &slot) in coarse_tets.iter().zip(&elements.slots) {
+            slot_corners[slot as usize] = *corners;
+            for (&node, volume) in corners.iter().zip(corner_volumes_mm3[slot as usize]) {
+                volumes_mm3[node as usize] += volume;
             }
         }
+        let volume_stiffness: Vec<f64> = volumes_mm3.iter().map(|volume| bulk_mpa / volume).collect();
+        let pattern = Pattern::new(&elements, &parents, &coarse_tets, halves, &volume_stiffness);
+        let coarse = CoarseSystem::new(&coarse_nodes_mm, &coarse_tets, &coarse_bonded, &volume_stiffness)?;
+
+        let sources = |n_rows: usize, each: &dyn Fn(usize) -> Vec<(u32, u32)>| {
+            let mut rows = vec![Vec::new(); n_rows];
+            for tet in 0..coarse_tets.len() {
+                for (row, source) in each(tet) {
+                    rows[row as usize].push(source);
+                }
+            }
+            let mut starts = vec![0];
+            let mut all = Vec::new();
+            for row in rows {
+                all.extend(row);
+                starts.push(all.len() as u32);
+            }
+            (starts, all)
+        };
+        let places = |nodes: &[u32], stride: usize, tet: usize| -> Vec<(u32, u32)> {
+            let first = elements.slots[tet] * stride as u32;
+            nodes
+                .iter()
+                .zip(first..)
+                .map(|(&node, source)| (node, source))
+                .collect()
+        };
+        let (force_starts, force_sources) =
+            sources(mesh.nodes_mm.len(), &|tet| places(&parents[tet], NODES, tet));
+        let (volume_starts, volume_sources) =
+            sources(coarse_nodes_mm.len(), &|tet| places(&coarse_tets[tet], 4, tet));
+
+        let shear_mpa = material.isochoric.shear_modulus_kpa() / KPA_PER_MPA;
+        let node_stiffness = elements
+            .node_stiffness_mm(mesh.nodes_mm.len())
+            .iter()
+            .map(|sum| shear_mpa * sum)
+            .collect();
         let areas_mm2 = mesh.node_areas_mm2();
         let boundary = mesh
             .sets
@@ -82,8 +142,16 @@ impl SoftBody {
             elements,
             boundary,
             obstacles: Vec::new(),
-            system,
-            compressibility,
+            on_two_threads: false,
+            slot_corners,
+            ends,
+            volume_stiffness,
+            pattern,
+            coarse,
+            force_starts,
+            force_sources,
+            volume_starts,
+            volume_sources,
             node_stiffness,
             size_mm,
         })
@@ -96,7 +164,15 @@ impl SoftBody {
         self
     }
 
-    /// The mesh at rest.
+    /// Solves each step on two threads, of which the second is busy as long as a step takes: for one press that is waited for. Many presses
+    /// at once had better take a thread each. The results are the same, bit for bit.
+    #[must_use]
+    pub fn on_two_threads(mut self) -> Self {
+        self.on_two_threads = true;
+        self
+    }
+
+    /// The mesh at rest: the finer one, numbered anew.
     #[must_use]
     pub fn mesh(&self) -> &TetMesh {
         &self.mesh
@@ -108,20 +184,19 @@ impl SoftBody {
         &self.material
     }
 
-    /// Entries of the factors of the linear system, which take most of the time and memory of a press.
+    /// Entries of the factors of the coarse linear system.
     #[must_use]
     pub fn n_factor_entries(&self) -> usize {
-        self.system.n_factor_entries()
+        self.coarse.n_factor_entries()
     }
 
     /// The body at rest, where it has been for ever.
     #[must_use]
     pub fn rest(&self) -> State {
-        let n_nodes = self.mesh.nodes_mm.len();
         State {
-            displacements_mm: vec![DVec3::ZERO; n_nodes],
-            pressures_mpa: vec![0.0; n_nodes],
-            memory: Memory::new(self.elements.len(), &self.material.prony),
+            displacements_mm: vec![DVec3::ZERO; self.mesh.nodes_mm.len()],
+            pressures_mpa: vec![0.0; self.volume_stiffness.len()],
+            memory: Memory::new(self.elements.n_points(), &self.material.prony),
             contacts: vec![Contact::new(self.boundary.len()); 1 + self.obstacles.len()],
             gel_from_indenter: None,
             last: None,
@@ -132,7 +207,11 @@ impl SoftBody {
     /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression. `[n_nodes]`
     #[must_use]
     pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
-        state.pressures_kpa()
+        let at = |node: u32| state.pressures_mpa[node as usize];
+        self.ends
+            .iter()
+            .map(|&[a, b]| 0.5 * KPA_PER_MPA * (at(a) + at(b)))
+            .collect()
     }
 
     /// Von Mises stress at each node, kPa, of the mean over the deformed volume of the tetrahedra around it of the Cauchy stress, its
@@ -141,26 +220,25 @@ impl SoftBody {
     pub fn von_mises_kpa(&self, state: &State) -> Vec<f64> {
         // What acts now is what a step of no time would find.
         let now = Relaxation::new(&self.material.prony, 0.0);
-        let mut deviators = vec![DMat3::ZERO; self.mesh.nodes_mm.len()];
-        let mut volumes_mm3 = vec![0.0; self.mesh.nodes_mm.len()];
-        for (tet, element) in self.elements.iter().enumerate() {
-            let deformation = element.deformation(&state.displacements_mm);
-            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
-            let offset = now.offset(&state.memory, tet);
-            let response = now.response_mpa(&self.material.isochoric, &offset, &right_cauchy_green);
-            let volume_mm3 = element.volume_mm3 * deformation.volume_ratio;
-            let deviator = deformation.cauchy_deviator(&response) * volume_mm3;
-            for &node in &element.nodes {
-                deviators[node as usize] += deviator;
-                volumes_mm3[node as usize] += volume_mm3;
-            }
-        }
-        let von_mises_mpa = |deviator: &DMat3| (1.5 * crate::material::contract(deviator, deviator)).sqrt();
-        deviators
-            .iter()
-            .zip(&volumes_mm3)
-            .map(|(sum, volume)| KPA_PER_MPA * von_mises_mpa(sum) / volume)
+        let response = Response {
+            material: &self.material,
+            relaxation: &now,
+            memory: &state.memory,
+        };
+        element::mean_deviators(&self.elements, response, &state.displacements_mm)
+            .into_iter()
+            .map(|([xx, yy, zz, yz, xz, xy], volume)| {
+                let square = xx * xx + yy * yy + zz * zz + 2.0 * (yz * yz + xz * xz + xy * xy);
+                KPA_PER_MPA * (1.5 * square).sqrt() / volume
+            })
             .collect()
+    }
+
+    /// The pressures of each slot's corners, MPa.
+    pub(crate) fn corner_pressures(&self, pressures_mpa: &[f64], corners: &mut Vec<[f64; 4]>) {
+        corners.clear();
+        let at = |node: u32| pressures_mpa[node as usize];
+        corners.extend(self.slot_corners.iter().map(|corners| corners.map(at)));
     }
 
     /// Shear modulus times volume, N mm.
@@ -174,6 +252,24 @@ impl SoftBody {
             1e-7 * self.material.isochoric.shear_modulus_kpa() + 1e-9 * self.material.bulk_modulus_kpa;
         stress_kpa / KPA_PER_MPA * self.size_mm * self.size_mm
     }
+}
+
+/// The ten nodes of each coarse tetrahedron: its corners, then the midpoints of its edges.
+fn parents(coarse_tets: &[[u32; 4]], ends: &[[u32; 2]]) -> Vec<[u32; NODES]> {
+    let node_of: std::collections::HashMap<[u32; 2], u32> =
+        ends.iter().zip(0..).map(|(&ends, node)| (ends, node)).collect();
+    coarse_tets
+        .iter()
+        .map(|corners| {
+            std::array::from_fn(|node| {
+                let [a, b] = match node.checked_sub(4) {
+                    Some(edge) => element::EDGES[edge].map(|corner| corners[corner as usize]),
+                    None => [corners[node]; 2],
+                };
+                node_of[&[a.min(b), a.max(b)]]
+            })
+        })
+        .collect()
 }
 
 fn check(mesh: &TetMesh) -> Result<(), SoftBodyError> {
@@ -192,14 +288,19 @@ fn check(mesh: &TetMesh) -> Result<(), SoftBodyError> {
             })
         }
     };
+    let mut is_used = vec![false; n_nodes];
     for (tet, nodes) in mesh.tets.iter().enumerate() {
-        nodes
-            .iter()
-            .try_for_each(|&node| check(&|| format!("tetrahedron {tet}"), node))?;
+        for &node in nodes {
+            check(&|| format!("tetrahedron {tet}"), node)?;
+            is_used[node as usize] = true;
+        }
         let volume_mm3 = mesh.tet_volume_mm3(tet);
         if volume_mm3.is_nan() || volume_mm3 <= 0.0 {
             return Err(SoftBodyError::Degenerate { tet, volume_mm3 });
         }
+    }
+    if let Some(node) = is_used.iter().position(|used| !used) {
+        return Err(SoftBodyError::Stray { node });
     }
     mesh.sets
         .bonded
@@ -214,39 +315,4 @@ fn check(mesh: &TetMesh) -> Result<(), SoftBodyError> {
     } else {
         Ok(())
     }
-}
-
-/// The nodes that share a tetrahedron with each node, itself included, sorted.
-fn neighbours(mesh: &TetMesh) -> Result<Vec<Vec<u32>>, SoftBodyError> {
-    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); mesh.nodes_mm.len()];
-    for nodes in &mesh.tets {
-        nodes
-            .iter()
-            .for_each(|&node| neighbours[node as usize].extend(nodes));
-    }
-    for (node, neighbours) in neighbours.iter_mut().enumerate() {
-        neighbours.sort_unstable();
-        neighbours.dedup();
-        if neighbours.is_empty() {
-            return Err(SoftBodyError::Stray { node });
-        }
-    }
-    Ok(neighbours)
-}
-
-/// The tetrahedra, each with its nodes in the order of elimination.
-fn elements(mesh: &TetMesh, order: &[u32]) -> Vec<Element> {
-    let mut rank = vec![0; order.len()];
-    order
-        .iter()
-        .enumerate()
-        .for_each(|(position, &node)| rank[node as usize] = position);
-    mesh.tets
-        .iter()
-        .map(|nodes| {
-            let mut nodes = *nodes;
-            nodes.sort_unstable_by_key(|&node| rank[node as usize]);
-            Element::new(nodes, nodes.map(|node| mesh.nodes_mm[node as usize]))
-        })
-        .collect()
 }

@@ -1,8 +1,10 @@
 //! Frictionless contact of boundary nodes with rigid shapes, known by their signed distance.
 //!
-//! A node with gap `g < 0` adds about `κ g²/2` to the energy, and is pushed along the shape's outward normal with about `-κ g`. The stiffness `κ`
-//! is so far above the gel's that penetrations are some micrometres; where they are not, a step raises it. There are no multipliers: in
-//! a hollow corner the direction of the nearest wall jumps outside the shape, but not inside, where alone this force acts.
+//! A node with gap `g` and a carried depth `c` adds about `κ (c - g)²/2` to the energy where `g < c`, and is pushed along the shape's outward
+//! normal with about `κ (c - g)`. With every step that ends well the indenter's contacts carry on: `c` becomes `c - g`, so that the force is
+//! there without any penetration (augmented Lagrangian; Hestenes, J. Optim. Theory Appl. 4, 1969), and what penetration is left
+//! comes from the last step alone. Other shapes carry nothing, but their stiffness `κ` is raised where nodes are too deep: in a hollow corner
+//! the direction of the nearest wall jumps outside the shape, but not inside, where alone a force without carried depth acts.
 
 use glam::{DMat3, DVec3};
 use twintac_shape::{Pose, SignedDistance};
@@ -12,6 +14,9 @@ const RAMP_MM: f64 = 0.001;
 
 /// Half the distance between the points at which the curvature of a shape is sampled, mm.
 const CURVATURE_STEP_MM: f64 = 1e-4;
+
+/// Depth past the carried one beyond which the curvature of a shape counts no more, mm: before equilibrium, deep nodes would make the energy bend down.
+const CURVED_MM: f64 = 0.01;
 
 /// A node that can touch.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +42,8 @@ pub(crate) struct Touch {
     pub(crate) normal: DVec3,
     /// Force that pushes the node out, N, not below zero.
     pub(crate) force_n: f64,
+    /// Depth that stands for the force carried over from before, mm.
+    carried_mm: f64,
     /// Where the gap was measured last, in the shape's frame.
     measured_at_mm: DVec3,
     /// What was measured there; a signed distance changes no faster than its point moves.
@@ -58,7 +65,7 @@ impl RigidBody<'_> {
     pub(crate) fn touch(&self, touch: &mut Touch, at_mm: DVec3, stiffness: f64) -> f64 {
         let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
         let bound_mm = touch.measured_mm - local_mm.distance(touch.measured_at_mm);
-        if bound_mm > 0.0 {
+        if bound_mm > touch.carried_mm {
             touch.gap_mm = bound_mm;
             touch.force_n = 0.0;
             return 0.0;
@@ -68,7 +75,7 @@ impl RigidBody<'_> {
         touch.measured_mm = distance.distance_mm;
         touch.gap_mm = distance.distance_mm;
         touch.normal = self.gel_from_shape.rotation * distance.gradient;
-        let (energy, force_n, _) = penalty(touch.gap_mm, stiffness);
+        let (energy, force_n, _) = penalty(touch.gap_mm - touch.carried_mm, stiffness);
         touch.force_n = force_n;
         energy
     }
@@ -82,7 +89,7 @@ impl RigidBody<'_> {
         with_curvature: bool,
     ) -> DMat3 {
         let normal = touch.normal;
-        let (_, _, stiffness) = penalty(touch.gap_mm, stiffness);
+        let (_, _, stiffness) = penalty(touch.gap_mm - touch.carried_mm, stiffness);
         let mut sum = outer(normal * stiffness, normal);
         if with_curvature {
             let tangent = normal.any_orthonormal_vector();
@@ -101,7 +108,11 @@ impl RigidBody<'_> {
             let (first, second) = (along_tangent.dot(tangent), along_other.dot(other));
             // Beside a sharp edge the sampled curvature has no bound; the tangent must not lose the contact's own stiffness.
             let most = first.max(second) + mixed.abs();
-            let force = touch.force_n.min(0.5 * stiffness / most.max(1e-12));
+            let usual_mm = touch.carried_mm + CURVED_MM;
+            let force = touch
+                .force_n
+                .min(stiffness * usual_mm)
+                .min(0.5 * stiffness / most.max(1e-12));
             sum -= outer(tangent * first + other * mixed, tangent) * force;
             sum -= outer(tangent * mixed + other * second, other) * force;
         }
@@ -116,6 +127,25 @@ impl Contact {
             touches: vec![Touch::default(); n_boundary_nodes],
             stiffening: 1.0,
         }
+    }
+
+    /// Carries the forces as they are over to the next step.
+    pub(crate) fn carry(&mut self) {
+        for touch in &mut self.touches {
+            touch.carried_mm = (touch.carried_mm - touch.gap_mm).max(0.0);
+        }
+    }
+
+    /// Carries nothing over.
+    pub(crate) fn drop_carried(&mut self) {
+        self.touches.iter_mut().for_each(|touch| touch.carried_mm = 0.0);
+    }
+
+    /// Depth of the deepest node, mm.
+    pub(crate) fn penetration_mm(&self) -> f64 {
+        self.touches
+            .iter()
+            .fold(0.0, |deepest, touch| f64::max(deepest, -touch.gap_mm))
     }
 
     /// Forgets what was measured: the shape may be another now.

@@ -1,24 +1,26 @@
 //! Finite-strain FEM of a soft body pressed by rigid shapes.
 //!
-//! Quasi-static, on linear tetrahedra with a linear pressure field of its own, so that nearly incompressible gels neither lock nor
-//! report a meaningless pressure. Lengths in mm, forces in N, stresses in kPa at the interface and in MPa = N/mm² inside.
+//! Quasi-static, on tetrahedra whose pressure is linear and whose displacements are of twice the resolution, so that nearly incompressible
+//! gels neither lock nor report a meaningless pressure. Lengths in mm, forces in N, stresses in kPa at the interface and in MPa = N/mm² inside.
+
+#![allow(clippy::needless_range_loop)] // matrices are written with indices
 
 mod advance;
 mod body;
 mod contact;
 mod element;
 mod error;
-mod krylov;
+mod linear;
 mod material;
 mod newton;
-mod ordering;
-mod pressure;
+mod parallel;
 mod settings;
 mod state;
-mod system;
+mod wide;
 
 pub use body::SoftBody;
+pub use element::Element;
 pub use error::{SoftBodyError, SolveError};
 pub use material::{Isochoric, Material, PronyTerm};
 pub use settings::SolverSettings;
-pub use state::{Frame, State};
+pub use state::{Cost, Frame, State};

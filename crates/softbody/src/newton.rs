@@ -1,13 +1,20 @@
 //! Newton's method with a line search down the energy.
 
-use faer::dyn_stack::MemBuffer;
-use glam::{DMat3, DVec3};
+use std::time::Instant;
+
+use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody};
-use crate::krylov::{ConjugateGradients, Outcome};
-use crate::material::{Memory, Relaxation};
-use crate::system::Factors;
+use crate::element::{CoarseSink, CoarseTangent, Forces, Response, Volumes};
+use crate::linear::block::{Block, Vector};
+use crate::linear::coarse::Factors;
+use crate::linear::cycle::{Cycle, TwoLevel};
+use crate::linear::krylov::{ConjugateGradients, Outcome};
+use crate::linear::matrix::Matrix;
+use crate::parallel::join_halves;
+use crate::state::Cost;
+use crate::wide::LANES;
 
 /// Trial steps of a line search before the direction is given up.
 const MAX_TRIALS: u32 = 20;
@@ -21,6 +28,9 @@ const STIFFENING: f64 = 4.0;
 /// Steps below this part of their direction are short.
 const SHORT: f64 = 0.2;
 
+/// Longest step, in directions: where a node slips off an edge, the energy bends down and a direction falls short.
+const MAX_STRETCH: f64 = 16.0;
+
 /// Smallest damping worth having.
 const LEAST_DAMPING: f64 = 0.01;
 
@@ -30,8 +40,14 @@ const FLAT: f64 = 0.5;
 /// Below this part of the energy, and of the shear modulus times the volume, a change of energy is round-off, and the slope decides.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Accuracy of a direction: the part of the right-hand side, in the norm of the preconditioner, that may be left.
-const FORCING: f64 = 1e-2;
+/// Accuracy of a direction: iterations end when one adds less than the square of this to the energy that a direction wins.
+const FORCING: f64 = 0.3;
+
+/// Part of the tolerance below which the start of a step needs no improvement.
+const UNTOUCHED: f64 = 0.1;
+
+/// A step that leaves more than this part of the unbalanced forces calls for a new matrix.
+const SLOW: f64 = 0.3;
 
 /// Conjugate gradient iterations that cost less than new factors.
 const MAX_STALE_ITERATIONS: u32 = 12;
@@ -41,8 +57,7 @@ const MAX_FRESH_ITERATIONS: u32 = 50;
 
 /// A step to solve: everything that stays fixed while the displacements are sought.
 pub(crate) struct Step<'a> {
-    pub(crate) relaxation: &'a Relaxation,
-    pub(crate) memory: &'a Memory,
+    pub(crate) response: Response<'a>,
     pub(crate) shapes: &'a [RigidBody<'a>],
 }
 
@@ -90,38 +105,54 @@ impl Clone for Workspace {
 }
 
 pub(crate) struct Buffers {
+    matrix: Matrix,
     factors: Factors,
     has_factors: bool,
+    cycle: Cycle,
+    gradients: ConjugateGradients,
+    /// `[n_slots]`
+    coarse_tangents: Vec<CoarseTangent>,
+    forces: Forces,
+    volumes: Volumes,
+    /// Pressures of each slot's corners, MPa.
+    corners: Vec<[f64; 4]>,
     /// Extra stiffness, in units of each node's own, that keeps steps within reach.
     damping: f64,
-    gradients: ConjugateGradients,
-    pressure_scratch: MemBuffer,
     /// Gradient of the energy at each node, N; at bonded nodes the force of what holds them. `[n_nodes]`
     pub(crate) gradient_n: Vec<DVec3>,
+    /// `[n_free]`
     direction_mm: Vec<DVec3>,
-    unbalanced_n: Vec<DVec3>,
+    /// Pressures that the tangent is taken at, MPa: an unknown of their own, as in a mixed formulation, that the linear systems take to
+    /// equilibrium; those that the volumes have on the way there would bend the tangent.
+    foreseen_mpa: Vec<f64>,
     start_mm: Vec<DVec3>,
-    volume_changes: Vec<f64>,
-    /// Constant stresses of the step. `[n_tets]`, or empty for an elastic material.
-    offsets: Vec<DMat3>,
+    start_mpa: Vec<f64>,
+    /// What has been spent since this was last taken.
+    pub(crate) cost: Cost,
 }
 
 impl Workspace {
     pub(crate) fn buffers(&mut self, body: &SoftBody) -> &mut Buffers {
         self.0.get_or_insert_with(|| {
             let n_nodes = body.mesh().nodes_mm.len();
+            let n_free = body.pattern.halves.free;
             Box::new(Buffers {
-                factors: body.system.factors(),
+                matrix: body.pattern.matrix(),
+                factors: body.coarse.factors(),
                 has_factors: false,
+                cycle: Cycle::new(&body.pattern),
+                gradients: ConjugateGradients::new(n_free, body.volume_stiffness.len()),
+                coarse_tangents: vec![CoarseTangent::default(); body.elements.n_slots()],
+                forces: Forces::default(),
+                volumes: Volumes::default(),
+                corners: Vec::new(),
                 damping: 0.0,
-                gradients: ConjugateGradients::new(&body.system),
-                pressure_scratch: body.compressibility.scratch(),
                 gradient_n: vec![DVec3::ZERO; n_nodes],
-                direction_mm: vec![DVec3::ZERO; n_nodes],
-                unbalanced_n: vec![DVec3::ZERO; n_nodes],
+                direction_mm: vec![DVec3::ZERO; n_free],
+                foreseen_mpa: vec![0.0; body.volume_stiffness.len()],
                 start_mm: vec![DVec3::ZERO; n_nodes],
-                volume_changes: vec![0.0; n_nodes],
-                offsets: Vec::new(),
+                start_mpa: vec![0.0; body.volume_stiffness.len()],
+                cost: Cost::default(),
             })
         })
     }
@@ -136,33 +167,43 @@ impl Buffers {
         x: &mut Unknowns,
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
-        self.prepare(body, step);
         self.damping = 0.0;
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut has_failed = false;
-        for _ in 0..=settings.max_iterations {
+        let mut has_matrix = false;
+        for iteration in 0..=settings.max_iterations {
             let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n());
-            if residual <= settings.tolerance {
+            // A start is taken for the answer only if it is much better than it has to be: errors must not pile up from step to step.
+            let goal = if iteration == 0 { UNTOUCHED } else { 1.0 } * settings.tolerance;
+            if residual <= goal {
                 if !push_out(body, x.contacts) {
+                    self.foreseen_mpa.copy_from_slice(x.pressures_mpa);
                     return Ok(Equilibrium {
                         residual,
                         smallest_volume_ratio: now.smallest_volume_ratio,
                     });
                 }
                 now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+                continue;
             }
             *iterations += 1;
-            self.find_direction(body, step, x)?;
+            self.find_direction(body, step, x, has_matrix)?;
             match self.search(body, step, x, &now) {
                 Ok((next, length)) => {
+                    has_matrix = length == 1.0 && next.unbalanced_n <= SLOW * now.unbalanced_n;
                     now = next;
+                    let changes = self.start_mpa.iter().zip(&self.gradients.solution_mpa);
+                    for (foreseen, (start, change)) in self.foreseen_mpa.iter_mut().zip(changes) {
+                        *foreseen += length * (start - f64::from(*change) - *foreseen);
+                    }
                     has_failed = false;
                     self.adapt_damping(length);
                 }
                 // A direction that leads nowhere: once more with new factors and a short leash.
                 Err(_) if !has_failed => {
                     has_failed = true;
+                    has_matrix = false;
                     self.has_factors = false;
                     self.adapt_damping(0.0);
                     now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
@@ -176,68 +217,51 @@ impl Buffers {
         })
     }
 
-    /// Energy of a start, for comparing starts; none if it is inside out.
-    pub(crate) fn energy(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<f64> {
-        self.prepare(body, step);
-        self.evaluate(body, step, x).map(|evaluation| evaluation.energy)
-    }
-
-    fn prepare(&mut self, body: &SoftBody, step: &Step) {
-        self.offsets.clear();
-        if !body.material().prony.is_empty() {
-            self.offsets
-                .extend((0..body.elements.len()).map(|tet| step.relaxation.offset(step.memory, tet)));
-        }
-    }
-
-    fn offset(&self, tet: usize) -> DMat3 {
-        self.offsets.get(tet).copied().unwrap_or(DMat3::ZERO)
+    /// Whether no tetrahedron is inside out.
+    pub(crate) fn is_valid(&mut self, body: &SoftBody, x: &mut Unknowns) -> bool {
+        body.elements.volumes(x.displacements_mm, &mut self.volumes) > 0.0
     }
 
     /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out.
     fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
+        let started = Instant::now();
         let mut evaluation = Evaluation {
-            smallest_volume_ratio: f64::INFINITY,
+            smallest_volume_ratio: body.elements.volumes(x.displacements_mm, &mut self.volumes),
             ..Evaluation::default()
         };
-        x.pressures_mpa.fill(0.0);
-        for element in &body.elements {
-            let volume_ratio = element.deformation(x.displacements_mm).volume_ratio;
-            evaluation.smallest_volume_ratio = evaluation.smallest_volume_ratio.min(volume_ratio);
-            let share = 0.25 * element.volume_mm3 * (volume_ratio - 1.0);
-            for &node in &element.nodes {
-                x.pressures_mpa[node as usize] -= share;
-            }
-        }
         let smallest = evaluation.smallest_volume_ratio;
         if smallest.is_nan() || smallest <= 0.0 {
             return None;
         }
-        self.volume_changes.copy_from_slice(x.pressures_mpa);
-        body.compressibility
-            .solve(x.pressures_mpa, &mut self.pressure_scratch);
-        let volumetric: f64 = self
-            .volume_changes
-            .iter()
-            .zip(x.pressures_mpa.iter())
-            .map(|(g, p)| g * p)
-            .sum();
-        evaluation.energy = 0.5 * volumetric;
-
-        self.gradient_n.fill(DVec3::ZERO);
-        let law = &body.material().isochoric;
-        for (tet, element) in body.elements.iter().enumerate() {
-            let deformation = element.deformation(x.displacements_mm);
-            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
-            let response = step
-                .relaxation
-                .response_mpa(law, &self.offset(tet), &right_cauchy_green);
-            evaluation.energy += element.volume_mm3 * response.energy;
-            let forces = element.forces(&deformation, &response, element.mean(x.pressures_mpa));
-            for (&node, force) in element.nodes.iter().zip(forces) {
-                self.gradient_n[node as usize] += force;
-            }
+        let changes = self.volumes.changes_mm3.as_flattened();
+        let ranges = body.volume_starts.windows(2);
+        for ((pressure, stiffness), range) in
+            x.pressures_mpa.iter_mut().zip(&body.volume_stiffness).zip(ranges)
+        {
+            let sources = &body.volume_sources[range[0] as usize..range[1] as usize];
+            let change: f64 = sources.iter().map(|&source| changes[source as usize]).sum();
+            *pressure = -stiffness * change;
+            evaluation.energy += 0.5 * stiffness * change * change;
         }
+
+        body.corner_pressures(x.pressures_mpa, &mut self.corners);
+        body.elements
+            .forces(step.response, x.displacements_mm, &self.corners, &mut self.forces);
+        evaluation.energy += self.forces.energies.iter().sum::<f64>();
+        let forces = self.forces.forces_n.as_flattened();
+        let half = self.gradient_n.len() / 2;
+        let (first, second) = self.gradient_n.split_at_mut(half);
+        let gather = |first: usize, gradients: &mut [DVec3]| {
+            let ranges = body.force_starts[first..].windows(2);
+            for (gradient, range) in gradients.iter_mut().zip(ranges) {
+                let sources = &body.force_sources[range[0] as usize..range[1] as usize];
+                *gradient = sources.iter().map(|&source| forces[source as usize]).sum();
+            }
+        };
+        join_halves(|| gather(0, first), || gather(half, second));
+        self.cost.forces_s += started.elapsed().as_secs_f64();
+
+        let started = Instant::now();
         for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
             for (boundary, touch) in body.boundary.iter().zip(&mut contact.touches) {
                 let node = boundary.node as usize;
@@ -247,92 +271,126 @@ impl Buffers {
                 evaluation.load_n += touch.force_n;
             }
         }
-        let mut unbalanced = 0.0;
-        for (node, gradient) in self.gradient_n.iter().enumerate() {
-            if body.system.displacement(node).is_some() {
-                unbalanced += gradient.length_squared();
-            } else {
-                evaluation.load_n = evaluation.load_n.max(gradient.length());
-            }
-        }
-        evaluation.unbalanced_n = unbalanced.sqrt();
+        self.cost.contact_s += started.elapsed().as_secs_f64();
+        let (free, bonded) = self.gradient_n.split_at(body.pattern.halves.free);
+        let largest = bonded.iter().map(|force| force.length()).fold(0.0, f64::max);
+        evaluation.load_n = evaluation.load_n.max(largest);
+        evaluation.unbalanced_n = free
+            .iter()
+            .map(|force| force.length_squared())
+            .sum::<f64>()
+            .sqrt();
         evaluation.energy.is_finite().then_some(evaluation)
     }
 
     /// Newton's direction at the unknowns; where the energy is not convex, that of a stiffened, convex one.
-    fn find_direction(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
-        for (unbalanced, gradient) in self.unbalanced_n.iter_mut().zip(&self.gradient_n) {
-            *unbalanced = -*gradient;
+    fn find_direction(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &Unknowns,
+        has_matrix: bool,
+    ) -> Result<(), Failure> {
+        let started = Instant::now();
+        if !has_matrix {
+            self.assemble(body, step, x);
+        }
+        self.add_contact(body, step, x);
+        self.cost.assembly_s += started.elapsed().as_secs_f64();
+        if !self.has_factors {
+            self.factorise(body, step, x)?;
         }
         let mut is_fresh = false;
-        if self.has_factors {
-            self.assemble(body, step, x, true, self.damping);
-        } else {
-            self.factorise(body, step, x)?;
-            is_fresh = true;
-        }
-        let mut target = None;
-        body.system
-            .put_forces(&self.unbalanced_n, &mut self.gradients.residual);
-        self.gradients.solution.fill(0.0);
         loop {
-            let limit = if is_fresh {
+            for (residual, gradient) in self.gradients.residual.iter_mut().zip(&self.gradient_n) {
+                *residual = Vector::from_dvec3(-*gradient);
+            }
+            let mut system = TwoLevel {
+                pattern: &body.pattern,
+                matrix: &self.matrix,
+                coarse: &body.coarse,
+                factors: &mut self.factors,
+                ends: &body.ends,
+                cycle: &mut self.cycle,
+            };
+            let max_iterations = if is_fresh {
                 MAX_FRESH_ITERATIONS
             } else {
                 MAX_STALE_ITERATIONS
             };
-            let (factors, scratch) = (&mut self.factors, &mut self.pressure_scratch);
-            let outcome = self
-                .gradients
-                .iterate(body, factors, scratch, FORCING, &mut target, limit);
+            let started = Instant::now();
+            let (outcome, n_iterations) = self.gradients.solve(&mut system, FORCING, max_iterations);
+            self.cost.linear_solve_s += started.elapsed().as_secs_f64();
+            self.cost.linear_iterations += n_iterations;
             if outcome == Outcome::Converged || is_fresh {
                 break;
             }
-            // The factors are too old: start afresh, as the tangent may have been stiffened as well.
             self.factorise(body, step, x)?;
             is_fresh = true;
-            target = None;
-            body.system
-                .put_forces(&self.unbalanced_n, &mut self.gradients.residual);
-            self.gradients.solution.fill(0.0);
         }
-        body.system
-            .take_displacements(&self.gradients.solution, &mut self.direction_mm);
+        for (direction, solution) in self.direction_mm.iter_mut().zip(&self.gradients.solution) {
+            *direction = solution.to_dvec3();
+        }
         Ok(())
     }
 
-    /// Factorises the tangent: the true one if it is convex, else without the curvature of the shapes, else ever stiffer.
+    /// Factorises the coarse tangent: the true one if it is convex, else ever stiffer.
     fn factorise(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
+        let started = Instant::now();
         self.has_factors = false;
-        for (with_curvature, extra) in [
-            (true, 0.0),
-            (false, 0.0),
-            (false, 0.02),
-            (false, 0.1),
-            (false, 0.5),
-            (false, 2.0),
-            (false, 10.0),
-        ] {
+        self.assemble_coarse(body, step, x);
+        for extra in [0.0, 0.02, 0.1, 0.5, 2.0, 10.0] {
+            let slots = body.elements.slots.iter();
+            let tangents = slots.map(|&slot| &self.coarse_tangents[slot as usize]);
+            body.coarse.fill(&mut self.factors, tangents);
+            for_each_touch(body, step, x, &mut |node, stiffness| {
+                body.coarse
+                    .add_between(&mut self.factors, body.ends[node], &stiffness.as_mat3());
+            });
             let damping = self.damping + extra;
-            self.assemble(body, step, x, with_curvature, damping);
+            if damping > 0.0 {
+                for (ends, stiffness) in body.ends.iter().zip(&body.node_stiffness) {
+                    if ends[0] == ends[1] {
+                        let own = Mat3::from_diagonal(Vec3::splat((damping * stiffness) as f32));
+                        body.coarse.add_to_node(&mut self.factors, ends[0], &own);
+                    }
+                }
+            }
             if body
-                .system
+                .coarse
                 .factorise(&mut self.factors)
                 .map_err(|_| Failure::Singular)?
             {
                 self.has_factors = true;
-                self.damping = damping;
+                self.cost.factorisation_s += started.elapsed().as_secs_f64();
+                self.cost.factorisations += 1;
                 return Ok(());
             }
         }
         Err(Failure::Singular)
     }
 
+    fn assemble_coarse(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
+        body.corner_pressures(&self.foreseen_mpa, &mut self.corners);
+        let (elements, u) = (&body.elements, &*x.displacements_mm);
+        let [first, second] = elements.halves.map(|pack| pack * LANES);
+        let (tangents, between) = self.coarse_tangents.split_at_mut(second);
+        let halves = tangents.split_at_mut(first);
+        let sink = |first, tangents| CoarseSink { first, tangents };
+        elements.tangents(
+            step.response,
+            u,
+            &self.corners,
+            [sink(0, halves.0), sink(first, halves.1)],
+        );
+        elements.tangents_between(step.response, u, &self.corners, sink(second, between));
+    }
+
     /// Short steps tell that the tangent is a poor guide: trust it less (Levenberg, 1944), and more again after whole ones.
     fn adapt_damping(&mut self, length: f64) {
         if length < SHORT {
             self.damping = (4.0 * self.damping).max(LEAST_DAMPING);
-        } else if length == 1.0 {
+        } else if length >= 1.0 {
             self.damping *= 0.25;
         }
         if self.damping < LEAST_DAMPING {
@@ -340,39 +398,28 @@ impl Buffers {
         }
     }
 
-    fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns, with_curvature: bool, damping: f64) {
-        let law = &body.material().isochoric;
-        body.system.clear(&mut self.factors);
-        for (tet, element) in body.elements.iter().enumerate() {
-            let deformation = element.deformation(x.displacements_mm);
-            let right_cauchy_green = deformation.isochoric_right_cauchy_green();
-            let response = step
-                .relaxation
-                .response_mpa(law, &self.offset(tet), &right_cauchy_green);
-            let tangent = element.tangent(&deformation, &response, element.mean(x.pressures_mpa));
-            body.system.add(&mut self.factors, tet, element, &tangent);
+    fn assemble(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
+        body.corner_pressures(&self.foreseen_mpa, &mut self.corners);
+        let (elements, u) = (&body.elements, &*x.displacements_mm);
+        elements.tangents(step.response, u, &self.corners, self.matrix.halves(&body.pattern));
+        elements.tangents_between(
+            step.response,
+            u,
+            &self.corners,
+            self.matrix.between(&body.pattern),
+        );
+    }
+
+    /// Completes the matrix with what contact and damping add.
+    fn add_contact(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
+        for (extra, stiffness) in self.matrix.extra.iter_mut().zip(&body.node_stiffness) {
+            *extra = Block::diagonal((self.damping * stiffness) as f32);
         }
-        for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
-            for (boundary, touch) in body.boundary.iter().zip(&contact.touches) {
-                if touch.force_n > 0.0 {
-                    let node = boundary.node as usize;
-                    let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                    let stiffness = shape.stiffness(
-                        touch,
-                        at_mm,
-                        boundary.stiffness * contact.stiffening,
-                        with_curvature,
-                    );
-                    body.system.add_to_node(&mut self.factors, node, &stiffness);
-                }
-            }
-        }
-        if damping > 0.0 {
-            for (node, stiffness) in body.node_stiffness.iter().enumerate() {
-                let extra = DMat3::from_diagonal(DVec3::splat(damping * stiffness));
-                body.system.add_to_node(&mut self.factors, node, &extra);
-            }
-        }
+        let extra = &mut self.matrix.extra;
+        for_each_touch(body, step, x, &mut |node, stiffness| {
+            extra[node].add(&Block::from_mat3(&stiffness.as_mat3()));
+        });
+        self.matrix.complete(&body.pattern);
     }
 
     /// Goes along the direction to where the energy is about lowest, at most its whole length. Trials cost little beside a direction.
@@ -383,12 +430,13 @@ impl Buffers {
         x: &mut Unknowns,
         start: &Evaluation,
     ) -> Result<(Evaluation, f64), Failure> {
-        let slope_at_start = -dot(&self.unbalanced_n, &self.direction_mm);
+        let slope_at_start = dot(&self.gradient_n, &self.direction_mm);
         let round_off = ROUND_OFF * (start.energy.abs() + body.energy_scale_n_mm());
         self.start_mm.copy_from_slice(x.displacements_mm);
+        self.start_mpa.copy_from_slice(x.pressures_mpa);
         // The energy falls at `low`, where the best trial is; beyond `high` it rises, or a tetrahedron is inside out.
         let (mut low, mut slope_at_low, mut is_usable) = (0.0, slope_at_start, false);
-        let (mut high, mut slope_at_high) = (1.0, None);
+        let (mut high, mut slope_at_high) = (f64::INFINITY, None);
         let mut length = 1.0;
         for _ in 0..MAX_TRIALS {
             let trial = self.try_length(body, step, x, length);
@@ -401,11 +449,18 @@ impl Buffers {
             match trial {
                 Some(trial)
                     if falls
-                        && (slope.abs() <= FLAT * slope_at_start.abs() || slope < 0.0 && length == 1.0) =>
+                        && (slope.abs() <= FLAT * slope_at_start.abs()
+                            || slope < 0.0 && length >= MAX_STRETCH) =>
                 {
                     return Ok((trial, length));
                 }
-                Some(_) if falls && slope < 0.0 => (low, slope_at_low, is_usable) = (length, slope, true),
+                Some(_) if falls && slope < 0.0 => {
+                    (low, slope_at_low, is_usable) = (length, slope, true);
+                    if high.is_infinite() {
+                        length *= 2.0;
+                        continue;
+                    }
+                }
                 Some(_) => (high, slope_at_high) = (length, (slope > 0.0).then_some(slope)),
                 None => (high, slope_at_high) = (length, None),
             }
@@ -443,16 +498,30 @@ impl Buffers {
     }
 }
 
-/// Stiffens the contact with shapes that a node is too deep inside of; true if there are any.
+fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(usize, &DMat3)) {
+    for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
+        for (boundary, touch) in body.boundary.iter().zip(&contact.touches) {
+            if touch.force_n > 0.0 {
+                let node = boundary.node as usize;
+                let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
+                let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness * contact.stiffening, true);
+                add(node, &stiffness);
+            }
+        }
+    }
+}
+
+/// Where a node is too deep inside of the indenter, carries the forces over; where in another shape, stiffens its contact. True if there are
+/// any.
 fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
     let mut any = false;
-    for contact in contacts {
-        if contact
-            .touches
-            .iter()
-            .any(|touch| touch.gap_mm < -body.settings.penetration_mm)
-        {
-            contact.stiffening *= STIFFENING;
+    for (shape, contact) in contacts.iter_mut().enumerate() {
+        if contact.penetration_mm() > body.settings.penetration_mm {
+            if shape == 0 {
+                contact.carry();
+            } else {
+                contact.stiffening *= STIFFENING;
+            }
             any = true;
         }
     }

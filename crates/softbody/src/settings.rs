@@ -2,39 +2,39 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::SoftBodyError;
+use crate::{Element, SoftBodyError};
 
 /// Settings of the solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SolverSettings {
+    /// How displacements vary between nodes. Default composite.
+    pub element: Element,
     /// A step has converged when the 2-norm of the unbalanced nodal forces is below this part of the load. Default 1e-6.
     pub tolerance: f64,
-    /// Newton iterations before a sub-step is given up and halved. Default 40.
+    /// Newton iterations before a sub-step is given up and halved. Default 100.
     pub max_iterations: u32,
     /// Farthest the indenter moves in one sub-step, mm. Default 0.5.
     pub max_travel_mm: f64,
     /// Smallest sub-step as part of that or of the step asked for, whichever is smaller. Default 1/16.
     pub min_substep: f64,
-    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 1000.
+    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 100: contacts carry their forces over
+    /// from step to step, so that it decides how fast steps converge, not what they converge to.
     pub contact_stiffness: f64,
     /// Largest depth of a node inside a shape after a step, mm; contact is stiffened until it is reached. Default 0.005.
     pub penetration_mm: f64,
-    /// Weight of the pressure stabilisation; 1 is that of Dohrmann and Bochev (2004), 0 none. Default 0.25: against converged results it halves the error
-    /// of 1 in pressure, and the pressure stays smooth up to ν = 0.4999.
-    pub stabilisation: f64,
 }
 
 impl Default for SolverSettings {
     fn default() -> Self {
         Self {
+            element: Element::default(),
             tolerance: 1e-6,
-            max_iterations: 40,
+            max_iterations: 100,
             max_travel_mm: 0.5,
             min_substep: 1.0 / 16.0,
-            contact_stiffness: 1000.0,
+            contact_stiffness: 100.0,
             penetration_mm: 0.005,
-            stabilisation: 0.25,
         }
     }
 }
@@ -58,14 +58,6 @@ impl SolverSettings {
         positive("min_substep", self.min_substep)?;
         positive("contact_stiffness", self.contact_stiffness)?;
         positive("penetration_mm", self.penetration_mm)?;
-        if !(self.stabilisation.is_finite() && self.stabilisation >= 0.0) {
-            let (field, expected) = ("stabilisation", "a finite number, 0 or above");
-            return Err(SoftBodyError::Setting {
-                field,
-                expected,
-                found: self.stabilisation,
-            });
-        }
         Ok(())
     }
 }

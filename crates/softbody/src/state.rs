@@ -4,7 +4,7 @@ use glam::DVec3;
 use twintac_shape::Pose;
 
 use crate::contact::Contact;
-use crate::material::{KPA_PER_MPA, Memory};
+use crate::material::Memory;
 use crate::newton::Workspace;
 
 /// Where a soft body is: what one press changes. Made by [`crate::SoftBody::rest`].
@@ -40,13 +40,6 @@ impl State {
     pub fn displacements_mm(&self) -> &[DVec3] {
         &self.displacements_mm
     }
-
-    pub(crate) fn pressures_kpa(&self) -> Vec<f64> {
-        self.pressures_mpa
-            .iter()
-            .map(|pressure| pressure * KPA_PER_MPA)
-            .collect()
-    }
 }
 
 /// What a step came to. Forces act on the gel, in the gel's frame; their sum is zero but for the residual.
@@ -72,4 +65,25 @@ pub struct Frame {
     pub smallest_volume_ratio: f64,
     /// Time spent, s.
     pub wall_time_s: f64,
+    /// What it was spent on.
+    pub cost: Cost,
+}
+
+/// What a step's time was spent on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Energy and forces of the elements, s.
+    pub forces_s: f64,
+    /// Distances to shapes, and contact forces, s.
+    pub contact_s: f64,
+    /// The matrix of the linear system, s.
+    pub assembly_s: f64,
+    /// Factors of the coarse system, s.
+    pub factorisation_s: f64,
+    /// Conjugate gradients, s.
+    pub linear_solve_s: f64,
+    /// How often the coarse system was factorised.
+    pub factorisations: u32,
+    /// Iterations of conjugate gradients.
+    pub linear_iterations: u32,
 }

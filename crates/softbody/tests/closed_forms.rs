@@ -52,7 +52,7 @@ fn body_to(law: Isochoric, prony: Vec<PronyTerm>, tolerance: f64) -> SoftBody {
         ..SolverSettings::default()
     };
     SoftBody::new(
-        shaken_block(),
+        &shaken_block(),
         Material {
             isochoric: law,
             bulk_modulus_kpa: BULK_KPA,

@@ -55,8 +55,8 @@ impl Bench {
         fs::write(folder.path().join("protocol.toml"), PROTOCOL).unwrap();
         let reality = fs::read_to_string(root().join("realities/default.toml")).unwrap();
         let coarse = reality
-            .replace("edges_per_height = 5.0", "edges_per_height = 2.5")
-            .replace("edges_per_contact_radius = 3.5", "edges_per_contact_radius = 1.0");
+            .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
+            .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
         assert_ne!(coarse, reality);
         fs::write(folder.path().join("reality.toml"), coarse).unwrap();
         Self { folder, threads }

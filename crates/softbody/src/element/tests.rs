@@ -1,7 +1,12 @@
-use super::*;
-use crate::Isochoric;
-use crate::material::{Memory, Relaxation, contract};
+use glam::{DMat3, DVec3, Mat3};
 use proptest::prelude::*;
+
+use super::forces::Forces;
+use super::table::EDGES;
+use super::*;
+use crate::material::PronyTerm;
+use crate::wide::LANES;
+use crate::{Isochoric, Material};
 
 const LAWS: [Isochoric; 3] = [
     Isochoric::NeoHookean {
@@ -17,66 +22,132 @@ const LAWS: [Isochoric; 3] = [
         c30_kpa: 0.12,
     },
 ];
-const PRESSURE: f64 = 0.004;
 
-fn element() -> Element {
-    let corners = [
-        DVec3::ZERO,
-        DVec3::new(1.1, 0.1, 0.0),
-        DVec3::new(0.2, 0.9, -0.1),
-        DVec3::new(0.1, 0.3, 0.8),
-    ];
-    Element::new([0, 1, 2, 3], corners)
+/// Pressures of the corners, MPa.
+const CORNERS: [f64; 4] = [0.004, -0.002, 0.007, 0.001];
+
+/// One coarse tetrahedron and its eight.
+fn one(element: Element) -> (Vec<DVec3>, Elements) {
+    let mesh = twintac_mesh::TetMesh {
+        nodes_mm: vec![
+            DVec3::ZERO,
+            DVec3::new(1.1, 0.1, 0.0),
+            DVec3::new(0.2, 0.9, -0.1),
+            DVec3::new(0.1, 0.3, 0.8),
+        ],
+        tets: vec![[0, 1, 2, 3]],
+        ..twintac_mesh::TetMesh::default()
+    };
+    let refined = mesh.refined();
+    let parent: [u32; NODES] = std::array::from_fn(|node| match node.checked_sub(4) {
+        Some(edge) => {
+            let ends = EDGES[edge].map(u32::from);
+            4 + refined.midpoints.iter().position(|other| *other == ends).unwrap() as u32
+        }
+        None => node as u32,
+    });
+    let children = std::array::from_fn(|child| refined.mesh.tets[child]);
+    let elements = Elements::new(
+        element,
+        &refined.mesh.nodes_mm,
+        &[parent],
+        &[children],
+        &[Side::First],
+    );
+    (refined.mesh.nodes_mm, elements)
 }
 
-/// Energy, and the response it is made of. The offset is what a material remembers.
-fn energy(law: &Isochoric, offset: &DMat3, u: &[DVec3]) -> (f64, Deformation, crate::material::Response) {
-    let element = element();
-    let deformation = element.deformation(u);
-    let response =
-        Relaxation::new(&[], 0.0).response_mpa(law, offset, &deformation.isochoric_right_cauchy_green());
-    let energy = element.volume_mm3 * (response.energy - PRESSURE * (deformation.volume_ratio - 1.0));
-    (energy, deformation, response)
+fn material(isochoric: Isochoric, prony: Vec<PronyTerm>) -> Material {
+    Material {
+        isochoric,
+        bulk_modulus_kpa: 1200.0,
+        prony,
+    }
 }
 
-fn forces(law: &Isochoric, offset: &DMat3, u: &[DVec3]) -> [DVec3; 4] {
-    let (_, deformation, response) = energy(law, offset, u);
-    element().forces(&deformation, &response, PRESSURE)
+/// Energy at fixed pressures, and its slopes in the displacements.
+fn energy(elements: &Elements, response: Response, u: &[DVec3]) -> (f64, [DVec3; NODES]) {
+    let (mut forces, mut volumes) = (Forces::default(), Volumes::default());
+    elements.volumes(u, &mut volumes);
+    elements.forces(response, u, &[CORNERS; LANES], &mut forces);
+    let work: f64 = CORNERS
+        .iter()
+        .zip(volumes.changes_mm3[0])
+        .map(|(p, g)| p * g)
+        .sum();
+    let mut by_node = [DVec3::ZERO; NODES];
+    for node in 0..NODES {
+        by_node[elements.packs[0].nodes[node][0] as usize] = forces.forces_n[0][node];
+    }
+    (forces.energies[0] - work, by_node)
+}
+
+/// Keeps the blocks of the first lane.
+struct Keep<'a>(&'a mut Vec<(usize, usize, Mat3)>, [u32; NODES]);
+
+impl Sink for Keep<'_> {
+    fn take(&mut self, _: usize, table: &Table, blocks: &[NodeBlock], _: &[NodeSlopes; NODES]) {
+        for ([a, b], block) in table.pairs.iter().zip(blocks) {
+            let entry = |i: usize, j: usize| block[i][j].0[0];
+            let column = |j: usize| glam::Vec3::new(entry(0, j), entry(1, j), entry(2, j));
+            let [a, b] = [*a, *b].map(|node| self.1[node as usize] as usize);
+            self.0
+                .push((a, b, Mat3::from_cols(column(0), column(1), column(2))));
+        }
+    }
+}
+
+impl<S: Sink> Sink for Option<S> {
+    fn take(&mut self, slot: usize, table: &Table, blocks: &[NodeBlock], slopes: &[NodeSlopes; NODES]) {
+        if let Some(sink) = self {
+            sink.take(slot, table, blocks, slopes);
+        }
+    }
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
     #[test]
     fn forces_and_tangent_are_the_slopes_of_the_energy(
-        u in prop::array::uniform4(prop::array::uniform3(-0.15..0.15_f64)),
-        remembered in prop::array::uniform6(-0.005..0.005_f64),
+        moves in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
+        before in prop::collection::vec(prop::array::uniform3(-0.04..0.04_f64), NODES),
+        is_quadratic in any::<bool>(),
     ) {
-        let u = u.map(DVec3::from_array);
-        let [a, b, c, d, e, f] = remembered;
-        let offset = DMat3::from_cols(DVec3::new(a, d, e), DVec3::new(d, b, f), DVec3::new(e, f, c));
-        let step = 1e-5;
-        for law in &LAWS {
-            let found = forces(law, &offset, &u);
-            let (_, deformation, response) = energy(law, &offset, &u);
-            let tangent = element().tangent(&deformation, &response, PRESSURE);
-            for b in 0..4 {
+        let (_, elements) = one(if is_quadratic { Element::Quadratic } else { Element::Composite });
+        let vectors = |moves: &[[f64; 3]]| moves.iter().map(|u| DVec3::from_array(*u)).collect::<Vec<_>>();
+        let (u, before) = (vectors(&moves), vectors(&before));
+        let term = PronyTerm { weight: 0.4, time_s: 0.5 };
+        for (law, prony) in LAWS.iter().flat_map(|law| [(*law, vec![]), (*law, vec![term])]) {
+            let material = material(law, prony);
+            let relaxation = Relaxation::new(&material.prony, 0.2);
+            let mut memory = Memory::new(elements.n_points(), &material.prony);
+            remember(&elements, &material, &relaxation, &before, &mut memory);
+            let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+            let step = 1e-5;
+            let (_, forces) = energy(&elements, response, &u);
+            let mut blocks = Vec::new();
+            let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
+            elements.tangents(response, &u, &[CORNERS; LANES], [Some(Keep(&mut blocks, nodes)), None]);
+            for b in 0..NODES {
                 for j in 0..3 {
                     let moved = |sign: f64| {
-                        let mut moved = u;
-                        moved[b][j] += sign * step;
-                        moved
+                        let mut u = u.clone();
+                        u[b][j] += sign * step;
+                        energy(&elements, response, &u)
                     };
-                    let slope = (energy(law, &offset, &moved(1.0)).0 - energy(law, &offset, &moved(-1.0)).0) / (2.0 * step);
-                    prop_assert!((found[b][j] - slope).abs() < 1e-9, "{law:?} force {} {slope}", found[b][j]);
-                    let volume = |u: &[DVec3]| element().volume_mm3 * element().deformation(u).volume_ratio;
-                    let slope = (volume(&moved(1.0)) - volume(&moved(-1.0))) / (2.0 * step);
-                    prop_assert!((tangent.volume_slope[b][j] - slope).abs() < 1e-9);
-                    let (after, before) = (forces(law, &offset, &moved(1.0)), forces(law, &offset, &moved(-1.0)));
-                    for a in b..4 {
-                        for i in 0..3 {
-                            let slope = (after[a][i] - before[a][i]) / (2.0 * step);
-                            let found = tangent.stiffness[a * (a + 1) / 2 + b].col(j)[i];
-                            prop_assert!((found - slope).abs() < 1e-8, "{law:?} stiffness {found} {slope}");
-                        }
+                    let (ahead, behind) = (moved(1.0), moved(-1.0));
+                    let slope = (ahead.0 - behind.0) / (2.0 * step);
+                    prop_assert!((slope - forces[b][j]).abs() < 1e-8, "{slope} {}", forces[b][j]);
+                    for a in 0..NODES {
+                        let expected = (ahead.1[a] - behind.1[a]) / (2.0 * step);
+                        let found = blocks.iter().find_map(|(row, column, block)| match (*row, *column) {
+                            (row, column) if (row, column) == (a, b) => Some(block.col(j)),
+                            (row, column) if (row, column) == (b, a) => Some(block.row(j)),
+                            _ => None,
+                        });
+                        let found = found.unwrap_or_default().as_dvec3();
+                        prop_assert!((found - expected).length() < 3e-6, "{a} {b}: {found} {expected}");
                     }
                 }
             }
@@ -84,20 +155,88 @@ proptest! {
     }
 
     #[test]
-    fn a_turned_body_feels_nothing(axis in prop::array::uniform3(-1.0..1.0_f64), angle in -3.0..3.0_f64) {
-        let axis = DVec3::from_array(axis).normalize_or(DVec3::Z);
-        let deformation = Deformation::new(DMat3::from_axis_angle(axis, angle));
-        for law in &LAWS {
-            let response = law.response_mpa(&deformation.isochoric_right_cauchy_green());
-            let stress = deformation.first_piola_kirchhoff(&response, 0.0);
-            prop_assert!(contract(&stress, &stress).sqrt() < 1e-15, "{stress}");
-            prop_assert!(response.energy.abs() < 1e-15);
+    fn a_rotated_element_is_free_of_stress(axis in prop::array::uniform3(-1.0..1.0_f64), angle in -3.0..3.0_f64) {
+        let (nodes_mm, elements) = one(Element::Composite);
+        let turn = DMat3::from_axis_angle(DVec3::from_array(axis).normalize_or(DVec3::X), angle);
+        let u: Vec<DVec3> = nodes_mm.iter().map(|at| turn * *at - *at).collect();
+        for law in LAWS {
+            let material = material(law, Vec::new());
+            let relaxation = Relaxation::new(&[], 0.0);
+            let memory = Memory::new(elements.n_points(), &[]);
+            let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+            let (mut forces, mut volumes) = (Forces::default(), Volumes::default());
+            elements.volumes(&u, &mut volumes);
+            elements.forces(response, &u, &[[0.0; 4]; LANES], &mut forces);
+            prop_assert!(forces.energies[0].abs() < 1e-15);
+            prop_assert!(forces.forces_n[0].iter().all(|force| force.length() < 1e-14));
+            prop_assert!(volumes.changes_mm3[0].iter().all(|change| change.abs() < 1e-14));
         }
     }
 }
 
 #[test]
-fn an_elastic_material_remembers_nothing() {
-    let offset = Relaxation::new(&[], 1.0).offset(&Memory::new(3, &[]), 2);
-    assert_eq!(offset, DMat3::ZERO);
+fn coarse_tangents_are_those_of_midpoints_that_follow() {
+    let (nodes_mm, elements) = one(Element::Composite);
+    let material = material(LAWS[1], Vec::new());
+    let relaxation = Relaxation::new(&[], 0.0);
+    let memory = Memory::new(elements.n_points(), &[]);
+    let response = Response {
+        material: &material,
+        relaxation: &relaxation,
+        memory: &memory,
+    };
+    let gradient = DMat3::from_cols_array(&[0.1, 0.1, -0.05, 0.2, -0.1, 0.1, -0.1, 0.05, 0.02]);
+    let linear = |moved: [DVec3; 4]| -> Vec<DVec3> {
+        let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
+        let mut u = vec![DVec3::ZERO; NODES];
+        for (local, node) in nodes.iter().enumerate() {
+            let [a, b] = table::ends(local as u8);
+            u[*node as usize] =
+                gradient * nodes_mm[*node as usize] + 0.5 * (moved[a as usize] + moved[b as usize]);
+        }
+        u
+    };
+    let mut tangents = vec![CoarseTangent::default(); LANES];
+    let sink = CoarseSink {
+        first: 0,
+        tangents: &mut tangents,
+    };
+    let rest = CoarseSink {
+        first: LANES,
+        tangents: &mut [],
+    };
+    elements.tangents(
+        response,
+        &linear([DVec3::ZERO; 4]),
+        &[CORNERS; LANES],
+        [sink, rest],
+    );
+    let corner_force = |moved: [DVec3; 4], corner: usize| {
+        let (_, forces) = energy(&elements, response, &linear(moved));
+        let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
+        let mut sum = DVec3::ZERO;
+        for (local, node) in nodes.iter().enumerate() {
+            for end in table::ends(local as u8) {
+                if end as usize == corner {
+                    sum += 0.5 * forces[*node as usize];
+                }
+            }
+        }
+        sum
+    };
+    let step = 1e-5;
+    for a in 0..4 {
+        for b in 0..=a {
+            for j in 0..3 {
+                let moved = |sign: f64| {
+                    let mut moved = [DVec3::ZERO; 4];
+                    moved[b][j] = sign * step;
+                    corner_force(moved, a)
+                };
+                let expected = (moved(1.0) - moved(-1.0)) / (2.0 * step);
+                let found = tangents[0].stiffness[a * (a + 1) / 2 + b].col(j).as_dvec3();
+                assert!((found - expected).length() < 3e-6, "{a} {b}: {found} {expected}");
+            }
+        }
+    }
 }

@@ -4,17 +4,21 @@
 //! `W = W̄(C̄) + K/2 (J - 1)²`, with `J = det F` and `C̄ = J^(-2/3) FᵀF`, so that the hydrostatic pressure is
 //! `-tr(σ)/3 = -K (J - 1)` whatever `W̄` is (Holzapfel, Nonlinear Solid Mechanics, 2000, section 6.4).
 
+mod law;
 mod mooney_rivlin;
 mod neo_hookean;
 mod relaxation;
 mod yeoh;
 
-use glam::DMat3;
 use serde::{Deserialize, Serialize};
 
 use crate::SoftBodyError;
 
-pub(crate) use relaxation::{Memory, Relaxation, contract};
+pub(crate) use law::{Invariants, Law};
+pub(crate) use mooney_rivlin::MooneyRivlin;
+pub(crate) use neo_hookean::NeoHookean;
+pub(crate) use relaxation::{Memory, Relaxation};
+pub(crate) use yeoh::Yeoh;
 
 /// Kilopascals in a newton per square millimetre, the unit of stress inside this crate.
 pub(crate) const KPA_PER_MPA: f64 = 1000.0;
@@ -69,42 +73,7 @@ pub enum Isochoric {
     },
 }
 
-/// Energy and its derivatives with respect to `C̄`, in units of the moduli.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Response {
-    /// `W̄`
-    pub(crate) energy: f64,
-    /// `S̄ = 2 ∂W̄/∂C̄`
-    pub(crate) stress: DMat3,
-    /// `a` in `∂S̄/∂C̄ = a 1⊗1 + b 𝕀`.
-    pub(crate) trace_stiffness: f64,
-    /// `b` in `∂S̄/∂C̄ = a 1⊗1 + b 𝕀`.
-    pub(crate) full_stiffness: f64,
-}
-
 impl Isochoric {
-    /// Energy and derivatives at `C̄`, in MPa.
-    #[inline]
-    pub(crate) fn response_mpa(&self, right_cauchy_green: &DMat3) -> Response {
-        let to_mpa = 1.0 / KPA_PER_MPA;
-        match *self {
-            Self::NeoHookean { shear_modulus_kpa } => {
-                neo_hookean::response(shear_modulus_kpa * to_mpa, right_cauchy_green)
-            }
-            Self::MooneyRivlin { c10_kpa, c01_kpa } => {
-                mooney_rivlin::response(c10_kpa * to_mpa, c01_kpa * to_mpa, right_cauchy_green)
-            }
-            Self::Yeoh {
-                c10_kpa,
-                c20_kpa,
-                c30_kpa,
-            } => yeoh::response(
-                [c10_kpa * to_mpa, c20_kpa * to_mpa, c30_kpa * to_mpa],
-                right_cauchy_green,
-            ),
-        }
-    }
-
     /// Shear modulus at small strain, kPa.
     #[must_use]
     pub fn shear_modulus_kpa(&self) -> f64 {

@@ -7,28 +7,32 @@
 //! (Taylor, Pister and Goudreau, 1970). What a step adds is `factor S̄_new + offset` with a constant `offset`: the derivative
 //! of the potential `factor W̄(C̄) + offset:C̄/2`, so that every step stays a minimisation with a symmetric tangent.
 
-use glam::DMat3;
+use super::PronyTerm;
+use crate::wide::Wide;
 
-use super::{Isochoric, PronyTerm, Response};
-use crate::element::Deformation;
+/// A symmetric matrix: xx, yy, zz, yz, xz, xy.
+pub(crate) type Symmetric<T> = [Wide<T>; 6];
 
 /// What a step of time does to each term of the series.
 #[derive(Clone, Debug)]
 pub(crate) struct Relaxation {
     /// Part of the instantaneous answer that acts over this step.
-    factor: f64,
+    pub(crate) factor: f64,
     /// For each term: what is kept of `H`, and the weight of the new stress.
     terms: Vec<(f64, f64)>,
 }
 
-/// What each tetrahedron remembers. Empty for an elastic material.
+/// What a body remembers. Empty for an elastic material.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
-    /// Instantaneous deviatoric stress `S̃` at the end of the last step, MPa. `[n_tets]`
-    stress: Vec<DMat3>,
-    /// Fading stresses `H`, MPa. `[n_tets][n_terms]`, flat.
-    fading: Vec<DMat3>,
+    /// Instantaneous deviatoric stress `S̃` at the end of the last step, then the fading stresses `H`, MPa. `[n_points][1 + n_terms]`, flat.
+    stresses: Vec<Symmetric<f64>>,
+    stride: usize,
 }
+
+/// What eight points remember.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointMemory<'a>(&'a [Symmetric<f64>]);
 
 impl Relaxation {
     pub(crate) fn new(prony: &[PronyTerm], time_step_s: f64) -> Self {
@@ -48,73 +52,53 @@ impl Relaxation {
         }
     }
 
-    /// The constant part of this step's stress in a tetrahedron, MPa.
-    #[inline]
-    pub(crate) fn offset(&self, memory: &Memory, tet: usize) -> DMat3 {
-        let mut offset = DMat3::ZERO;
-        if !self.terms.is_empty() {
-            let fading = &memory.fading[tet * self.terms.len()..][..self.terms.len()];
-            for ((kept, weight), fading) in self.terms.iter().zip(fading) {
-                offset += *fading * *kept - memory.stress[tet] * *weight;
+    /// The constant part of this step's stress, MPa; none for an elastic material.
+    #[inline(always)]
+    pub(crate) fn offset(&self, memory: PointMemory) -> Option<Symmetric<f64>> {
+        let (last, fading) = memory.0.split_first()?;
+        let mut offset = [Wide::zero(); 6];
+        for ((kept, weight), fading) in self.terms.iter().zip(fading) {
+            for i in 0..6 {
+                offset[i] += fading[i] * Wide::splat(*kept) - last[i] * Wide::splat(*weight);
             }
         }
-        offset
-    }
-
-    /// The step's answer at `C̄`.
-    #[inline]
-    pub(crate) fn response_mpa(
-        &self,
-        law: &Isochoric,
-        offset: &DMat3,
-        right_cauchy_green: &DMat3,
-    ) -> Response {
-        let now = law.response_mpa(right_cauchy_green);
-        Response {
-            energy: self.factor * now.energy + 0.5 * contract(offset, right_cauchy_green),
-            stress: now.stress * self.factor + *offset,
-            trace_stiffness: self.factor * now.trace_stiffness,
-            full_stiffness: self.factor * now.full_stiffness,
-        }
+        Some(offset)
     }
 }
 
 impl Memory {
     /// The memory of a body that has been at rest for ever.
-    pub(crate) fn new(n_tets: usize, prony: &[PronyTerm]) -> Self {
+    pub(crate) fn new(n_points: usize, prony: &[PronyTerm]) -> Self {
         if prony.is_empty() {
             return Self::default();
         }
+        let stride = 1 + prony.len();
         Self {
-            stress: vec![DMat3::ZERO; n_tets],
-            fading: vec![DMat3::ZERO; n_tets * prony.len()],
+            stresses: vec![[Wide::zero(); 6]; n_points * stride],
+            stride,
         }
     }
 
-    /// Takes a tetrahedron to the end of a step.
-    pub(crate) fn remember(
-        &mut self,
-        step: &Relaxation,
-        law: &Isochoric,
-        tet: usize,
-        deformation: &Deformation,
-    ) {
-        if step.terms.is_empty() {
-            return;
-        }
-        let right_cauchy_green = deformation.isochoric_right_cauchy_green();
-        let total = law.response_mpa(&right_cauchy_green).stress;
-        let stress = total - right_cauchy_green.inverse() * (contract(&total, &right_cauchy_green) / 3.0);
-        let fading = &mut self.fading[tet * step.terms.len()..][..step.terms.len()];
-        for ((kept, weight), fading) in step.terms.iter().zip(fading) {
-            *fading = *fading * *kept + (stress - self.stress[tet]) * *weight;
-        }
-        self.stress[tet] = stress;
+    pub(crate) fn is_empty(&self) -> bool {
+        self.stresses.is_empty()
     }
-}
 
-/// `a : b`
-#[inline]
-pub(crate) fn contract(a: &DMat3, b: &DMat3) -> f64 {
-    a.x_axis.dot(b.x_axis) + a.y_axis.dot(b.y_axis) + a.z_axis.dot(b.z_axis)
+    #[inline(always)]
+    pub(crate) fn point(&self, point: usize) -> PointMemory<'_> {
+        PointMemory(&self.stresses[point * self.stride..][..self.stride])
+    }
+
+    /// Takes eight points to the end of a step, where their instantaneous deviatoric stress is `S̃`, MPa.
+    pub(crate) fn remember(&mut self, step: &Relaxation, point: usize, stress: &Symmetric<f64>) {
+        let stresses = &mut self.stresses[point * self.stride..][..self.stride];
+        if let Some((last, fading)) = stresses.split_first_mut() {
+            for ((kept, weight), fading) in step.terms.iter().zip(fading) {
+                for i in 0..6 {
+                    let added = (stress[i] - last[i]) * Wide::splat(*weight);
+                    fading[i] = fading[i] * Wide::splat(*kept) + added;
+                }
+            }
+            *last = *stress;
+        }
+    }
 }

@@ -196,3 +196,17 @@ pub(crate) fn disc_mean(x_mm: &[f64], y_mm: &[f64], field: &[f64], at_mm: [f64; 
     }
     sum / count
 }
+
+/// A nodal field at the bottom nodes, x fastest, for places that are nodes.
+pub(crate) fn by_place(body: &SoftBody, nodal: &[f64], x: &[f64], y: &[f64]) -> Vec<f64> {
+    let at = |places: &[f64], value: f64| places.iter().position(|place| (place - value).abs() < 1e-9);
+    let mut found = vec![f64::NAN; x.len() * y.len()];
+    for (node, value) in body.mesh().nodes_mm.iter().zip(nodal) {
+        if node.z == 0.0
+            && let (Some(i), Some(j)) = (at(x, node.x), at(y, node.y))
+        {
+            found[j * x.len() + i] = *value;
+        }
+    }
+    found
+}

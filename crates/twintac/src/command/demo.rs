@@ -31,8 +31,8 @@ pub(crate) fn run(arguments: &Demo) -> Result<()> {
 fn settings() -> RunSettings {
     RunSettings {
         simulate: SimulateSettings {
-            edges_per_height: 4.0,
-            edges_per_contact_radius: 2.5,
+            edges_per_height: 6.0,
+            edges_per_contact_radius: 5.0,
             ..SimulateSettings::default()
         },
         train: TrainSettings {

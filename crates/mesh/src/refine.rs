@@ -1,0 +1,137 @@
+//! Every tetrahedron cut into eight, so that a mesh and its refinement are a pair: fine displacements, coarse pressures.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::TetMesh;
+use crate::tet_mesh::signed_volume_mm3;
+
+/// A mesh with the coarser one that it was cut from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refinement {
+    /// The refined mesh. Its first nodes are those of the coarse mesh; tetrahedra `8 t` to `8 t + 7` are cut from the coarse one `t`.
+    pub mesh: TetMesh,
+    /// Nodes of each coarse tetrahedron.
+    pub coarse_tets: Vec<[u32; 4]>,
+    /// Nodes of the coarse mesh.
+    pub n_coarse_nodes: usize,
+    /// The coarse nodes that each further node lies midway between, the smaller first. `[n_nodes - n_coarse_nodes]`
+    pub midpoints: Vec<[u32; 2]>,
+}
+
+/// Corners of a tetrahedron that its six midpoints lie between.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// The four at the corners: a corner and three midpoints, numbered from 4 on in the order of [`EDGES`].
+const CORNERS: [[usize; 4]; 4] = [[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]];
+
+/// The three ways to cut the octahedron between them: two opposite midpoints, and the ring of the others.
+const DIAGONALS: [([usize; 2], [usize; 4]); 3] = [
+    ([4, 9], [5, 6, 8, 7]),
+    ([5, 8], [4, 6, 9, 7]),
+    ([6, 7], [4, 5, 9, 8]),
+];
+
+impl TetMesh {
+    /// Nodes of the mesh that [`TetMesh::refined`] makes: one for each node and each edge.
+    #[must_use]
+    pub fn n_nodes_refined(&self) -> usize {
+        let edges_of = |tet: &[u32; 4]| EDGES.map(|[a, b]| [tet[a].min(tet[b]), tet[a].max(tet[b])]);
+        let edges: HashSet<[u32; 2]> = self.tets.iter().flat_map(edges_of).collect();
+        self.nodes_mm.len() + edges.len()
+    }
+
+    /// Cuts every tetrahedron into eight, the octahedron inside along its shortest diagonal (Bey, Computing 55, 1995, leaves the choice
+    /// free). A new node is bonded if it lies on a boundary triangle whose corners are.
+    #[must_use]
+    pub fn refined(&self) -> Refinement {
+        let mut mesh = TetMesh {
+            nodes_mm: self.nodes_mm.clone(),
+            tets: Vec::with_capacity(8 * self.tets.len()),
+            ..TetMesh::default()
+        };
+        let mut midpoints = Vec::new();
+        let mut midpoint_of = HashMap::new();
+        for tet in &self.tets {
+            let mut nodes = [0; 10];
+            nodes[..4].copy_from_slice(tet);
+            for (node, edge) in nodes[4..].iter_mut().zip(EDGES) {
+                let [a, b] = edge.map(|corner| tet[corner]);
+                let ends = [a.min(b), a.max(b)];
+                *node = *midpoint_of.entry(ends).or_insert_with(|| {
+                    midpoints.push(ends);
+                    let [a, b] = ends.map(|end| self.nodes_mm[end as usize]);
+                    mesh.nodes_mm.push(0.5 * (a + b));
+                    mesh.nodes_mm.len() as u32 - 1
+                });
+            }
+            let length_mm = |[a, b]: [usize; 2]| {
+                let [a, b] = [a, b].map(|corner| mesh.nodes_mm[nodes[corner] as usize]);
+                a.distance(b)
+            };
+            let mut best = DIAGONALS[0];
+            for diagonal in &DIAGONALS[1..] {
+                if length_mm(diagonal.0) < 0.999_999 * length_mm(best.0) {
+                    best = *diagonal;
+                }
+            }
+            let ([low, high], ring) = best;
+            let inner = (0..4).map(|i| [low, high, ring[i], ring[(i + 1) % 4]]);
+            for child in CORNERS.into_iter().chain(inner) {
+                let mut child = child.map(|corner| nodes[corner]);
+                if signed_volume_mm3(child.map(|node| mesh.nodes_mm[node as usize])) < 0.0 {
+                    child.swap(2, 3);
+                }
+                mesh.tets.push(child);
+            }
+        }
+        let n_coarse_nodes = self.nodes_mm.len();
+        let mut bonded = vec![false; mesh.nodes_mm.len()];
+        self.sets
+            .bonded
+            .iter()
+            .for_each(|&node| bonded[node as usize] = true);
+        for triangle in self.boundary_triangles() {
+            if triangle.iter().all(|&node| bonded[node as usize]) {
+                for [a, b] in [[0, 1], [0, 2], [1, 2]] {
+                    let (a, b) = (triangle[a], triangle[b]);
+                    bonded[midpoint_of[&[a.min(b), a.max(b)]] as usize] = true;
+                }
+            }
+        }
+        mesh.name_nodes(|node| bonded[node as usize]);
+        Refinement {
+            mesh,
+            coarse_tets: self.tets.clone(),
+            n_coarse_nodes,
+            midpoints,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn eight_children_fill_their_parent() {
+        let parent = TetMesh {
+            nodes_mm: vec![
+                DVec3::ZERO,
+                DVec3::X,
+                DVec3::new(0.2, 1.0, 0.1),
+                DVec3::new(0.1, 0.3, 2.0),
+            ],
+            tets: vec![[0, 1, 2, 3]],
+            ..TetMesh::default()
+        };
+        let refined = parent.refined();
+        assert_eq!(refined.mesh.nodes_mm.len(), 10);
+        assert_eq!(parent.n_nodes_refined(), 10);
+        for tet in 0..8 {
+            let share = refined.mesh.tet_volume_mm3(tet) / parent.tet_volume_mm3(0);
+            assert!((share - 0.125).abs() < 1e-12, "{share}");
+        }
+    }
+}

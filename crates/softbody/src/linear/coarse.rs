@@ -1,0 +1,380 @@
+//! The system on the coarse mesh: unknown displacements and pressures, four a node.
+//!
+//! `[A -B; -Bᵀ -1/D]`, factorised as `L D Lᵀ` without pivoting, in an order chosen once. `D` has exactly one negative entry for
+//! each pressure if and only if the energy is convex here (Sylvester's law of inertia).
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, MatMut, Par, Side, Spec};
+use glam::{DVec3, Mat3};
+
+use super::block::Vector;
+use super::elimination_order::elimination_order;
+use crate::SoftBodyError;
+use crate::element::CoarseTangent;
+
+/// Numbering and sparsity of the system.
+pub(crate) struct CoarseSystem {
+    free: Vec<bool>,
+    /// First unknown of each node: its displacement if it is free, then its pressure.
+    first: Vec<u32>,
+    /// Lower triangle by columns.
+    lower: SymbolicSparseColMat<u32>,
+    symbolic: SymbolicCholesky<u32>,
+    /// Where each entry of each tetrahedron's tangent goes.
+    blocks: Vec<TetBlocks>,
+    /// Where a node's own entries, the diagonal ones of its columns, stand. `[n_nodes]`
+    diagonals: Vec<[u32; 3]>,
+    /// The matrix with nothing but `-1/D`.
+    base: Vec<f32>,
+    corners: Vec<[u32; 4]>,
+    /// For each node, its later neighbours and where their rows begin below its own.
+    later: Vec<Vec<(u32, u32)>>,
+}
+
+/// For each pair of corners, at `a (a + 1) / 2 + b`: whether the first is the later to be eliminated, and where its rows begin in the
+/// other's columns.
+type TetBlocks = [(bool, u32); 10];
+
+/// Numbers of one press: the matrix, and the factors of it or of an earlier one.
+pub(crate) struct Factors {
+    matrix: Vec<f32>,
+    factors: Vec<f32>,
+    unknowns: Vec<f32>,
+    scratch: MemBuffer,
+}
+
+/// A matrix without factors.
+#[derive(Debug)]
+pub(crate) struct Singular;
+
+impl CoarseSystem {
+    /// Analyses the system of a mesh. `volume_stiffness` is `D`.
+    pub(crate) fn new(
+        nodes_mm: &[DVec3],
+        corners: &[[u32; 4]],
+        bonded: &[bool],
+        volume_stiffness: &[f64],
+    ) -> Result<Self, SoftBodyError> {
+        let n_nodes = nodes_mm.len();
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); n_nodes];
+        for corners in corners {
+            for &node in corners {
+                neighbours[node as usize].extend(corners);
+            }
+        }
+        for neighbours in &mut neighbours {
+            neighbours.sort_unstable();
+            neighbours.dedup();
+        }
+        let order = elimination_order(nodes_mm, &neighbours);
+        let free: Vec<bool> = bonded.iter().map(|bonded| !bonded).collect();
+        let mut first = vec![0; n_nodes];
+        let mut rank = vec![0; n_nodes];
+        let mut n_unknowns = 0;
+        for (position, &node) in order.iter().enumerate() {
+            rank[node as usize] = position as u32;
+            first[node as usize] = n_unknowns;
+            n_unknowns += unknowns(&free, node);
+        }
+
+        let mut columns = vec![0];
+        let mut rows = Vec::new();
+        let mut later: Vec<Vec<(u32, u32)>> = vec![Vec::new(); n_nodes];
+        for &node in &order {
+            let mut below: Vec<u32> = neighbours[node as usize]
+                .iter()
+                .copied()
+                .filter(|&n| rank[n as usize] >= rank[node as usize])
+                .collect();
+            below.sort_unstable_by_key(|&n| rank[n as usize]);
+            let mut offset = 0;
+            for &n in &below {
+                later[node as usize].push((n, offset));
+                offset += unknowns(&free, n);
+            }
+            for column in 0..unknowns(&free, node) {
+                let unknowns_below = below
+                    .iter()
+                    .flat_map(|&n| (0..unknowns(&free, n)).map(move |row| (n, row)));
+                rows.extend(
+                    unknowns_below
+                        .skip(column as usize)
+                        .map(|(n, row)| first[n as usize] + row),
+                );
+                columns.push(rows.len() as u32);
+            }
+        }
+        let size = n_unknowns as usize;
+        let lower = SymbolicSparseColMat::new_checked(size, size, columns, None, rows);
+        let symbolic = analyse(&lower).map_err(|error| SoftBodyError::Analysis {
+            n_unknowns: size,
+            reason: error.to_string(),
+        })?;
+        let offset = |row: u32, column: u32| {
+            later[column as usize]
+                .iter()
+                .find(|(n, _)| *n == row)
+                .map_or(0, |(_, offset)| *offset)
+        };
+        let blocks = corners
+            .iter()
+            .map(|corners| {
+                let mut blocks = [(true, 0); 10];
+                for a in 0..4 {
+                    for b in 0..=a {
+                        let (row, column) = (corners[a], corners[b]);
+                        let is_later = rank[row as usize] >= rank[column as usize];
+                        let at = if is_later {
+                            offset(row, column)
+                        } else {
+                            offset(column, row)
+                        };
+                        blocks[a * (a + 1) / 2 + b] = (is_later, at);
+                    }
+                }
+                blocks
+            })
+            .collect();
+        let mut system = Self {
+            base: vec![0.0; lower.row_idx().len()],
+            free,
+            first,
+            lower,
+            symbolic,
+            blocks,
+            diagonals: Vec::new(),
+            corners: corners.to_vec(),
+            later,
+        };
+        for (node, stiffness) in volume_stiffness.iter().enumerate() {
+            let column = system.n_displacements(node as u32);
+            let start = system.start(node as u32, column, 0);
+            system.base[start + column] = -(1.0 / stiffness) as f32;
+        }
+        system.diagonals = (0..n_nodes as u32)
+            .map(|node| {
+                let n = system.n_displacements(node);
+                std::array::from_fn(|j| if j < n { system.start(node, j, 0) as u32 } else { 0 })
+            })
+            .collect();
+        Ok(system)
+    }
+
+    /// Memory for the numbers.
+    pub(crate) fn factors(&self) -> Factors {
+        let scratch = StackReq::or(
+            self.symbolic
+                .factorize_numeric_ldlt_scratch::<f32>(Par::Seq, Spec::default()),
+            self.symbolic.solve_in_place_scratch::<f32>(1, Par::Seq),
+        );
+        Factors {
+            matrix: self.base.clone(),
+            factors: vec![0.0; self.symbolic.len_val()],
+            unknowns: vec![0.0; self.lower.ncols()],
+            scratch: MemBuffer::new(scratch),
+        }
+    }
+
+    /// Entries of `L`, with those stored as zero.
+    pub(crate) fn n_factor_entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    fn n_displacements(&self, node: u32) -> usize {
+        if self.free[node as usize] { 3 } else { 0 }
+    }
+
+    /// Where the block at `offset` starts in a column of a node, less its first row: add the row within the block.
+    #[inline]
+    fn start(&self, node: u32, column: usize, offset: u32) -> usize {
+        (self.lower.col_ptr()[self.first[node as usize] as usize + column] + offset) as usize - column
+    }
+
+    /// Fills the matrix with the tangents of the tetrahedra, in their order.
+    pub(crate) fn fill<'a>(&self, factors: &mut Factors, tangents: impl Iterator<Item = &'a CoarseTangent>) {
+        factors.matrix.copy_from_slice(&self.base);
+        let matrix = &mut factors.matrix;
+        for ((corners, blocks), tangent) in self.corners.iter().zip(&self.blocks).zip(tangents) {
+            for a in 0..4 {
+                for b in 0..=a {
+                    let pair = a * (a + 1) / 2 + b;
+                    let (a_is_later, offset) = blocks[pair];
+                    let stiffness = tangent.stiffness[pair];
+                    let (row, column, block) = if a_is_later {
+                        (a, b, stiffness)
+                    } else {
+                        (b, a, stiffness.transpose())
+                    };
+                    self.add_block(
+                        matrix,
+                        [corners[row], corners[column]],
+                        offset,
+                        &block,
+                        [tangent.slopes[row][column], tangent.slopes[column][row]].map(|slope| -slope),
+                    );
+                }
+            }
+        }
+    }
+
+    /// Adds the displacements' block of two nodes and the slopes: of the column's volume in the row's displacement, and the other way
+    /// round.
+    #[inline]
+    fn add_block(
+        &self,
+        matrix: &mut [f32],
+        [row, column]: [u32; 2],
+        offset: u32,
+        block: &Mat3,
+        [down, across]: [glam::Vec3; 2],
+    ) {
+        let (n_rows, n_columns) = (self.n_displacements(row), self.n_displacements(column));
+        let is_diagonal = row == column;
+        for j in 0..n_columns {
+            let start = self.start(column, j, offset);
+            let first = if is_diagonal { j } else { 0 };
+            for i in first..n_rows {
+                matrix[start + i] += block.col(j)[i];
+            }
+            matrix[start + n_rows] += across[j];
+        }
+        if !is_diagonal {
+            let start = self.start(column, n_columns, offset);
+            for i in 0..n_rows {
+                matrix[start + i] += down[i];
+            }
+        }
+    }
+
+    /// Adds stiffness to what lies midway between two nodes, or to one that is both.
+    pub(crate) fn add_between(&self, factors: &mut Factors, [a, b]: [u32; 2], stiffness: &Mat3) {
+        if a == b {
+            self.add_to_node(factors, a, stiffness);
+            return;
+        }
+        let quarter = *stiffness * 0.25;
+        self.add_to_node(factors, a, &quarter);
+        self.add_to_node(factors, b, &quarter);
+        let later = |row: u32, column: u32| {
+            self.later[column as usize]
+                .iter()
+                .find(|(n, _)| *n == row)
+                .map(|(_, offset)| (row, column, *offset))
+        };
+        if let Some((row, column, offset)) = later(a, b).or_else(|| later(b, a)) {
+            for j in 0..self.n_displacements(column) {
+                let start = self.start(column, j, offset);
+                for i in 0..self.n_displacements(row) {
+                    factors.matrix[start + i] += quarter.col(j)[i];
+                }
+            }
+        }
+    }
+
+    /// Adds stiffness to one node.
+    pub(crate) fn add_to_node(&self, factors: &mut Factors, node: u32, stiffness: &Mat3) {
+        for j in 0..self.n_displacements(node) {
+            let start = self.diagonals[node as usize][j] as usize;
+            for i in j..3 {
+                factors.matrix[start + i] += stiffness.col(j)[i];
+            }
+        }
+    }
+
+    /// Factorises the matrix; true if the energy is convex here.
+    pub(crate) fn factorise(&self, factors: &mut Factors) -> Result<bool, Singular> {
+        let Factors {
+            matrix,
+            factors,
+            scratch,
+            ..
+        } = factors;
+        self.symbolic
+            .factorize_numeric_ldlt(
+                factors,
+                SparseColMatRef::new(self.lower.as_ref(), matrix),
+                Side::Lower,
+                LdltRegularization::default(),
+                Par::Seq,
+                MemStack::new(scratch),
+                Spec::default(),
+            )
+            .map_err(|_| Singular)?;
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
+            return Err(Singular);
+        };
+        let mut n_negative = 0;
+        for supernode in 0..symbolic.n_supernodes() {
+            let width =
+                (symbolic.supernode_end()[supernode] - symbolic.supernode_begin()[supernode]) as usize;
+            let start = symbolic.col_ptr_for_val()[supernode] as usize;
+            let height = (symbolic.col_ptr_for_val()[supernode + 1] as usize - start) / width;
+            for column in 0..width {
+                let pivot = factors[start + column * (height + 1)];
+                if !pivot.is_finite() {
+                    return Err(Singular);
+                }
+                n_negative += usize::from(pivot < 0.0);
+            }
+        }
+        Ok(n_negative == self.free.len())
+    }
+
+    /// Replaces forces on the nodes by the displacements that the factors give for them; zero at bonded nodes.
+    pub(crate) fn solve(&self, factors: &mut Factors, forces: &mut [Vector]) {
+        // Scaled, so that small forces do not underflow.
+        let largest = forces
+            .iter()
+            .flat_map(|force| force.0)
+            .fold(f32::MIN_POSITIVE, |largest, force| largest.max(force.abs()));
+        factors.unknowns.fill(0.0);
+        for (node, force) in forces.iter().enumerate() {
+            if self.free[node] {
+                let first = self.first[node] as usize;
+                for (unknown, force) in factors.unknowns[first..first + 3].iter_mut().zip(force.0) {
+                    *unknown = force / largest;
+                }
+            }
+        }
+        let n_unknowns = factors.unknowns.len();
+        LdltRef::new(&self.symbolic, &factors.factors).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut factors.unknowns, n_unknowns, 1),
+            Par::Seq,
+            MemStack::new(&mut factors.scratch),
+        );
+        for (node, force) in forces.iter_mut().enumerate() {
+            let first = self.first[node] as usize;
+            *force = Vector::ZERO;
+            if self.free[node] {
+                for (force, unknown) in force.0.iter_mut().zip(&factors.unknowns[first..first + 3]) {
+                    *force = unknown * largest;
+                }
+            }
+        }
+    }
+}
+
+fn unknowns(free: &[bool], node: u32) -> u32 {
+    if free[node as usize] { 4 } else { 1 }
+}
+
+fn analyse(lower: &SymbolicSparseColMat<u32>) -> Result<SymbolicCholesky<u32>, faer::sparse::FaerError> {
+    let upper = lower.to_row_major()?;
+    factorize_symbolic_cholesky(
+        upper.transpose(),
+        Side::Upper,
+        SymmetricOrdering::Identity,
+        CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..CholeskySymbolicParams::default()
+        },
+    )
+}

@@ -1,0 +1,12 @@
+//! Newton's linear system, and conjugate gradients with a two-level preconditioner to solve it.
+//!
+//! With the pressures eliminated the system is `H = A + B D Bᵀ`: `A` in blocks of 3 × 3 between neighbouring nodes, `B` the slope of the
+//! coarse nodes' volumes, `D` their bulk modulus over volume. All of it is in single precision: a direction needs no more.
+
+pub(crate) mod block;
+pub(crate) mod coarse;
+pub(crate) mod cycle;
+mod elimination_order;
+pub(crate) mod krylov;
+pub(crate) mod matrix;
+pub(crate) mod numbering;

@@ -1,0 +1,211 @@
+//! The order of the unknowns: two halves that do not touch each other, and what lies between.
+//!
+//! The halves can be worked on side by side. A coarse node belongs to the half on its side of a plane across the body's longest
+//! axis. A fine node belongs to a half if all the coarse tetrahedra around it have their corners there, else it lies between.
+
+use glam::DVec3;
+use twintac_mesh::TetMesh;
+
+use crate::element::Side;
+
+/// Where the halves end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Halves {
+    /// Coarse nodes of the first half.
+    pub(crate) coarse: usize,
+    /// Free fine nodes of the first half.
+    pub(crate) first: usize,
+    /// Free fine nodes of both halves.
+    pub(crate) both: usize,
+    /// Free fine nodes.
+    pub(crate) free: usize,
+}
+
+impl Halves {
+    /// Where an element with these nodes lies.
+    pub(crate) fn side(&self, nodes: &[u32]) -> Side {
+        let mut free = nodes
+            .iter()
+            .map(|&node| node as usize)
+            .filter(|&node| node < self.free);
+        let in_first = |node: usize| node < self.first;
+        if free.clone().all(in_first) {
+            Side::First
+        } else if free.all(|node| !in_first(node) && node < self.both) {
+            Side::Second
+        } else {
+            Side::Between
+        }
+    }
+}
+
+/// A mesh, its refinement, and both numbered by halves.
+pub(crate) struct Numbered {
+    /// The fine mesh: free nodes of the first half, of the second, between them, then bonded nodes.
+    pub(crate) mesh: TetMesh,
+    /// Coarse nodes at rest, mm.
+    pub(crate) coarse_nodes_mm: Vec<DVec3>,
+    /// Whether a coarse node is bonded.
+    pub(crate) coarse_bonded: Vec<bool>,
+    /// Corners of the coarse tetrahedra.
+    pub(crate) coarse_tets: Vec<[u32; 4]>,
+    /// The two coarse nodes that each fine node lies midway between; the same twice for a coarse node.
+    pub(crate) ends: Vec<[u32; 2]>,
+    pub(crate) halves: Halves,
+}
+
+/// Numbers a mesh that was checked.
+pub(crate) fn number(mesh: &TetMesh) -> Numbered {
+    let coarse_order = by_sides(&mesh.nodes_mm);
+    let n_first_coarse = coarse_order.1;
+    let new_coarse = inverse(&coarse_order.0);
+    let renumber = |nodes: &[u32]| {
+        let mut nodes: Vec<u32> = nodes.iter().map(|&node| new_coarse[node as usize]).collect();
+        nodes.sort_unstable();
+        nodes
+    };
+    let mut coarse = TetMesh {
+        nodes_mm: coarse_order
+            .0
+            .iter()
+            .map(|&node| mesh.nodes_mm[node as usize])
+            .collect(),
+        tets: mesh
+            .tets
+            .iter()
+            .map(|nodes| nodes.map(|node| new_coarse[node as usize]))
+            .collect(),
+        ..TetMesh::default()
+    };
+    coarse.sets.bonded = renumber(&mesh.sets.bonded);
+    coarse.sets.free = renumber(&mesh.sets.free);
+    coarse.sets.top = renumber(&mesh.sets.top);
+
+    let refinement = coarse.refined();
+    let n_nodes = refinement.mesh.nodes_mm.len();
+    // 0 and 1 for the halves, 2 between them, 3 for bonded nodes.
+    let mut class = vec![u8::MAX; n_nodes];
+    for (tet, nodes) in refinement.mesh.tets.iter().enumerate() {
+        let corners = refinement.coarse_tets[tet / 8];
+        let n_low = corners.iter().filter(|&&c| (c as usize) < n_first_coarse).count();
+        let of_tet = match n_low {
+            4 => 0,
+            0 => 1,
+            _ => 2,
+        };
+        for &node in nodes {
+            let class = &mut class[node as usize];
+            *class = if *class == u8::MAX || *class == of_tet {
+                of_tet
+            } else {
+                2
+            };
+        }
+    }
+    for &node in &refinement.mesh.sets.bonded {
+        class[node as usize] = 3;
+    }
+    let mut order: Vec<u32> = (0..n_nodes as u32).collect();
+    order.sort_by_key(|&node| {
+        let at = refinement.mesh.nodes_mm[node as usize];
+        (
+            class[node as usize],
+            ordered(at.x),
+            ordered(at.y),
+            ordered(at.z),
+            node,
+        )
+    });
+    let count = |up_to: u8| class.iter().filter(|&&class| class <= up_to).count();
+    let halves = Halves {
+        coarse: n_first_coarse,
+        first: count(0),
+        both: count(1),
+        free: count(2),
+    };
+    let new = inverse(&order);
+    let ends = order
+        .iter()
+        .map(
+            |&node| match (node as usize).checked_sub(refinement.n_coarse_nodes) {
+                Some(midpoint) => refinement.midpoints[midpoint],
+                None => [node; 2],
+            },
+        )
+        .collect();
+    let renumber = |nodes: &[u32]| {
+        let mut nodes: Vec<u32> = nodes.iter().map(|&node| new[node as usize]).collect();
+        nodes.sort_unstable();
+        nodes
+    };
+    let sets = &refinement.mesh.sets;
+    let fine = TetMesh {
+        nodes_mm: order
+            .iter()
+            .map(|&node| refinement.mesh.nodes_mm[node as usize])
+            .collect(),
+        tets: refinement
+            .mesh
+            .tets
+            .iter()
+            .map(|nodes| nodes.map(|node| new[node as usize]))
+            .collect(),
+        sets: twintac_mesh::NodeSets {
+            bonded: renumber(&sets.bonded),
+            free: renumber(&sets.free),
+            top: renumber(&sets.top),
+        },
+    };
+    let mut coarse_bonded = vec![false; coarse.nodes_mm.len()];
+    coarse
+        .sets
+        .bonded
+        .iter()
+        .for_each(|&node| coarse_bonded[node as usize] = true);
+    Numbered {
+        mesh: fine,
+        coarse_nodes_mm: coarse.nodes_mm,
+        coarse_bonded,
+        coarse_tets: refinement.coarse_tets,
+        ends,
+        halves,
+    }
+}
+
+/// The nodes by the side of a plane that they are on, and how many are on the first.
+fn by_sides(nodes_mm: &[DVec3]) -> (Vec<u32>, usize) {
+    let bound = |f: fn(DVec3, DVec3) -> DVec3| nodes_mm.iter().copied().reduce(f).unwrap_or_default();
+    let size_mm = bound(DVec3::max) - bound(DVec3::min);
+    let axis = if size_mm.x >= size_mm.y && size_mm.x >= size_mm.z {
+        0
+    } else if size_mm.y >= size_mm.z {
+        1
+    } else {
+        2
+    };
+    let mut along: Vec<f64> = nodes_mm.iter().map(|node| node[axis]).collect();
+    along.sort_by(f64::total_cmp);
+    // Just below the middle, and off the plane of nodes that may be there.
+    let cut_mm = along[along.len() / 2] - 1e-9 * size_mm[axis];
+    let is_low = |node: u32| nodes_mm[node as usize][axis] < cut_mm;
+    let mut order: Vec<u32> = (0..nodes_mm.len() as u32).collect();
+    order.sort_by_key(|&node| {
+        let at = nodes_mm[node as usize];
+        (!is_low(node), ordered(at.x), ordered(at.y), ordered(at.z), node)
+    });
+    let n_low = order.iter().filter(|&&node| is_low(node)).count();
+    (order, n_low)
+}
+
+/// A number that sorts as a coordinate does, but for round-off.
+fn ordered(coordinate_mm: f64) -> i64 {
+    (coordinate_mm * 1e6).round() as i64
+}
+
+fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut new = vec![0; order.len()];
+    for (position, &node) in order.iter().enumerate() {
+        new[node as usize] = position as u32;
+    }
+    new
+}

@@ -1,0 +1,63 @@
+//! Two halves of a piece of work at once.
+//!
+//! What belongs to which half never depends on the number of threads, nor do the sums: any number of threads gives the same bits.
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+thread_local! {
+    static MAY_SPLIT: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Does both, side by side where [`on_two_threads`] allows it.
+pub(crate) fn join_halves<A: Send, B: Send>(
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if MAY_SPLIT.get() {
+        rayon::join(a, b)
+    } else {
+        (a(), b())
+    }
+}
+
+/// Runs a piece of work whose halves may run side by side. They do not split further.
+pub(crate) fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let is_done = AtomicBool::new(false);
+    let (result, ()) = rayon::join(
+        || {
+            let _guard = Splitting::new(&is_done);
+            work()
+        },
+        // Halves take a fraction of a millisecond: a helper that fell asleep between them would come too late.
+        || {
+            while !is_done.load(Ordering::Relaxed) {
+                rayon::yield_now();
+                std::hint::spin_loop();
+            }
+        },
+    );
+    result
+}
+
+/// While it lives this thread may split its work; when it goes, be it in a panic, the helper is let go.
+struct Splitting<'a> {
+    is_done: &'a AtomicBool,
+    before: bool,
+}
+
+impl<'a> Splitting<'a> {
+    fn new(is_done: &'a AtomicBool) -> Self {
+        Self {
+            is_done,
+            before: MAY_SPLIT.replace(true),
+        }
+    }
+}
+
+impl Drop for Splitting<'_> {
+    fn drop(&mut self) {
+        MAY_SPLIT.set(self.before);
+        self.is_done.store(true, Ordering::Relaxed);
+    }
+}

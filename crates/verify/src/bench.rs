@@ -1,0 +1,134 @@
+//! How fast presses are followed.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use anyhow::Result;
+use serde::Serialize;
+use twintac_simulate::Followed;
+
+use crate::cases::{self, Case};
+
+/// Tolerance of the solver in real time.
+const FAST: f64 = 3e-3;
+
+/// Tolerance of what it is compared to.
+const TIGHT: f64 = 1e-7;
+
+/// Parts of the peak below which relative errors are not counted.
+const COUNTED: f64 = 0.01;
+
+/// A frame's time at 55 Hz, ms.
+const BUDGET_MS: f64 = 1000.0 / 55.0;
+
+/// What came of a case.
+#[derive(Serialize)]
+struct Timed {
+    case: &'static str,
+    nodes: usize,
+    tets: usize,
+    nu: f64,
+    /// Simulated over wall time.
+    rtf: f64,
+    /// Force, N, at depths, mm.
+    force_n: BTreeMap<String, f64>,
+    mean_ms: f64,
+    worst_ms: f64,
+    /// Part of the frames within the time that a frame lasts.
+    in_time: f64,
+    /// Largest error against the tight solution of the same mesh, %.
+    force_error_percent: f64,
+    pressure_error_percent: f64,
+}
+
+/// Times all cases and prints what came of them.
+pub(crate) fn run(as_json: bool) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    if !as_json {
+        writeln!(
+            out,
+            "{:50} {:>5} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8}",
+            "case", "nodes", "nu", "RTF", "mean ms", "worst", "in time", "force", "pressure"
+        )?;
+    }
+    for case in cases::all()? {
+        let timed = time(&case)?;
+        if as_json {
+            writeln!(out, "{}", serde_json::to_string(&timed)?)?;
+        } else {
+            writeln!(
+                out,
+                "{:50} {:>5} {:>6} {:>5.2} {:>8.2} {:>8.2} {:>6.1} % {:>6.2} % {:>6.2} %",
+                timed.case,
+                timed.nodes,
+                timed.nu,
+                timed.rtf,
+                timed.mean_ms,
+                timed.worst_ms,
+                100.0 * timed.in_time,
+                timed.force_error_percent,
+                timed.pressure_error_percent
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn time(case: &Case) -> Result<Timed> {
+    let (fast, tight) = (case.follow(FAST)?, case.follow(TIGHT)?);
+    let times_ms: Vec<f64> = fast.frames.iter().map(|frame| 1e3 * frame.wall_time_s).collect();
+    let total_s = times_ms.iter().sum::<f64>() / 1e3;
+    let last = fast.frames.len() - 1;
+    let simulated_s = fast.frames[last].time_s - fast.frames[0].time_s;
+    let in_time = times_ms.iter().filter(|time| **time <= BUDGET_MS).count();
+    let force = |followed: &Followed, frame: usize| followed.frames[frame].force_n.length();
+    let mut pressure_error: f64 = 0.0;
+    for name in fast.frames[0].pressure_kpa.keys() {
+        let pressure = |followed: &Followed, frame: usize| followed.frames[frame].pressure_kpa[name];
+        pressure_error = pressure_error.max(largest_error(&fast, &tight, pressure));
+    }
+    Ok(Timed {
+        case: case.name,
+        nodes: fast.n_nodes,
+        tets: fast.n_tets,
+        nu: case.poissons_ratio,
+        rtf: simulated_s / total_s,
+        force_n: forces(&fast),
+        mean_ms: 1e3 * total_s / times_ms.len() as f64,
+        worst_ms: times_ms.iter().copied().fold(0.0, f64::max),
+        in_time: in_time as f64 / times_ms.len() as f64,
+        force_error_percent: 100.0 * largest_error(&fast, &tight, force),
+        pressure_error_percent: 100.0 * pressure_error,
+    })
+}
+
+/// Largest relative error, where the value is more than a small part of its peak.
+fn largest_error(fast: &Followed, tight: &Followed, value: impl Fn(&Followed, usize) -> f64) -> f64 {
+    let n_frames = fast.frames.len();
+    let peak = (0..n_frames)
+        .map(|frame| value(tight, frame).abs())
+        .fold(0.0, f64::max);
+    (0..n_frames)
+        .map(|frame| (value(fast, frame), value(tight, frame)))
+        .filter(|(_, tight)| tight.abs() > COUNTED * peak)
+        .map(|(fast, tight)| (fast / tight - 1.0).abs())
+        .fold(0.0, f64::max)
+}
+
+/// Forces at 0.5, 1 and 2 mm on the way down, linear between frames.
+fn forces(followed: &Followed) -> BTreeMap<String, f64> {
+    let start_mm = followed.frames[0].position_mm.z;
+    let depth_mm = |frame: usize| start_mm - followed.frames[frame].position_mm.z;
+    let mut found = BTreeMap::new();
+    for wanted_mm in [0.5, 1.0, 2.0] {
+        let pair = (1..followed.frames.len()).find(|&frame| depth_mm(frame) >= wanted_mm - 1e-9);
+        if let Some(after) = pair {
+            let (from, to) = (depth_mm(after - 1), depth_mm(after));
+            let part = (wanted_mm - from) / (to - from);
+            let force = |frame: usize| -followed.frames[frame].force_n.z;
+            let between = force(after - 1) + part * (force(after) - force(after - 1));
+            found.insert(format!("{wanted_mm:.1}"), between);
+        }
+    }
+    found
+}

@@ -1,0 +1,167 @@
+//! The presses that are timed.
+
+use std::sync::Arc;
+
+use anyhow::{Context, Result, ensure};
+use glam::DVec3;
+use twintac_protocol::{PressPath, Waypoint, Zero};
+use twintac_sensor::Sensor;
+use twintac_simulate::{Followed, Gel, SimulateSettings};
+
+/// Frames in a second: the rate of the paper's sensor, Hz.
+const RATE_HZ: f64 = 55.0;
+
+/// A press with its mesh.
+pub(crate) struct Case {
+    /// What it is called in tables.
+    pub(crate) name: &'static str,
+    /// Poisson's ratio.
+    pub(crate) poissons_ratio: f64,
+    /// Nodes that it is to have, and how far off that is allowed.
+    pub(crate) n_nodes: [usize; 2],
+    sensor: Arc<Sensor>,
+    path: PressPath,
+}
+
+const BLOCK: &str = r#"
+name = "block"
+summary = "a bonded block"
+source = "a case of its own"
+inferred = []
+
+[gel.solid]
+kind = "block"
+size_mm = [30.0, 20.0, 8.0]
+
+[gel.material]
+youngs_modulus_kpa = 70.0
+poissons_ratio = POISSON
+source = "chosen"
+
+[readout]
+min_kpa = 0.0
+max_kpa = 1500.0
+resolution_kpa = 0.01
+rate_hz = 55.0
+
+[[taxels]]
+name = "middle"
+position_mm = [0.0, 0.0, 0.0]
+port_radius_mm = 1.0
+channel = 0
+
+[[indenters]]
+name = "sphere-25"
+shape = { kind = "sphere", radius_mm = 12.5 }
+"#;
+
+/// All cases.
+pub(crate) fn all() -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for poissons_ratio in [0.45, 0.49] {
+        let text = BLOCK.replace("POISSON", &poissons_ratio.to_string());
+        let sensor = Sensor::parse("block", &text, &no_files)?;
+        let poses = [(0.0, [0.0, 0.0, 0.0], 0.0), (1.0, [0.0, 0.0, -2.0], 0.0)];
+        cases.push(Case {
+            name: "block, ball 2 mm deep in 1 s",
+            poissons_ratio,
+            n_nodes: [4000, 8000],
+            sensor: Arc::new(sensor),
+            path: path(&poses),
+        });
+    }
+    let down_and_up = [
+        (0.0, [0.0, 0.0, 0.0], 0.0),
+        (1.0, [0.0, 0.0, -4.0], 0.0),
+        (2.0, [0.0, 0.0, 0.0], 0.0),
+    ];
+    let slide = [
+        (0.0, [-2.0, 1.0, 0.0], 0.0),
+        (0.5, [-2.0, 1.0, -2.0], 0.0),
+        (1.5, [2.0, 1.0, -2.0], 0.2),
+        (2.0, [2.0, 1.0, 0.0], 0.2),
+    ];
+    for (name, file, poses) in [
+        (
+            "phystac, ball 4 mm deep at 4 mm/s and back",
+            "phystac",
+            &down_and_up[..],
+        ),
+        (
+            "phystac-tip, ball 4 mm deep at 4 mm/s and back",
+            "phystac-tip",
+            &down_and_up[..],
+        ),
+        ("phystac, slide and tilt 2 mm deep", "phystac", &slide[..]),
+    ] {
+        let mut sensor = Sensor::read(format!("sensors/{file}.toml"))
+            .with_context(|| "run this where the folder `sensors` is")?;
+        // K = 2 μ (1 + ν) / (3 (1 - 2 ν))
+        let material = &mut sensor.gel.material;
+        material.bulk_modulus_kpa = material.shear_modulus_kpa() * 2.0 * 1.49 / (3.0 * 0.02);
+        cases.push(Case {
+            name,
+            poissons_ratio: 0.49,
+            n_nodes: [6570, 8030],
+            sensor: Arc::new(sensor),
+            path: path(poses),
+        });
+    }
+    Ok(cases)
+}
+
+impl Case {
+    /// Follows the press with a solver tolerance.
+    pub(crate) fn follow(&self, tolerance: f64) -> Result<Followed> {
+        let mut settings = SimulateSettings {
+            max_nodes: self.n_nodes[1],
+            ..SimulateSettings::default()
+        };
+        // Finer than asked for; the limit decides.
+        settings.edges_per_height = 12.0;
+        settings.edges_per_contact_radius = 8.0;
+        settings.solver.tolerance = tolerance;
+        settings.solver.max_iterations = 60;
+        let gel = Gel::new(self.sensor.clone(), settings);
+        let indenter = self
+            .sensor
+            .indenters
+            .iter()
+            .find(|indenter| indenter.name == self.path.indenter)
+            .context("the sensor lacks the indenter")?;
+        let followed = gel.follow(&indenter.shape, &self.path, &mut || ())?;
+        if let Some(failure) = &followed.failure {
+            anyhow::bail!("{}: {failure}", self.name);
+        }
+        ensure!(
+            (self.n_nodes[0]..=self.n_nodes[1]).contains(&followed.n_nodes),
+            "{}: the mesh has {} nodes, expected {:?}",
+            self.name,
+            followed.n_nodes,
+            self.n_nodes
+        );
+        Ok(followed)
+    }
+}
+
+fn path(poses: &[(f64, [f64; 3], f64)]) -> PressPath {
+    PressPath {
+        summary: String::new(),
+        indenter: "sphere-25".into(),
+        zero: Zero::Touch,
+        rate_hz: Some(RATE_HZ),
+        poses: poses
+            .iter()
+            .map(|&(time_s, position_mm, tilt_rad)| Waypoint {
+                time_s,
+                position_mm: DVec3::from_array(position_mm),
+                turn_rad: DVec3::Y * tilt_rad,
+            })
+            .collect(),
+        points: Vec::new(),
+    }
+}
+
+fn no_files(path: &str) -> std::io::Result<Vec<u8>> {
+    Err(std::io::Error::other(format!("{path} is not read here")))
+}
