@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
@@ -9,7 +10,7 @@ use twintac_shape::Pose;
 use twintac_simulate::{
     Gel, Keyframe, Pchip, PressPlace, SimulateError, SimulateSettings, Sweep, SweepFrame,
 };
-use twintac_softbody::{Isochoric, Material, PronyTerm, SolverSettings};
+use twintac_softbody::{Material, PronyTerm, SolverSettings};
 
 use crate::Reality;
 use crate::imperfect::Chance;
@@ -211,11 +212,12 @@ impl Bench {
 fn material(reality: &Reality) -> Material {
     let [c10_kpa, c20_kpa, c30_kpa] = reality.gel.yeoh_kpa;
     Material {
-        isochoric: Isochoric::Yeoh {
+        model: Yeoh {
             c10_kpa,
             c20_kpa,
             c30_kpa,
-        },
+        }
+        .into(),
         bulk_modulus_kpa: reality.gel.bulk_modulus_kpa,
         prony: reality
             .gel

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DVec3;
 use twintac_shape::{Shape, Solid};
 
-use crate::{Model, Sensor};
+use crate::Sensor;
 
 /// Stands behind inferred values.
 const MARK: &str = " *";
@@ -111,14 +111,9 @@ impl Sensor {
             "  gel         {kind}, {size} mm{mark}, {volume_mm3:.0} mm³, from {low} to {high}"
         )?;
         let material = &self.gel.material;
-        let constants = match material.model {
-            Model::NeoHookean { .. } => String::new(),
-            Model::MooneyRivlin { c10_kpa, c01_kpa } => format!(" C10 {c10_kpa} kPa, C01 {c01_kpa} kPa,"),
-            Model::Yeoh {
-                c10_kpa,
-                c20_kpa,
-                c30_kpa,
-            } => format!(" C10 {c10_kpa} kPa, C20 {c20_kpa} kPa, C30 {c30_kpa} kPa,"),
+        let constants = match material.model.in_words() {
+            words if words.is_empty() => words,
+            words => format!(" {words},"),
         };
         let mark = self.mark("gel.material");
         writeln!(

@@ -10,10 +10,12 @@ mod describe;
 mod file;
 mod load;
 mod material;
+mod material_table;
 mod sensor;
 
-pub use material::{Material, Model, PronyTerm};
+pub use material::Material;
 pub use sensor::{Gel, Inclusion, Indenter, Readout, Sensor, Shell, Taxel};
+pub use twintac_material::{Model, PronyTerm};
 
 /// Why a description cannot be used: what is wrong with which field, in which file and line.
 pub type SensorError = twintac_config::ConfigError;

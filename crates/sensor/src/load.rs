@@ -3,14 +3,16 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use toml::{Table, Value};
 use twintac_config::Document;
 use twintac_shape::{Shape, Solid, Surfaces, TriangleSurface};
 
 use crate::file::SensorFile;
-use crate::{Gel, Sensor, SensorError};
+use crate::material_table::material;
+use crate::{Gel, Material, Sensor, SensorError};
 
 impl Sensor {
-    /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file by the path that
+    /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file, or of a material's, by the path that
     /// the description has for it.
     ///
     /// # Errors
@@ -24,7 +26,7 @@ impl Sensor {
         Self::from_document(document, load)
     }
 
-    /// Reads a description from a file; paths of STL files are relative to its folder.
+    /// Reads a description from a file; paths of other files are relative to its folder.
     ///
     /// # Errors
     /// Those of [`Sensor::parse`], and a file that cannot be read.
@@ -34,11 +36,38 @@ impl Sensor {
         Self::from_document(document, &|name| std::fs::read(folder.join(name)))
     }
 
+    /// The text of a description with its material in it, where it names a file that has it: a text that says all by itself.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`] that have to do with the material.
+    pub fn text_with_material(
+        file: &str,
+        text: &str,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<String, SensorError> {
+        let document = twintac_config::parse::<SensorFile>(file, text)?;
+        let Value::String(path) = &document.value.gel.material else {
+            return Ok(text.to_owned());
+        };
+        let table = load_material(&document, load)?.0;
+        let line = document.error(MATERIAL, "", "").line;
+        let expanded = text.split_inclusive('\n').enumerate().map(|(index, text)| {
+            if index + 1 != line {
+                return text.to_owned();
+            }
+            let table = Value::Table(table.clone()).to_string();
+            let quoted = |quote: char| format!("{quote}{path}{quote}");
+            text.replacen(&quoted('"'), &table, 1)
+                .replacen(&quoted('\''), &table, 1)
+        });
+        Ok(expanded.collect())
+    }
+
     fn from_document(
         document: Document<SensorFile>,
         load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
     ) -> Result<Self, SensorError> {
-        let material = document.value.gel.material.resolve(&document)?;
+        let material = load_material(&document, load)?.1;
         let surfaces = load_surfaces(&document, load)?;
         let file = document.value.clone();
         let sensor = Self {
@@ -60,6 +89,31 @@ impl Sensor {
         };
         sensor.check(&document)?;
         Ok(sensor)
+    }
+}
+
+const MATERIAL: &str = "gel.material";
+
+/// The table of the gel's material, and what it means.
+fn load_material(
+    document: &Document<SensorFile>,
+    load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+) -> Result<(Table, Material), SensorError> {
+    match &document.value.gel.material {
+        Value::Table(table) => Ok((table.clone(), material(table, document, MATERIAL)?)),
+        Value::String(path) => {
+            let bytes = load(path).map_err(|found| {
+                let problem = format!("names `{path}`, which cannot be read: {found}");
+                document.error(MATERIAL, problem, "give a path relative to this file")
+            })?;
+            let file = twintac_config::parse::<Table>(path, &String::from_utf8_lossy(&bytes))?;
+            let material = material(&file.value, &file, "")?;
+            Ok((file.value, material))
+        }
+        _ => {
+            let hint = "give a table, or the path of a file";
+            Err(document.error(MATERIAL, "is neither a table nor a text", hint))
+        }
     }
 }
 

@@ -286,6 +286,29 @@ fn materials() {
         "gel.material.model",
         "unknown variant",
     );
+    let ogden = |terms: &str| format!("model = \"ogden\"\nterms = {terms}");
+    expect_at(
+        youngs,
+        &ogden("[{ mu_kpa = 1.0, alpha = 2.0 }, { mu_kpa = 3.0, alpha = -2.0 }]"),
+        "terms",
+        "gel.material.terms",
+        "add up to -4 kPa",
+    );
+    expect_at(
+        youngs,
+        &ogden("[{ mu_kpa = 1.0, alpha = 0.0 }]"),
+        "terms",
+        "gel.material.terms[0].alpha",
+        "other than 0",
+    );
+    expect_at(youngs, &ogden("[]"), "terms", "gel.material.terms", "above 0");
+    expect_at(
+        youngs,
+        "model = \"stable-neo-hookean\"\nyoungs_modulus_kpa = 60.0",
+        "prony",
+        "gel.material.prony",
+        "not `stable-neo-hookean`",
+    );
     let term = "{ weight = 0.1, time_s = 1.0 },";
     expect(
         term,

@@ -136,3 +136,63 @@ fn descriptions_have_units_and_mark_what_is_inferred() {
         assert!(sensor.describe().lines().count() > 10);
     }
 }
+
+/// A sensor whose gel is of the material in a file.
+fn of_material(path: &str) -> Result<Sensor, twintac_sensor::SensorError> {
+    Sensor::parse("strip.toml", &with_material(path), &load)
+}
+
+fn with_material(path: &str) -> String {
+    let text = std::fs::read_to_string(folder().join("phystac.toml")).unwrap();
+    let (head, rest) = text.split_once("[gel.material]").unwrap();
+    let (_, tail) = rest.split_once("\n\n").unwrap();
+    let head = head.replace(
+        "[gel.solid]",
+        &format!("[gel]\nmaterial = \"{path}\"\n\n[gel.solid]"),
+    );
+    let head: String = head
+        .split_inclusive('\n')
+        .filter(|line| !line.contains("\"gel.material"))
+        .collect();
+    format!("{head}\n{tail}")
+}
+
+fn load(path: &str) -> std::io::Result<Vec<u8>> {
+    match path {
+        "bad.toml" => Ok(b"model = \"ogden\"\nterms = [{ mu_kpa = 9.0, alpha = -2.0 }]\npoissons_ratio = 0.49\nsource = \"-\"".to_vec()),
+        _ => std::fs::read(folder().join(path)),
+    }
+}
+
+#[test]
+fn materials_are_named_by_file() {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder().join("../materials")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let path = format!("../materials/{name}");
+        let material = of_material(&path).unwrap().gel.material;
+        assert!(
+            material.source.len() > 20 && material.poissons_ratio() >= 0.479,
+            "{name}"
+        );
+        let expanded = Sensor::text_with_material("strip.toml", &with_material(&path), &load).unwrap();
+        let again = Sensor::parse("strip.toml", &expanded, &|_| unreachable!()).unwrap();
+        assert_eq!(again.gel.material, material);
+        names.push(name);
+    }
+    assert!(names.contains(&"ecoflex-00-30-ogden.toml".to_owned()));
+}
+
+#[test]
+fn errors_in_the_file_of_a_material_name_that_file() {
+    let found = of_material("bad.toml").unwrap_err().to_string();
+    assert!(
+        found.starts_with("bad.toml:2: `terms` ") && found.contains("-18 kPa"),
+        "{found}"
+    );
+    let found = of_material("none.toml").unwrap_err().to_string();
+    assert!(
+        found.contains("`gel.material` names `none.toml`, which cannot be read"),
+        "{found}"
+    );
+}

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
 use twintac_mesh::{Cuboid, Focus, MeshSettings, TetMesh};
-use twintac_sensor::{Model, Sensor};
+use twintac_sensor::Sensor;
 use twintac_shape::{Cavity, Pose, Shape, SignedDistance};
-use twintac_softbody::{Frame, Isochoric, Material, PronyTerm, SoftBody};
+use twintac_softbody::{Frame, Material, SoftBody};
 
 use crate::readout::{PortReadout, StressCluster};
 use crate::touch::{contact_radius_mm, first_touch};
@@ -352,30 +352,9 @@ pub struct Fields<'a> {
 }
 
 fn soft_material(material: &twintac_sensor::Material) -> Material {
-    let isochoric = match material.model {
-        Model::NeoHookean { shear_modulus_kpa } => Isochoric::NeoHookean { shear_modulus_kpa },
-        Model::MooneyRivlin { c10_kpa, c01_kpa } => Isochoric::MooneyRivlin { c10_kpa, c01_kpa },
-        Model::Yeoh {
-            c10_kpa,
-            c20_kpa,
-            c30_kpa,
-        } => Isochoric::Yeoh {
-            c10_kpa,
-            c20_kpa,
-            c30_kpa,
-        },
-    };
-    let prony = material
-        .prony
-        .iter()
-        .map(|term| PronyTerm {
-            weight: term.weight,
-            time_s: term.time_s,
-        })
-        .collect();
     Material {
-        isochoric,
+        model: material.model.clone(),
         bulk_modulus_kpa: material.bulk_modulus_kpa,
-        prony,
+        prony: material.prony.clone(),
     }
 }

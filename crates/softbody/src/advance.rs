@@ -9,9 +9,9 @@ use crate::SolveError;
 use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody};
 use crate::element::{self, Forces, Response};
-use crate::material::Relaxation;
 use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::parallel::on_two_threads;
+use crate::relaxation::Relaxation;
 use crate::state::{Frame, Motion, State};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
@@ -287,11 +287,7 @@ impl SoftBody {
     #[must_use]
     pub fn bonded_forces_n(&self, state: &State) -> Vec<DVec3> {
         let now = Relaxation::new(&self.material().prony, 0.0);
-        let response = Response {
-            material: self.material(),
-            relaxation: &now,
-            memory: &state.memory,
-        };
+        let response = self.response(&now, state);
         let (mut forces, mut corners) = (Forces::default(), Vec::new());
         self.corner_pressures(&state.pressures_mpa, &mut corners);
         self.elements

@@ -11,9 +11,9 @@ use crate::element::{self, Elements, NODES, Response, Side};
 use crate::linear::coarse::CoarseSystem;
 use crate::linear::matrix::Pattern;
 use crate::linear::numbering::{Numbered, number};
-use crate::material::{KPA_PER_MPA, Material, Memory, Relaxation};
+use crate::relaxation::{Memory, Relaxation};
 use crate::state::State;
-use crate::{SoftBodyError, SolverSettings};
+use crate::{MPA_PER_KPA, Material, SoftBodyError, SolverSettings};
 
 /// A soft body that rigid shapes press, bonded where its mesh says so. Shared by many presses; each has its own [`State`].
 pub struct SoftBody {
@@ -28,7 +28,7 @@ pub struct SoftBody {
     pub(crate) slot_corners: Vec<[u32; 4]>,
     /// The coarse nodes that each node lies midway between; the same twice for a coarse node. `[n_nodes]`
     pub(crate) ends: Vec<[u32; 2]>,
-    /// Bulk modulus over volume of each coarse node, MPa/mm³.
+    /// Modulus of the mean volume change over volume of each coarse node, MPa/mm³.
     pub(crate) volume_stiffness: Vec<f64>,
     pub(crate) pattern: Pattern,
     pub(crate) coarse: CoarseSystem,
@@ -70,7 +70,7 @@ impl SoftBody {
         let sides: Vec<Side> = parents.iter().map(|nodes| halves.side(nodes)).collect();
         let elements = Elements::new(settings.element, &mesh.nodes_mm, &parents, &children, &sides);
 
-        let bulk_mpa = material.bulk_modulus_kpa / KPA_PER_MPA;
+        let modulus_mpa = MPA_PER_KPA * material.volume_modulus_kpa();
         let corner_volumes_mm3 = elements.corner_volumes_mm3();
         let mut volumes_mm3 = vec![0.0; coarse_nodes_mm.len()];
         // Slots without a tetrahedron have no volume; their corners stand for nothing.
@@ -81,7 +81,7 @@ impl SoftBody {
                 volumes_mm3[node as usize] += volume;
             }
         }
-        let volume_stiffness: Vec<f64> = volumes_mm3.iter().map(|volume| bulk_mpa / volume).collect();
+        let volume_stiffness: Vec<f64> = volumes_mm3.iter().map(|volume| modulus_mpa / volume).collect();
         let pattern = Pattern::new(&elements, &parents, &coarse_tets, halves, &volume_stiffness);
         let coarse = CoarseSystem::new(&coarse_nodes_mm, &coarse_tets, &coarse_bonded, &volume_stiffness)?;
 
@@ -113,7 +113,7 @@ impl SoftBody {
         let (volume_starts, volume_sources) =
             sources(coarse_nodes_mm.len(), &|tet| places(&coarse_tets[tet], 4, tet));
 
-        let shear_mpa = material.isochoric.shear_modulus_kpa() / KPA_PER_MPA;
+        let shear_mpa = MPA_PER_KPA * material.model.shear_modulus_kpa();
         let node_stiffness = elements
             .node_stiffness_mm(mesh.nodes_mm.len())
             .iter()
@@ -207,29 +207,50 @@ impl SoftBody {
     /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression. `[n_nodes]`
     #[must_use]
     pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
-        let at = |node: u32| state.pressures_mpa[node as usize];
+        let now = Relaxation::new(&self.material.prony, 0.0);
+        let response = self.response(&now, state);
+        let shares = element::hydrostatic_shares(&self.elements, response, &state.displacements_mm);
+        // Averaged as the volume changes are that make the rest of the pressure.
+        let pressures_mpa = shares.map_or(state.pressures_mpa.clone(), |shares| {
+            let shares = shares.as_flattened();
+            let modulus_mpa = MPA_PER_KPA * self.material.volume_modulus_kpa();
+            let nodes = state.pressures_mpa.iter().zip(&self.volume_stiffness);
+            nodes
+                .zip(self.volume_starts.windows(2))
+                .map(|((pressure, stiffness), range)| {
+                    let sources = &self.volume_sources[range[0] as usize..range[1] as usize];
+                    let share: f64 = sources.iter().map(|&source| shares[source as usize]).sum();
+                    pressure + share * stiffness / modulus_mpa
+                })
+                .collect()
+        });
+        let at_kpa = |node: u32| pressures_mpa[node as usize] / MPA_PER_KPA;
         self.ends
             .iter()
-            .map(|&[a, b]| 0.5 * KPA_PER_MPA * (at(a) + at(b)))
+            .map(|&[a, b]| 0.5 * (at_kpa(a) + at_kpa(b)))
             .collect()
+    }
+
+    /// What acts at a state: over a step of no time.
+    pub(crate) fn response<'a>(&'a self, now: &'a Relaxation, state: &'a State) -> Response<'a> {
+        Response {
+            material: &self.material,
+            relaxation: now,
+            memory: &state.memory,
+        }
     }
 
     /// Von Mises stress at each node, kPa, of the mean over the deformed volume of the tetrahedra around it of the Cauchy stress, its
     /// relaxing part included. `[n_nodes]`
     #[must_use]
     pub fn von_mises_kpa(&self, state: &State) -> Vec<f64> {
-        // What acts now is what a step of no time would find.
         let now = Relaxation::new(&self.material.prony, 0.0);
-        let response = Response {
-            material: &self.material,
-            relaxation: &now,
-            memory: &state.memory,
-        };
+        let response = self.response(&now, state);
         element::mean_deviators(&self.elements, response, &state.displacements_mm)
             .into_iter()
             .map(|([xx, yy, zz, yz, xz, xy], volume)| {
                 let square = xx * xx + yy * yy + zz * zz + 2.0 * (yz * yz + xz * xz + xy * xy);
-                KPA_PER_MPA * (1.5 * square).sqrt() / volume
+                (1.5 * square).sqrt() / (MPA_PER_KPA * volume)
             })
             .collect()
     }
@@ -243,14 +264,14 @@ impl SoftBody {
 
     /// Shear modulus times volume, N mm.
     pub(crate) fn energy_scale_n_mm(&self) -> f64 {
-        self.material.isochoric.shear_modulus_kpa() / KPA_PER_MPA * self.size_mm.powi(3)
+        MPA_PER_KPA * self.material.model.shear_modulus_kpa() * self.size_mm.powi(3)
     }
 
     /// Loads below this count as none, N: far below what matters, above what round-off makes of a large bulk modulus.
     pub(crate) fn negligible_load_n(&self) -> f64 {
         let stress_kpa =
-            1e-7 * self.material.isochoric.shear_modulus_kpa() + 1e-9 * self.material.bulk_modulus_kpa;
-        stress_kpa / KPA_PER_MPA * self.size_mm * self.size_mm
+            1e-7 * self.material.model.shear_modulus_kpa() + 1e-9 * self.material.bulk_modulus_kpa;
+        MPA_PER_KPA * stress_kpa * self.size_mm * self.size_mm
     }
 }
 

@@ -34,15 +34,8 @@ pub enum SoftBodyError {
         volume_mm3: f64,
     },
     /// A material that can't be.
-    #[error("material: {what} is {found}, expected {expected}")]
-    Material {
-        /// Which constant.
-        what: String,
-        /// What was expected.
-        expected: String,
-        /// What was found.
-        found: f64,
-    },
+    #[error("material: {0}")]
+    Material(#[from] twintac_material::MaterialError),
     /// A setting that makes no sense.
     #[error("solver setting `{field}` is {found}, expected {expected}")]
     Setting {

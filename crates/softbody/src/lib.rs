@@ -11,16 +11,20 @@ mod contact;
 mod element;
 mod error;
 mod linear;
-mod material;
 mod newton;
 mod parallel;
+mod relaxation;
 mod settings;
 mod state;
-mod wide;
 
 pub use body::SoftBody;
 pub use element::Element;
 pub use error::{SoftBodyError, SolveError};
-pub use material::{Isochoric, Material, PronyTerm};
 pub use settings::SolverSettings;
 pub use state::{Cost, Frame, State};
+pub use twintac_material::{Material, Model, PronyTerm};
+
+use twintac_material::wide;
+
+/// Megapascals, the unit of stress inside this crate, in a kilopascal.
+pub(crate) const MPA_PER_KPA: f64 = 1e-3;

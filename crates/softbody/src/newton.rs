@@ -177,6 +177,10 @@ impl Buffers {
             // A start is taken for the answer only if it is much better than it has to be: errors must not pile up from step to step.
             let goal = if iteration == 0 { UNTOUCHED } else { 1.0 } * settings.tolerance;
             if residual <= goal {
+                // Some materials pass through inverted tetrahedra, but none may end there.
+                if now.smallest_volume_ratio <= 0.0 {
+                    return Err(Failure::Inverted);
+                }
                 if !push_out(body, x.contacts) {
                     self.foreseen_mpa.copy_from_slice(x.pressures_mpa);
                     return Ok(Equilibrium {
@@ -217,20 +221,19 @@ impl Buffers {
         })
     }
 
-    /// Whether no tetrahedron is inside out.
+    /// Whether no tetrahedron is inside out, or the material bears it.
     pub(crate) fn is_valid(&mut self, body: &SoftBody, x: &mut Unknowns) -> bool {
-        body.elements.volumes(x.displacements_mm, &mut self.volumes) > 0.0
+        is_admissible(body, body.elements.volumes(x.displacements_mm, &mut self.volumes))
     }
 
-    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out.
+    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material does not bear it.
     fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
         let started = Instant::now();
         let mut evaluation = Evaluation {
             smallest_volume_ratio: body.elements.volumes(x.displacements_mm, &mut self.volumes),
             ..Evaluation::default()
         };
-        let smallest = evaluation.smallest_volume_ratio;
-        if smallest.is_nan() || smallest <= 0.0 {
+        if !is_admissible(body, evaluation.smallest_volume_ratio) {
             return None;
         }
         let changes = self.volumes.changes_mm3.as_flattened();
@@ -496,6 +499,11 @@ impl Buffers {
         }
         self.evaluate(body, step, x)
     }
+}
+
+/// Whether the energy is defined at this smallest volume ratio.
+fn is_admissible(body: &SoftBody, smallest_volume_ratio: f64) -> bool {
+    smallest_volume_ratio > 0.0 || (body.material().bears_inversion() && !smallest_volume_ratio.is_nan())
 }
 
 fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(usize, &DMat3)) {

@@ -4,8 +4,8 @@ use glam::DVec3;
 use twintac_shape::Pose;
 
 use crate::contact::Contact;
-use crate::material::Memory;
 use crate::newton::Workspace;
+use crate::relaxation::Memory;
 
 /// Where a soft body is: what one press changes. Made by [`crate::SoftBody::rest`].
 #[derive(Clone)]

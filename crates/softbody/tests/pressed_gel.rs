@@ -8,8 +8,9 @@ use std::sync::Arc;
 
 use common::{Ball, Walls, block, by_place, disc_mean, even, graded, mirrored, press};
 use glam::{DQuat, DVec3};
+use twintac_material::Yeoh;
 use twintac_shape::Pose;
-use twintac_softbody::{Frame, Isochoric, Material, PronyTerm, SoftBody, SolveError, SolverSettings};
+use twintac_softbody::{Frame, Material, PronyTerm, SoftBody, SolveError, SolverSettings};
 
 const BALL: Ball = Ball { radius_mm: 12.5 };
 
@@ -162,13 +163,13 @@ fn two_runs_agree_bit_for_bit() {
         weight: 0.2,
         time_s: 0.5,
     }];
-    let isochoric = Isochoric::Yeoh {
+    let yeoh = Yeoh {
         c10_kpa: 8.0,
         c20_kpa: 0.1,
         c30_kpa: 0.0,
     };
     let body = coarse(Material {
-        isochoric,
+        model: yeoh.into(),
         bulk_modulus_kpa: 1500.0,
         prony,
     });

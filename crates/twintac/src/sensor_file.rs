@@ -21,6 +21,10 @@ pub(crate) struct SensorFile {
 pub(crate) fn read_sensor(path: &Path) -> Result<SensorFile> {
     let text = fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
     let sensor = parse_sensor(path, &text)?;
+    // What is kept of the description must not depend on other files.
+    let folder = folder_of(path);
+    let load = |name: &str| fs::read(folder.join(name));
+    let text = Sensor::text_with_material(&path.display().to_string(), &text, &load)?;
     Ok(SensorFile {
         sensor: Arc::new(sensor),
         text,

@@ -1,10 +1,10 @@
 //! The deformation at a point, in eight tetrahedra at a time.
 
 use glam::DVec3;
+use twintac_material::{Invariants, Law};
 
 use super::table::Place;
 use super::{NODES, Pack};
-use crate::material::{Invariants, Law};
 use crate::wide::{LANES, Real, Wide};
 
 /// A matrix by rows.

@@ -4,10 +4,12 @@
 //! material with a memory `J^(-2/3) (F O - (O:C)/3 F⁻ᵀ)` from its offset `O`. The force that pulls at node `a` is `Σ V P G_a`.
 
 use glam::DVec3;
+use twintac_material::Law;
 
 use super::deformation::{Deformation, Matrix, apply, contract, multiply, right_cauchy_green, symmetric};
-use super::{Elements, NODES, Pack, Response, Table, with_law};
-use crate::material::Law;
+use super::spectral;
+use super::{Elements, LawKernel, NODES, Pack, Response, Table, dispatch};
+use crate::MPA_PER_KPA;
 use crate::parallel::join_halves;
 use crate::wide::{LANES, Wide, least};
 
@@ -37,12 +39,11 @@ struct VolumeKernel<'a> {
     least: &'a mut [f64],
 }
 
-struct ForceKernel<'a, L> {
+struct ForceKernel<'a> {
     tables: &'a [Table],
     packs: &'a [Pack],
     displacements_mm: &'a [DVec3],
     corners: &'a [[f64; 4]],
-    law: L,
     response: Response<'a>,
     forces_n: &'a mut [[DVec3; NODES]],
     energies: &'a mut [f64],
@@ -89,16 +90,16 @@ impl Elements {
         let (forces_a, forces_b) = out.forces_n.split_at_mut(half * LANES);
         let (energies_a, energies_b) = out.energies.split_at_mut(half);
         let run = |packs, corners, forces_n, energies| {
-            with_law!(response.material, law => pulp::Arch::new().dispatch(ForceKernel {
+            let kernel = ForceKernel {
                 tables: &self.tables,
                 packs,
                 displacements_mm,
                 corners,
-                law,
                 response,
                 forces_n,
                 energies,
-            }));
+            };
+            dispatch(&response.material.model, kernel);
         };
         join_halves(
             || run(packs_a, corners_a, forces_a, energies_a),
@@ -135,7 +136,7 @@ impl pulp::NullaryFnOnce for VolumeKernel<'_> {
     }
 }
 
-/// `∂W/∂F` without the pressure's part, and `W`.
+/// `∂W/∂F` without the pressure's part, and `W`, MPa.
 #[inline(always)]
 pub(super) fn first_piola_kirchhoff<L: Law>(
     law: &L,
@@ -145,9 +146,9 @@ pub(super) fn first_piola_kirchhoff<L: Law>(
 ) -> (Matrix<f64>, Wide<f64>) {
     let f = &deformation.gradient;
     let invariants = deformation.invariants(law);
-    let slopes = invariants.slopes(law);
-    let scale = Wide::splat(factor);
-    let mut energy = invariants.energy(law) * scale;
+    let slopes = law.slopes(&invariants);
+    let scale = Wide::splat(factor * MPA_PER_KPA);
+    let mut energy = law.energy(&invariants) * scale;
     let mut along_f = slopes.first * scale * Wide::splat(2.0);
     let mut along_cofactor = slopes.volume * scale;
     let mut stress = [[Wide::zero(); 3]; 3];
@@ -160,6 +161,9 @@ pub(super) fn first_piola_kirchhoff<L: Law>(
                 stress[i][j] -= twice * pushed[i][j];
             }
         }
+    }
+    if let Some(stretches) = law.stretches() {
+        energy += spectral::add_stress(&stretches, f, scale, &mut stress);
     }
     if let Some(offset) = offset {
         let pushed = multiply(f, &symmetric(offset));
@@ -182,11 +186,11 @@ pub(super) fn first_piola_kirchhoff<L: Law>(
     (stress, energy)
 }
 
-impl<L: Law> pulp::NullaryFnOnce for ForceKernel<'_, L> {
+impl LawKernel for ForceKernel<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn run<L: Law>(self, law: L) {
         let Response {
             relaxation, memory, ..
         } = self.response;
@@ -209,8 +213,7 @@ impl<L: Law> pulp::NullaryFnOnce for ForceKernel<'_, L> {
                 } else {
                     relaxation.offset(memory.point(at))
                 };
-                let (stress, energy) =
-                    first_piola_kirchhoff(&self.law, &deformation, relaxation.factor, offset);
+                let (stress, energy) = first_piola_kirchhoff(&law, &deformation, relaxation.factor, offset);
                 let mut pressure = Wide::zero();
                 for (corner, weight) in corner_pressures.iter().zip(place.weights) {
                     pressure = pressure.plus_product(*corner, Wide::splat(weight));

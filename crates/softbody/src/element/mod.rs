@@ -2,26 +2,29 @@
 //!
 //! Every coarse tetrahedron has ten nodes, its corners and the midpoints of its edges. An element is a set of points inside it: how each
 //! feels the nodes' displacements, and the corners' pressures. With volumes `V`, gradients `G` of the shape functions and `F = 1 + Σ u_a ⊗ G_a`
-//! the energy is `Σ V W̄(F) + ½ Σ_c K g_c²/m_c`: the volume change `g_c = Σ w_c V (J - 1)` of a corner `c`, its share `w_c` in each point,
-//! and its volume `m_c = Σ w_c V`. Its pressure is `p_c = -K g_c/m_c`, which is what is left of a mixed formulation whose mass matrix
+//! the energy is `Σ V W(F) + ½ Σ_c κ g_c²/m_c`: the volume change `g_c = Σ w_c V (J - 1)` of a corner `c`, its share `w_c` in each point,
+//! and its volume `m_c = Σ w_c V`. Its pressure is `p_c = -κ g_c/m_c`, which is what is left of a mixed formulation whose mass matrix
 //! of pressures is lumped.
 
 mod composite;
 mod deformation;
 mod forces;
+mod principal;
 mod quadratic;
+mod spectral;
 mod stress;
 mod table;
 mod tangent;
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
+use twintac_material::{Law, Material, Model, Visitor};
 
-use crate::material::{Material, Memory, Relaxation};
+use crate::relaxation::{Memory, Relaxation};
 use crate::wide::{LANES, Wide};
 
 pub(crate) use forces::{Forces, Volumes};
-pub(crate) use stress::{mean_deviators, remember};
+pub(crate) use stress::{hydrostatic_shares, mean_deviators, remember};
 pub(crate) use table::{EDGES, Table};
 pub(crate) use tangent::{CoarseSink, CoarseTangent, NodeBlock, NodeSlopes, Sink};
 
@@ -86,40 +89,38 @@ pub(crate) struct Response<'a> {
     pub(crate) memory: &'a Memory,
 }
 
-/// Calls a generic kernel with the law of a material, its constants in MPa.
-macro_rules! with_law {
-    ($material:expr, $law:ident => $body:expr) => {{
-        let mpa = 1.0 / crate::material::KPA_PER_MPA;
-        match $material.isochoric {
-            crate::Isochoric::NeoHookean { shear_modulus_kpa } => {
-                let $law = crate::material::NeoHookean {
-                    shear_modulus: mpa * shear_modulus_kpa,
-                };
-                $body
-            }
-            crate::Isochoric::MooneyRivlin { c10_kpa, c01_kpa } => {
-                let $law = crate::material::MooneyRivlin {
-                    c10: mpa * c10_kpa,
-                    c01: mpa * c01_kpa,
-                };
-                $body
-            }
-            crate::Isochoric::Yeoh {
-                c10_kpa,
-                c20_kpa,
-                c30_kpa,
-            } => {
-                let $law = crate::material::Yeoh {
-                    c10: mpa * c10_kpa,
-                    c20: mpa * c20_kpa,
-                    c30: mpa * c30_kpa,
-                };
-                $body
-            }
-        }
-    }};
+/// Runs a kernel for a material's law, with the vectors that the processor has.
+pub(crate) fn dispatch<K: LawKernel>(model: &Model, kernel: K) -> K::Output {
+    model.visit(OnVectors(kernel))
 }
-pub(crate) use with_law;
+
+/// Work on packs, to be made for each law.
+pub(crate) trait LawKernel {
+    type Output;
+
+    fn run<L: Law>(self, law: L) -> Self::Output;
+}
+
+struct OnVectors<K>(K);
+
+impl<K: LawKernel> Visitor for OnVectors<K> {
+    type Output = K::Output;
+
+    fn visit<L: Law>(self, law: L) -> K::Output {
+        pulp::Arch::new().dispatch(WithLaw(self.0, law))
+    }
+}
+
+struct WithLaw<K, L>(K, L);
+
+impl<K: LawKernel, L: Law> pulp::NullaryFnOnce for WithLaw<K, L> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn call(self) -> K::Output {
+        self.0.run(self.1)
+    }
+}
 
 impl Elements {
     /// `parents` are the ten nodes of each coarse tetrahedron, `children` the eight tetrahedra that each is cut into, and `sides` says which

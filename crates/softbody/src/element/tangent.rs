@@ -8,13 +8,15 @@
 use std::ops::Range;
 
 use glam::{DVec3, Mat3, Vec3};
+use twintac_material::Law;
 
 use super::deformation::{
     Deformation, Vector, apply, cast, contract, dot, gradients, multiply, right_cauchy_green, symmetric,
 };
+use super::spectral;
 use super::table::{Place, ends};
-use super::{Elements, NODES, Pack, Response, Table, with_law};
-use crate::material::Law;
+use super::{Elements, LawKernel, NODES, Pack, Response, Table, dispatch};
+use crate::MPA_PER_KPA;
 use crate::parallel::join_halves;
 use crate::wide::{LANES, Wide};
 
@@ -25,7 +27,7 @@ pub(crate) type NodeBlock = [[Wide<f32>; 3]; 3];
 pub(crate) type NodeSlopes = [[Wide<f32>; 3]; 4];
 
 /// Most pairs of nodes that an element has.
-const MAX_PAIRS: usize = NODES * (NODES + 1) / 2;
+pub(super) const MAX_PAIRS: usize = NODES * (NODES + 1) / 2;
 
 /// Takes the tangents of eight coarse tetrahedra at a time.
 pub(crate) trait Sink: Send {
@@ -48,13 +50,12 @@ pub(crate) struct CoarseSink<'a> {
     pub(crate) tangents: &'a mut [CoarseTangent],
 }
 
-struct Kernel<'a, L, S> {
+struct Kernel<'a, S> {
     tables: &'a [Table],
     packs: &'a [Pack],
     first_pack: usize,
     displacements_mm: &'a [DVec3],
     corners: &'a [[f64; 4]],
-    law: L,
     response: Response<'a>,
     sink: S,
 }
@@ -106,16 +107,16 @@ impl Elements {
         packs: Range<usize>,
         sink: impl Sink,
     ) {
-        with_law!(response.material, law => pulp::Arch::new().dispatch(Kernel {
+        let kernel = Kernel {
             tables: &self.tables,
             packs: &self.packs[packs.clone()],
             first_pack: packs.start,
             displacements_mm,
             corners: &corner_pressures_mpa[packs.start * LANES..packs.end * LANES],
-            law,
             response,
             sink,
-        }));
+        };
+        dispatch(&response.material.model, kernel);
     }
 
     /// Most pairs that a table has.
@@ -125,11 +126,11 @@ impl Elements {
     }
 }
 
-impl<L: Law, S: Sink> pulp::NullaryFnOnce for Kernel<'_, L, S> {
+impl<S: Sink> LawKernel for Kernel<'_, S> {
     type Output = ();
 
     #[inline(always)]
-    fn call(mut self) {
+    fn run<L: Law>(mut self, law: L) {
         let mut blocks = [[[Wide::<f32>::zero(); 3]; 3]; MAX_PAIRS];
         let inputs = self.packs.iter().zip(self.corners.chunks_exact(LANES));
         for (index, (pack, corners)) in (self.first_pack..).zip(inputs) {
@@ -163,14 +164,14 @@ impl<L: Law, S: Sink> pulp::NullaryFnOnce for Kernel<'_, L, S> {
                     self.response.relaxation.offset(self.response.memory.point(at))
                 };
                 let spatial = add_stiffness(
-                    &self.law,
+                    &law,
                     &Deformation::new(&ten, place, &coarse_gradients),
                     &gradients(&coarse_gradients, place),
                     place,
                     [
                         pressure,
                         pack_volume_mm3 * Wide::splat(place.volume),
-                        Wide::splat(self.response.relaxation.factor),
+                        Wide::splat(self.response.relaxation.factor * MPA_PER_KPA),
                     ],
                     offset,
                     &mut blocks,
@@ -210,10 +211,14 @@ fn add_stiffness<L: Law>(
     let f = &deformation.gradient;
     let two = Wide::splat(2.0);
     let invariants = deformation.invariants(law);
-    let slopes = invariants.slopes(law);
-    let curvatures = invariants.curvatures(law);
+    let slopes = law.slopes(&invariants);
+    let curvatures = law.curvatures(&invariants);
     let scale = factor * volume_mm3;
-    let inverse = Wide::splat(1.0) / deformation.volume_ratio;
+    let inverse = if L::BEARS_INVERSION {
+        Wide::splat(1.0) / away_from_zero(deformation.volume_ratio)
+    } else {
+        Wide::splat(1.0) / deformation.volume_ratio
+    };
 
     let mut pushed = [[Wide::zero(); 3]; NODES];
     let mut spatial = [[Wide::zero(); 3]; NODES];
@@ -327,10 +332,19 @@ fn add_stiffness<L: Law>(
             }
         }
     }
+    if let Some(stretches) = law.stretches() {
+        spectral::add_stiffness(&stretches, f, gradients, place, scale, blocks);
+    }
     for spatial in &mut spatial {
         *spatial = spatial.map(|x| x * volume_mm3);
     }
     spatial
+}
+
+/// Keeps single precision meaningful in tetrahedra that are about to turn inside out.
+#[inline(always)]
+fn away_from_zero(volume_ratio: Wide<f32>) -> Wide<f32> {
+    volume_ratio.map(|ratio| ratio.abs().max(1e-3).copysign(ratio))
 }
 
 impl Sink for CoarseSink<'_> {

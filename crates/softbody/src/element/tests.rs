@@ -1,27 +1,48 @@
 use glam::{DMat3, DVec3, Mat3};
 use proptest::prelude::*;
+use twintac_material::{
+    LogarithmicNeoHookean, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, StableNeoHookean, Yeoh,
+};
 
 use super::forces::Forces;
 use super::table::EDGES;
 use super::*;
-use crate::material::PronyTerm;
 use crate::wide::LANES;
-use crate::{Isochoric, Material};
+use crate::{Material, PronyTerm};
 
-const LAWS: [Isochoric; 3] = [
-    Isochoric::NeoHookean {
-        shear_modulus_kpa: 23.5,
-    },
-    Isochoric::MooneyRivlin {
-        c10_kpa: 8.0,
-        c01_kpa: 3.5,
-    },
-    Isochoric::Yeoh {
-        c10_kpa: 7.9,
-        c20_kpa: 0.9,
-        c30_kpa: 0.12,
-    },
-];
+/// One of each model.
+fn models() -> Vec<Model> {
+    let terms = [(9.0, 1.3), (0.6, 4.5), (-3.0, -2.0)].map(|(mu_kpa, alpha)| OgdenTerm { mu_kpa, alpha });
+    vec![
+        NeoHookean {
+            shear_modulus_kpa: 23.5,
+        }
+        .into(),
+        MooneyRivlin {
+            c10_kpa: 8.0,
+            c01_kpa: 3.5,
+        }
+        .into(),
+        Yeoh {
+            c10_kpa: 7.9,
+            c20_kpa: 0.9,
+            c30_kpa: 0.12,
+        }
+        .into(),
+        Ogden {
+            terms: terms.to_vec(),
+        }
+        .into(),
+        LogarithmicNeoHookean {
+            shear_modulus_kpa: 23.5,
+        }
+        .into(),
+        StableNeoHookean {
+            shear_modulus_kpa: 23.5,
+        }
+        .into(),
+    ]
+}
 
 /// Pressures of the corners, MPa.
 const CORNERS: [f64; 4] = [0.004, -0.002, 0.007, 0.001];
@@ -57,9 +78,9 @@ fn one(element: Element) -> (Vec<DVec3>, Elements) {
     (refined.mesh.nodes_mm, elements)
 }
 
-fn material(isochoric: Isochoric, prony: Vec<PronyTerm>) -> Material {
+fn material(model: Model, prony: Vec<PronyTerm>) -> Material {
     Material {
-        isochoric,
+        model,
         bulk_modulus_kpa: 1200.0,
         prony,
     }
@@ -105,6 +126,86 @@ impl<S: Sink> Sink for Option<S> {
     }
 }
 
+/// Blocks of pairs of nodes, those of the first lane.
+fn tangent(elements: &Elements, response: Response, u: &[DVec3]) -> Vec<(usize, usize, Mat3)> {
+    let mut blocks = Vec::new();
+    let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
+    elements.tangents(
+        response,
+        u,
+        &[CORNERS; LANES],
+        [Some(Keep(&mut blocks, nodes)), None],
+    );
+    blocks
+}
+
+/// Compares forces to differences of the energy, and the tangent to differences of forces.
+fn check_derivatives(elements: &Elements, response: Response, u: &[DVec3]) -> Result<(), TestCaseError> {
+    let step = 1e-5;
+    let (_, forces) = energy(elements, response, u);
+    let blocks = tangent(elements, response, u);
+    let largest = blocks
+        .iter()
+        .flat_map(|(.., block)| block.to_cols_array())
+        .fold(0.05_f32, |a, b| a.max(b.abs()));
+    let tolerance = 6e-5 * f64::from(largest);
+    for b in 0..NODES {
+        for j in 0..3 {
+            let moved = |sign: f64| {
+                let mut u = u.to_vec();
+                u[b][j] += sign * step;
+                energy(elements, response, &u)
+            };
+            let (ahead, behind) = (moved(1.0), moved(-1.0));
+            let slope = (ahead.0 - behind.0) / (2.0 * step);
+            let limit = 2e-7 * f64::from(largest);
+            prop_assert!((slope - forces[b][j]).abs() < limit, "{slope} {}", forces[b][j]);
+            for a in 0..NODES {
+                let expected = (ahead.1[a] - behind.1[a]) / (2.0 * step);
+                let found = blocks
+                    .iter()
+                    .find_map(|(row, column, block)| match (*row, *column) {
+                        (row, column) if (row, column) == (a, b) => Some(block.col(j)),
+                        (row, column) if (row, column) == (b, a) => Some(block.row(j)),
+                        _ => None,
+                    });
+                let found = found.unwrap_or_default().as_dvec3();
+                prop_assert!(
+                    (found - expected).length() < tolerance,
+                    "{a} {b}: {found} {expected}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Three stretches, or two or three of them the same, or nearly so.
+fn stretches() -> impl Strategy<Value = [f64; 3]> {
+    let apart = prop::sample::select(vec![0.0, 1e-9, 1e-6, 1e-3, 0.3]);
+    (
+        0.6..1.8_f64,
+        prop::array::uniform3(0.0..1.0_f64),
+        prop::array::uniform3(apart),
+    )
+        .prop_map(|(mean, part, apart)| std::array::from_fn(|i| mean * (1.0 + part[i] * apart[i])))
+}
+
+/// Displacements of a stretch along turned axes, then turned.
+fn homogeneous(nodes_mm: &[DVec3], turns: &[[f64; 4]; 2], stretches: [f64; 3]) -> Vec<DVec3> {
+    let [u, v] = turns.map(|turn| {
+        let length = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let turn = if length > 0.1 {
+            turn.map(|x| x / length)
+        } else {
+            [0.0, 0.0, 0.0, 1.0]
+        };
+        DMat3::from_quat(glam::DQuat::from_array(turn))
+    });
+    let gradient = u * DMat3::from_diagonal(DVec3::from_array(stretches)) * v;
+    nodes_mm.iter().map(|at| gradient * *at - *at).collect()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
@@ -118,38 +219,63 @@ proptest! {
         let vectors = |moves: &[[f64; 3]]| moves.iter().map(|u| DVec3::from_array(*u)).collect::<Vec<_>>();
         let (u, before) = (vectors(&moves), vectors(&before));
         let term = PronyTerm { weight: 0.4, time_s: 0.5 };
-        for (law, prony) in LAWS.iter().flat_map(|law| [(*law, vec![]), (*law, vec![term])]) {
-            let material = material(law, prony);
+        for (model, prony) in models().into_iter().flat_map(|model| [(model.clone(), vec![]), (model, vec![term])]) {
+            let material = material(model, prony);
+            if material.check().is_err() {
+                continue;
+            }
             let relaxation = Relaxation::new(&material.prony, 0.2);
             let mut memory = Memory::new(elements.n_points(), &material.prony);
             remember(&elements, &material, &relaxation, &before, &mut memory);
             let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
-            let step = 1e-5;
-            let (_, forces) = energy(&elements, response, &u);
-            let mut blocks = Vec::new();
-            let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
-            elements.tangents(response, &u, &[CORNERS; LANES], [Some(Keep(&mut blocks, nodes)), None]);
-            for b in 0..NODES {
-                for j in 0..3 {
-                    let moved = |sign: f64| {
-                        let mut u = u.clone();
-                        u[b][j] += sign * step;
-                        energy(&elements, response, &u)
-                    };
-                    let (ahead, behind) = (moved(1.0), moved(-1.0));
-                    let slope = (ahead.0 - behind.0) / (2.0 * step);
-                    prop_assert!((slope - forces[b][j]).abs() < 1e-8, "{slope} {}", forces[b][j]);
-                    for a in 0..NODES {
-                        let expected = (ahead.1[a] - behind.1[a]) / (2.0 * step);
-                        let found = blocks.iter().find_map(|(row, column, block)| match (*row, *column) {
-                            (row, column) if (row, column) == (a, b) => Some(block.col(j)),
-                            (row, column) if (row, column) == (b, a) => Some(block.row(j)),
-                            _ => None,
-                        });
-                        let found = found.unwrap_or_default().as_dvec3();
-                        prop_assert!((found - expected).length() < 3e-6, "{a} {b}: {found} {expected}");
-                    }
-                }
+            check_derivatives(&elements, response, &u)?;
+        }
+    }
+
+    #[test]
+    fn forces_and_tangent_are_slopes_where_stretches_coincide(
+        [u, v] in prop::array::uniform2(prop::array::uniform4(-1.0..1.0_f64)),
+        stretches in stretches(),
+    ) {
+        let (nodes_mm, elements) = one(Element::Composite);
+        let displacements = homogeneous(&nodes_mm, &[u, v], stretches);
+        for model in models() {
+            let material = material(model, Vec::new());
+            let (relaxation, memory) = (Relaxation::new(&[], 0.0), Memory::default());
+            let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+            check_derivatives(&elements, response, &displacements)?;
+        }
+    }
+
+    #[test]
+    fn ogden_with_exponents_of_two_is_neo_hooke_and_mooney_rivlin(
+        [u, v] in prop::array::uniform2(prop::array::uniform4(-1.0..1.0_f64)),
+        stretches in stretches(),
+    ) {
+        let (nodes_mm, elements) = one(Element::Composite);
+        let displacements = homogeneous(&nodes_mm, &[u, v], stretches);
+        let ogden = |terms: &[(f64, f64)]| {
+            let term = |&(mu_kpa, alpha): &(f64, f64)| OgdenTerm { mu_kpa, alpha };
+            Model::from(Ogden { terms: terms.iter().map(term).collect() })
+        };
+        for (ogden, same) in [
+            (ogden(&[(23.5, 2.0)]), Model::from(NeoHookean { shear_modulus_kpa: 23.5 })),
+            (ogden(&[(16.0, 2.0), (-7.0, -2.0)]), MooneyRivlin { c10_kpa: 8.0, c01_kpa: 3.5 }.into()),
+        ] {
+            let [found, expected] = [ogden, same].map(|model| {
+                let material = material(model, Vec::new());
+                let (relaxation, memory) = (Relaxation::new(&[], 0.0), Memory::default());
+                let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+                (energy(&elements, response, &displacements), tangent(&elements, response, &displacements))
+            });
+            let scale = stretches.into_iter().fold(1.0, f64::max).powi(4) / stretches.into_iter().fold(1.0, f64::min);
+            prop_assert!((found.0.0 - expected.0.0).abs() < 1e-16 * scale);
+            for (found, expected) in found.0.1.iter().zip(&expected.0.1) {
+                prop_assert!((*found - *expected).length() < 1e-15 * scale);
+            }
+            let largest = expected.1.iter().flat_map(|(.., block)| block.to_cols_array()).fold(0.0_f32, |a, b| a.max(b.abs()));
+            for ((.., found), (.., expected)) in found.1.iter().zip(&expected.1) {
+                prop_assert!(found.abs_diff_eq(*expected, 3e-6 * largest), "{found} {expected}");
             }
         }
     }
@@ -159,8 +285,8 @@ proptest! {
         let (nodes_mm, elements) = one(Element::Composite);
         let turn = DMat3::from_axis_angle(DVec3::from_array(axis).normalize_or(DVec3::X), angle);
         let u: Vec<DVec3> = nodes_mm.iter().map(|at| turn * *at - *at).collect();
-        for law in LAWS {
-            let material = material(law, Vec::new());
+        for model in models() {
+            let material = material(model, Vec::new());
             let relaxation = Relaxation::new(&[], 0.0);
             let memory = Memory::new(elements.n_points(), &[]);
             let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
@@ -177,7 +303,7 @@ proptest! {
 #[test]
 fn coarse_tangents_are_those_of_midpoints_that_follow() {
     let (nodes_mm, elements) = one(Element::Composite);
-    let material = material(LAWS[1], Vec::new());
+    let material = material(models()[1].clone(), Vec::new());
     let relaxation = Relaxation::new(&[], 0.0);
     let memory = Memory::new(elements.n_points(), &[]);
     let response = Response {

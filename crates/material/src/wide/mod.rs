@@ -1,12 +1,16 @@
 //! Eight numbers side by side, which the compiler puts into the lanes of the processor's vectors.
 
+mod elementary;
+
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+pub use elementary::Elementary;
+
 /// Numbers side by side.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// A number in single or double precision.
-pub(crate) trait Real:
+pub trait Real:
     Copy
     + Default
     + PartialOrd
@@ -15,7 +19,12 @@ pub(crate) trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + Elementary
 {
+    /// A part of a number that is lost in it.
+    const ROUND_OFF: Self;
+
+    /// The nearest number.
     fn from_f64(value: f64) -> Self;
 
     /// `self + a b`, rounded once.
@@ -26,6 +35,8 @@ pub(crate) trait Real:
 }
 
 impl Real for f64 {
+    const ROUND_OFF: Self = Self::EPSILON / 8.0;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
@@ -49,6 +60,8 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
+    const ROUND_OFF: Self = Self::EPSILON / 8.0;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value as Self
@@ -73,42 +86,98 @@ impl Real for f32 {
 /// Eight numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
-pub(crate) struct Wide<T>(pub(crate) [T; LANES]);
+pub struct Wide<T>(pub [T; LANES]);
 
 impl<T: Real> Wide<T> {
+    /// Eight times the same.
     #[inline(always)]
-    pub(crate) fn splat(value: f64) -> Self {
+    #[must_use]
+    pub fn splat(value: f64) -> Self {
         Self([T::from_f64(value); LANES])
     }
 
     /// `self + a b`, rounded once: the processor has one instruction for it.
     #[inline(always)]
-    pub(crate) fn plus_product(mut self, a: Self, b: Self) -> Self {
+    #[must_use]
+    pub fn plus_product(mut self, a: Self, b: Self) -> Self {
         for lane in 0..LANES {
             self.0[lane] = self.0[lane].plus_product(a.0[lane], b.0[lane]);
         }
         self
     }
 
+    /// Eight zeros.
     #[inline(always)]
-    pub(crate) fn zero() -> Self {
+    #[must_use]
+    pub fn zero() -> Self {
         Self::splat(0.0)
     }
 
+    /// `x^(-1/3)` of numbers above zero.
     #[inline(always)]
-    pub(crate) fn inverse_cube_root(self) -> Self {
-        let mut out = self;
-        for lane in &mut out.0 {
-            *lane = lane.inverse_cube_root();
+    #[must_use]
+    pub fn inverse_cube_root(self) -> Self {
+        self.map(T::inverse_cube_root)
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        self.map(T::sqrt)
+    }
+
+    /// Natural logarithms of numbers above zero.
+    #[inline(always)]
+    #[must_use]
+    pub fn ln(self) -> Self {
+        self.map(T::ln)
+    }
+
+    /// `e^x`
+    #[inline(always)]
+    #[must_use]
+    pub fn exp(self) -> Self {
+        self.map(T::exp)
+    }
+
+    /// `(e^a - e^b)/(a - b)` from `a` and `b` and their exponentials, exact where they are close as well: there, with `z = (a - b)/2`, it is
+    /// `√(e^a e^b) sinh(z)/z`.
+    #[inline(always)]
+    #[must_use]
+    pub fn exponential_quotient([a, b]: [Self; 2], [exp_a, exp_b]: [Self; 2]) -> Self {
+        let difference = a - b;
+        let square = difference * difference * Self::splat(0.25);
+        let mut series = Self::splat(1.0);
+        for term in [12.0, 10.0, 8.0, 6.0, 4.0, 2.0] {
+            series = (series * square * Self::splat(1.0 / (term * (term + 1.0)))) + Self::splat(1.0);
         }
-        out
+        let close = (exp_a * exp_b).sqrt() * series;
+        let mut quotient = (exp_a - exp_b) / difference;
+        for lane in 0..LANES {
+            if square.0[lane] < T::from_f64(0.25) {
+                quotient.0[lane] = close.0[lane];
+            }
+        }
+        quotient
+    }
+
+    /// The same function of each.
+    #[inline(always)]
+    #[must_use]
+    pub fn map(mut self, f: impl Fn(T) -> T) -> Self {
+        for lane in &mut self.0 {
+            *lane = f(*lane);
+        }
+        self
     }
 }
 
 impl Wide<f64> {
     /// The same numbers in another precision.
     #[inline(always)]
-    pub(crate) fn cast<T: Real>(self) -> Wide<T> {
+    #[must_use]
+    pub fn cast<T: Real>(self) -> Wide<T> {
         let mut out = Wide([T::default(); LANES]);
         for (out, value) in out.0.iter_mut().zip(self.0) {
             *out = T::from_f64(value);
@@ -118,12 +187,15 @@ impl Wide<f64> {
 
     /// The smallest, or the last that is not a number.
     #[inline(always)]
-    pub(crate) fn least(self) -> f64 {
+    #[must_use]
+    pub fn least(self) -> f64 {
         self.0.into_iter().fold(f64::INFINITY, least)
     }
 
+    /// Their sum.
     #[inline(always)]
-    pub(crate) fn sum(self) -> f64 {
+    #[must_use]
+    pub fn sum(self) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.0;
         ((a + b) + (c + d)) + ((e + f) + (g + h))
     }
@@ -131,7 +203,8 @@ impl Wide<f64> {
 
 /// The smaller of two, or the one that is not a number.
 #[inline(always)]
-pub(crate) fn least(a: f64, b: f64) -> f64 {
+#[must_use]
+pub fn least(a: f64, b: f64) -> f64 {
     if a.is_nan() || a < b { a } else { b }
 }
 

@@ -7,7 +7,8 @@
 //! (Taylor, Pister and Goudreau, 1970). What a step adds is `factor S̄_new + offset` with a constant `offset`: the derivative
 //! of the potential `factor W̄(C̄) + offset:C̄/2`, so that every step stays a minimisation with a symmetric tangent.
 
-use super::PronyTerm;
+use twintac_material::PronyTerm;
+
 use crate::wide::Wide;
 
 /// A symmetric matrix: xx, yy, zz, yz, xz, xy.

@@ -1,0 +1,32 @@
+//! What every model says of itself.
+
+use crate::{Law, MaterialError};
+
+/// The constants of a model, in kPa where they are stresses. Field names are those of files.
+pub trait Elastic {
+    /// The law with these constants.
+    type Law<'a>: Law
+    where
+        Self: 'a;
+
+    /// The law; its energies are in kPa.
+    fn law(&self) -> Self::Law<'_>;
+
+    /// Refuses constants that make no material.
+    ///
+    /// # Errors
+    /// The first constant that is wrong.
+    fn check(&self) -> Result<(), MaterialError>;
+
+    /// Shear modulus at small strain, kPa.
+    fn shear_modulus_kpa(&self) -> f64;
+
+    /// The constants for people to read, beyond what the shear modulus says: `C10 8 kPa, C01 3.5 kPa`. May be empty.
+    fn in_words(&self) -> String;
+
+    /// The modulus κ that the mean volume change has to act with, kPa, so that the bulk modulus at small strain is the one given: less than that
+    /// by what the law itself opposes to a change of volume. Positive in a material that can be.
+    fn volume_modulus_kpa(&self, bulk_modulus_kpa: f64) -> f64 {
+        bulk_modulus_kpa
+    }
+}
