@@ -94,6 +94,7 @@ fn files_named_in_the_documents_exist() {
                     "protocols",
                     "imports",
                     "realities",
+                    "materials",
                     "xtask",
                     "docs",
                 ]

@@ -1,11 +1,17 @@
-//! All models.
+//! All models, each a file here: two lines make one known, its module and its entry in the list at the end.
+
+mod logarithmic_neo_hookean;
+mod mooney_rivlin;
+mod neo_hookean;
+mod ogden;
+mod stable_neo_hookean;
+mod yeoh;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Elastic, Law, LogarithmicNeoHookean, MaterialError, MooneyRivlin, NeoHookean, Ogden, StableNeoHookean,
-    Yeoh,
-};
+use crate::{Elastic, Law, MaterialError};
+
+pub use ogden::OgdenTerm;
 
 /// Work that is done with whichever law a model has.
 pub trait Visitor {
@@ -18,12 +24,14 @@ pub trait Visitor {
 
 /// Makes the enumeration of models from their types, and the names that files have for them.
 macro_rules! models {
-    ($($(#[$meaning:meta])* $model:ident = $name:literal,)+) => {
+    ($($file:ident::$model:ident = $name:literal,)+) => {
+        $(pub use $file::$model;)+
+
         /// The answer to a change of shape: a model with its constants.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(tag = "model")]
         pub enum Model {
-            $($(#[$meaning])* #[serde(rename = $name)] $model($model),)+
+            $(#[doc = concat!("`", $name, "` in files")] #[serde(rename = $name)] $model($model),)+
         }
 
         impl Model {
@@ -87,16 +95,10 @@ macro_rules! models {
 }
 
 models! {
-    /// See [`NeoHookean`].
-    NeoHookean = "neo-hookean",
-    /// See [`MooneyRivlin`].
-    MooneyRivlin = "mooney-rivlin",
-    /// See [`Yeoh`].
-    Yeoh = "yeoh",
-    /// See [`Ogden`].
-    Ogden = "ogden",
-    /// See [`LogarithmicNeoHookean`].
-    LogarithmicNeoHookean = "logarithmic-neo-hookean",
-    /// See [`StableNeoHookean`].
-    StableNeoHookean = "stable-neo-hookean",
+    neo_hookean::NeoHookean = "neo-hookean",
+    mooney_rivlin::MooneyRivlin = "mooney-rivlin",
+    yeoh::Yeoh = "yeoh",
+    ogden::Ogden = "ogden",
+    logarithmic_neo_hookean::LogarithmicNeoHookean = "logarithmic-neo-hookean",
+    stable_neo_hookean::StableNeoHookean = "stable-neo-hookean",
 }
