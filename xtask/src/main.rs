@@ -5,15 +5,16 @@
 #[cfg(test)]
 mod tidy;
 
-use std::process::{Command, ExitCode};
+use std::process::{Command, ExitCode, ExitStatus};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json]>
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | verify [rung…] [--quick] [--json]>
   ci     lint, then test: what CI runs
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
-  bench  how fast presses are followed, and how far off tight solutions they are";
+  bench  how fast presses are followed, and how far off tight solutions they are
+  verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
 
 fn main() -> ExitCode {
     let task = std::env::args().nth(1).unwrap_or_default();
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
         "lint" => lint(),
         "test" => test(),
         "bench" => bench(),
+        "verify" => return verify(),
         _ => Err(anyhow::anyhow!("there is no task `{task}`\n{USAGE}")),
     };
     match result {
@@ -52,20 +54,41 @@ fn test() -> Result<()> {
 
 fn bench() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(2).collect();
+    cargo(&of_verify(&given))
+}
+
+/// Passes on the ladder's own exit code: 1 where a limit does not hold.
+fn verify() -> ExitCode {
+    let given: Vec<String> = std::iter::once("ladder".to_owned())
+        .chain(std::env::args().skip(2))
+        .collect();
+    match run(&of_verify(&given)) {
+        Ok(status) => u8::try_from(status.code().unwrap_or(2)).unwrap_or(2).into(),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn of_verify(given: &[String]) -> Vec<&str> {
     let mut arguments = vec!["run", "--release", "--quiet", "--package", "twintac-verify", "--"];
     arguments.extend(given.iter().map(String::as_str));
-    cargo(&arguments)
+    arguments
 }
 
 fn cargo(arguments: &[&str]) -> Result<()> {
-    eprintln!("cargo {}", arguments.join(" "));
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
-        .args(arguments)
-        .status()
-        .context("starting cargo")?;
-    if !status.success() {
+    if !run(arguments)?.success() {
         bail!("`cargo {}` failed", arguments.join(" "));
     }
     Ok(())
+}
+
+fn run(arguments: &[&str]) -> Result<ExitStatus> {
+    eprintln!("cargo {}", arguments.join(" "));
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    Command::new(cargo)
+        .args(arguments)
+        .status()
+        .context("starting cargo")
 }

@@ -53,6 +53,7 @@
 
 mod axis;
 mod boundary;
+pub mod bricks;
 mod error;
 mod footprint;
 mod generate;

@@ -21,5 +21,6 @@ pub use follow::{Followed, FollowedFrame};
 pub use gel::{Fields, Gel, GelMesh, Keyframe, PressPlace};
 pub use lattice::Lattice;
 pub use pchip::Pchip;
+pub use readout::PortReadout;
 pub use settings::SimulateSettings;
 pub use sweep::{Honesty, Sweep, SweepFrame};

@@ -13,13 +13,17 @@ const RINGS: u32 = 3;
 const PORT_TOLERANCE_MM: f64 = 0.05;
 
 /// Weights of nodes, so that a nodal field is read at a port as a sum.
-pub(crate) struct PortReadout {
+#[derive(Clone, Debug)]
+pub struct PortReadout {
     weights: Vec<(usize, f64)>,
 }
 
 impl PortReadout {
-    /// The port of a taxel.
-    pub(crate) fn of_taxel(mesh: &TetMesh, taxel: &Taxel) -> Result<Self, SimulateError> {
+    /// The port of a taxel, on a mesh.
+    ///
+    /// # Errors
+    /// A port that is not in the mesh.
+    pub fn of_taxel(mesh: &TetMesh, taxel: &Taxel) -> Result<Self, SimulateError> {
         Self::new(mesh, &taxel.name, taxel.position_mm, taxel.port_radius_mm)
     }
 
@@ -51,7 +55,8 @@ impl PortReadout {
     }
 
     /// Mean of a nodal field over the port.
-    pub(crate) fn read(&self, nodal: &[f64]) -> f64 {
+    #[must_use]
+    pub fn read(&self, nodal: &[f64]) -> f64 {
         self.weights
             .iter()
             .map(|&(node, weight)| weight * nodal[node])

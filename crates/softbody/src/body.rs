@@ -23,6 +23,8 @@ pub struct SoftBody {
     pub(crate) elements: Elements,
     pub(crate) boundary: Vec<BoundaryNode>,
     pub(crate) obstacles: Vec<(Arc<dyn SignedDistance>, Pose)>,
+    /// Forces from outside on nodes, N.
+    pub(crate) loads_n: Vec<(u32, DVec3)>,
     pub(crate) on_two_threads: bool,
     /// Corners of the coarse tetrahedra, and of what is in each of the elements' slots.
     pub(crate) slot_corners: Vec<[u32; 4]>,
@@ -142,6 +144,7 @@ impl SoftBody {
             elements,
             boundary,
             obstacles: Vec::new(),
+            loads_n: Vec::new(),
             on_two_threads: false,
             slot_corners,
             ends,

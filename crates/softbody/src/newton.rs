@@ -1,5 +1,7 @@
 //! Newton's method with a line search down the energy.
 
+mod derivatives;
+
 use std::time::Instant;
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
@@ -15,6 +17,8 @@ use crate::linear::matrix::Matrix;
 use crate::parallel::join_halves;
 use crate::state::Cost;
 use crate::wide::LANES;
+
+pub use derivatives::DerivativeErrors;
 
 /// Trial steps of a line search before the direction is given up.
 const MAX_TRIALS: u32 = 20;
@@ -275,6 +279,11 @@ impl Buffers {
             }
         }
         self.cost.contact_s += started.elapsed().as_secs_f64();
+        for &(node, force) in &body.loads_n {
+            evaluation.energy -= force.dot(x.displacements_mm[node as usize]);
+            self.gradient_n[node as usize] -= force;
+            evaluation.load_n += force.length();
+        }
         let (free, bonded) = self.gradient_n.split_at(body.pattern.halves.free);
         let largest = bonded.iter().map(|force| force.length()).fold(0.0, f64::max);
         evaluation.load_n = evaluation.load_n.max(largest);

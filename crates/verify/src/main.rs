@@ -1,4 +1,4 @@
-//! What `cargo xtask bench` runs.
+//! What `cargo xtask bench` and `cargo xtask verify` run.
 
 use std::process::ExitCode;
 
@@ -6,9 +6,10 @@ use clap::{Parser, Subcommand};
 
 mod bench;
 mod cases;
+mod ladder;
 
 #[derive(Parser)]
-#[command(about = "Benchmarks of the soft body")]
+#[command(about = "Benchmarks and verification of the soft body")]
 struct Arguments {
     #[command(subcommand)]
     task: Task,
@@ -22,14 +23,18 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
+    /// The verification ladder: closed forms, convergence, balance and robustness, each with a stated limit
+    Ladder(ladder::Options),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().task {
-        Task::Softbody { json } => bench::run(json),
+        Task::Softbody { json } => bench::run(json).map(|()| true),
+        Task::Ladder(options) => ladder::run(&options),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
         #[allow(clippy::print_stderr)] // a tool for people at a terminal
         Err(error) => {
             eprintln!("error: {error:#}");

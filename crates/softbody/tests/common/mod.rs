@@ -1,13 +1,11 @@
 //! Blocks, spheres and boxes to press.
-#![allow(dead_code)] // each test takes what it needs
-
-use std::collections::BTreeSet;
+#![allow(dead_code, unused_imports)] // each test takes what it needs
 
 use glam::{DVec2, DVec3};
 use twintac_material::{
     LogarithmicNeoHookean, Model, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, StableNeoHookean, Yeoh,
 };
-use twintac_mesh::{NodeSets, TetMesh};
+pub(crate) use twintac_mesh::bricks::{block, bond, even, graded, mirrored};
 use twintac_shape::{Distance, Pose, SignedDistance};
 use twintac_softbody::{Frame, SoftBody, State};
 
@@ -93,101 +91,6 @@ impl SignedDistance for Walls {
     fn bounds_mm(&self) -> (DVec3, DVec3) {
         (DVec3::splat(-1e3), DVec3::splat(1e3))
     }
-}
-
-/// `n + 1` equally spaced values.
-pub(crate) fn even(from: f64, to: f64, n: usize) -> Vec<f64> {
-    (0..=n)
-        .map(|i| from + (to - from) * i as f64 / n as f64)
-        .collect()
-}
-
-/// Values from 0 to `to`, spaced by `edge` at first and growing by `growth` after `fine`.
-pub(crate) fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
-    let mut values = vec![0.0];
-    let (mut at, mut step) = (0.0, edge);
-    while at < to {
-        if at >= fine {
-            step *= growth;
-        }
-        at += step;
-        values.push(at);
-    }
-    // Fit the last value to the end.
-    let last = values[values.len() - 1];
-    let scale_from = fine.min(to);
-    for value in &mut values {
-        if *value > scale_from {
-            *value = scale_from + (*value - scale_from) * (to - scale_from) / (last - scale_from);
-        }
-    }
-    values
-}
-
-/// The values and their mirror images.
-pub(crate) fn mirrored(half: &[f64]) -> Vec<f64> {
-    half.iter()
-        .skip(1)
-        .rev()
-        .map(|x| -x)
-        .chain(half.iter().copied())
-        .collect()
-}
-
-/// A block of bricks, six tetrahedra each, its bottom bonded.
-pub(crate) fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
-    let (nx, ny, nz) = (x_mm.len(), y_mm.len(), z_mm.len());
-    let index = |i: usize, j: usize, k: usize| (i + nx * (j + ny * k)) as u32;
-    let mut nodes_mm = Vec::new();
-    for z in z_mm {
-        for y in y_mm {
-            for x in x_mm {
-                nodes_mm.push(DVec3::new(*x, *y, *z));
-            }
-        }
-    }
-    let mut tets = Vec::new();
-    for k in 0..nz - 1 {
-        for j in 0..ny - 1 {
-            for i in 0..nx - 1 {
-                for order in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
-                    let mut corner = [i, j, k];
-                    let mut tet = [index(i, j, k); 4];
-                    for (step, axis) in order.into_iter().enumerate() {
-                        corner[axis] += 1;
-                        tet[step + 1] = index(corner[0], corner[1], corner[2]);
-                    }
-                    tets.push(tet);
-                }
-            }
-        }
-    }
-    let mut mesh = TetMesh {
-        nodes_mm,
-        tets,
-        sets: NodeSets::default(),
-    };
-    for tet in 0..mesh.tets.len() {
-        if mesh.tet_volume_mm3(tet) < 0.0 {
-            mesh.tets[tet].swap(2, 3);
-        }
-    }
-    let bottom_mm = z_mm[0];
-    bond(&mut mesh, |at| at.z == bottom_mm);
-    mesh
-}
-
-/// Bonds the boundary nodes that a test picks; the rest is free.
-pub(crate) fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
-    let boundary: BTreeSet<u32> = mesh.boundary_triangles().into_iter().flatten().collect();
-    let (bonded, free) = boundary
-        .into_iter()
-        .partition(|&node| is_bonded(mesh.nodes_mm[node as usize]));
-    mesh.sets = NodeSets {
-        bonded,
-        free,
-        top: Vec::new(),
-    };
 }
 
 /// Presses straight down from the height at which the origin touches.

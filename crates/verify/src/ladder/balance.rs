@@ -1,0 +1,123 @@
+//! Forces from outside sum to zero.
+
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use glam::{DQuat, DVec3};
+use twintac_sensor::Sensor;
+use twintac_shape::Pose;
+use twintac_simulate::{Gel, PressPlace, SimulateSettings};
+
+use super::Effort;
+use super::outcome::{Figure, Outcome, Plot};
+use super::plots;
+use super::random_press::ENOUGH_N;
+
+/// Where each press goes: an indenter of the sensor, place in mm, tilt in radians.
+const PRESSES: [(&str, [f64; 2], f64); 3] = [
+    ("sphere-25", [0.0, 0.0], 0.0),
+    ("cylinder", [4.0, 2.0], 0.1),
+    ("cube", [-7.0, -3.0], 0.2),
+];
+
+/// Part of the gel's height to press into, and steps on the way.
+const DEPTH: f64 = 0.7;
+const STEPS: u32 = 16;
+
+pub(super) fn run(effort: Effort) -> Result<Outcome> {
+    let sensor =
+        Arc::new(Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?);
+    let mut settings = SimulateSettings {
+        max_nodes: effort.choose(1500, 7300),
+        ..SimulateSettings::default()
+    };
+    settings.solver.tolerance = 1e-8;
+    let gel = Gel::new(sensor.clone(), settings);
+    let mut figures = Vec::new();
+    let mut series = Vec::new();
+    let mut most_n: f64 = 0.0;
+    for (color, (name, at_mm, tilt_rad)) in PRESSES.into_iter().enumerate() {
+        let indenter = sensor.indenters.iter().find(|indenter| indenter.name == name);
+        let shape = indenter
+            .with_context(|| format!("the sensor lacks the indenter {name}"))?
+            .shape
+            .clone();
+        let rotation = DQuat::from_rotation_y(tilt_rad);
+        let depth_mm = DEPTH * gel.height_mm();
+        let place = PressPlace {
+            indenter: name.into(),
+            shape: shape.clone(),
+            x_mm: at_mm[0],
+            y_mm: at_mm[1],
+            rotation,
+            depth_mm,
+            enough_force_n: None,
+        };
+        let mesh = gel.mesh(&place)?;
+        let above = Pose {
+            position_mm: DVec3::new(at_mm[0], at_mm[1], 0.0),
+            rotation,
+        };
+        let touch = gel.touch(&shape, &above)?;
+        let field = shape.signed_distance_field(&sensor.surfaces)?;
+        let mut state = mesh.body().rest();
+        let (mut worst, mut force_n, mut shell_n) = (0.0_f64, 0.0, 0.0);
+        let (mut down, mut aside) = (vec![[0.0; 2]], vec![[0.0; 2]]);
+        for step in 1..=STEPS {
+            let depth_mm = depth_mm * f64::from(step) / f64::from(STEPS);
+            let pose = Pose {
+                position_mm: touch.position_mm - DVec3::Z * depth_mm,
+                ..touch
+            };
+            let frame = mesh
+                .body()
+                .advance(&mut state, field.as_ref(), &pose, 0.0)
+                .with_context(|| format!("{name} at {depth_mm:.2} mm"))?;
+            let sum = frame.indenter_force_n + frame.board_reaction_n + frame.obstacle_reaction_n;
+            force_n = frame.indenter_force_n.length();
+            shell_n = frame.obstacle_reaction_n.length();
+            worst = worst.max(sum.length() / force_n);
+            most_n = most_n.max(shell_n);
+            down.push([depth_mm, force_n]);
+            aside.push([depth_mm, shell_n]);
+            if force_n >= ENOUGH_N {
+                break;
+            }
+        }
+        figures.push(Figure::at_most(
+            1e-6,
+            format!("{name}: unbalanced over the indenter's force"),
+            worst,
+            "",
+        ));
+        figures.push(Figure::told(format!("{name}: force at the end"), force_n, "N"));
+        figures.push(Figure::told(
+            format!("{name}: of the shell, sideways and down"),
+            shell_n,
+            "N",
+        ));
+        series.push(plots::line(name, color, down));
+        series.push(plots::dashes(format!("{name}, shell"), color, aside));
+    }
+    figures.push(Figure::at_least(
+        0.1,
+        "largest force of the shell in any press",
+        most_n,
+        "N",
+    ));
+    let labels = ["depth, mm", "force, N"];
+    Ok(Outcome {
+        done: format!(
+            "The gel of the sensor `phystac`, with its shell, is pressed in {STEPS} steps into {} % of its height, or to {ENOUGH_N} N, with \
+             a tolerance of 1e-8. The forces of the indenter, the board and the shell are summed, each from what that body's nodes feel; \
+             what is left of the sum, over the indenter's force, is the largest of all steps.",
+            100.0 * DEPTH
+        ),
+        figures,
+        plots: vec![Plot {
+            name: "forces",
+            caption: "Sizes of the forces: of the indenter, and, dashed, of the shell.".into(),
+            scene: plots::lines("Forces from outside", labels, false, series),
+        }],
+    })
+}

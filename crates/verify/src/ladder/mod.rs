@@ -1,0 +1,183 @@
+//! The verification ladder: rungs from what must be exact to what is only likely, each with numbers and what they have to be.
+
+mod balance;
+mod closed_forms;
+mod convergence;
+mod derivatives;
+mod half_space;
+mod hertz;
+mod locking;
+mod outcome;
+mod page;
+mod patch_test;
+mod plots;
+mod random_press;
+mod robustness;
+mod rubbers;
+mod surface_load;
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+
+use outcome::Outcome;
+
+/// A rung.
+pub(crate) struct Rung {
+    number: u8,
+    name: &'static str,
+    title: &'static str,
+    run: fn(Effort) -> Result<Outcome>,
+}
+
+/// How much work a rung may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// Minutes.
+    Quick,
+    /// As much as it takes.
+    Full,
+}
+
+impl Effort {
+    /// One or the other.
+    fn choose<T>(self, quick: T, full: T) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Full => full,
+        }
+    }
+}
+
+/// From the bottom to the top.
+const RUNGS: &[Rung] = &[
+    Rung {
+        number: 1,
+        name: "patch-test",
+        title: "A linear displacement field on an irregular mesh is exact",
+        run: patch_test::run,
+    },
+    Rung {
+        number: 2,
+        name: "derivatives",
+        title: "Energy, forces and tangent belong together; a rotation is free of stress",
+        run: derivatives::run,
+    },
+    Rung {
+        number: 3,
+        name: "closed-forms",
+        title: "Homogeneous deformations of a block follow the closed forms",
+        run: closed_forms::run,
+    },
+    Rung {
+        number: 4,
+        name: "locking",
+        title: "No locking: Cook's membrane at ν = 0.4999",
+        run: locking::run,
+    },
+    Rung {
+        number: 5,
+        name: "hertz",
+        title: "A ball on a half-space: Hertz",
+        run: hertz::run,
+    },
+    Rung {
+        number: 6,
+        name: "surface-load",
+        title: "Pressure below a uniform circular load on a half-space",
+        run: surface_load::run,
+    },
+    Rung {
+        number: 7,
+        name: "balance",
+        title: "The indenter's force is that of board and shell",
+        run: balance::run,
+    },
+    Rung {
+        number: 9,
+        name: "convergence",
+        title: "Force and pressure at the taxels converge with the mesh",
+        run: convergence::run,
+    },
+    Rung {
+        number: 10,
+        name: "robustness",
+        title: "Random presses converge, or end in a typed error",
+        run: robustness::run,
+    },
+];
+
+/// What is asked for.
+#[derive(Args)]
+pub(crate) struct Options {
+    /// Numbers or names of rungs; all if there are none
+    rungs: Vec<String>,
+    /// Print one JSON line a rung instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Coarser meshes and fewer presses: about five minutes
+    #[arg(long)]
+    quick: bool,
+    /// Where the pages go
+    #[arg(long, default_value = "docs/verification")]
+    folder: PathBuf,
+}
+
+/// Climbs the ladder; whether every rung holds.
+pub(crate) fn run(options: &Options) -> Result<bool> {
+    let rungs = chosen(&options.rungs)?;
+    let effort = if options.quick {
+        Effort::Quick
+    } else {
+        Effort::Full
+    };
+    std::fs::create_dir_all(&options.folder)
+        .with_context(|| format!("making the folder {}", options.folder.display()))?;
+    let mut all_hold = true;
+    let mut out = std::io::stdout().lock();
+    for rung in rungs {
+        let outcome = (rung.run)(effort).with_context(|| format!("rung {}, {}", rung.number, rung.name))?;
+        all_hold &= outcome.holds();
+        let record = page::write(&options.folder, rung, &outcome, effort)?;
+        if options.json {
+            writeln!(out, "{}", serde_json::to_string(&record)?)?;
+        } else {
+            writeln!(out, "{:2} {}", rung.number, rung.title)?;
+            for figure in &outcome.figures {
+                let value = format!("{} {}", outcome::number(figure.value), figure.unit);
+                let limit = figure.limit.to_string();
+                let verdict = if figure.holds { "" } else { "does not hold" };
+                writeln!(out, "   {:70} {value:>18}  {limit:10} {verdict}", figure.name)?;
+            }
+        }
+        out.flush()?;
+    }
+    page::write_index(&options.folder)?;
+    Ok(all_hold)
+}
+
+fn chosen(names: &[String]) -> Result<Vec<&'static Rung>> {
+    if names.is_empty() {
+        return Ok(RUNGS.iter().collect());
+    }
+    names
+        .iter()
+        .map(|name| {
+            let is_it = |rung: &&Rung| rung.name == name || rung.number.to_string() == *name;
+            RUNGS.iter().find(is_it)
+        })
+        .zip(names)
+        .map(|(rung, name)| match rung {
+            Some(rung) => Ok(rung),
+            None => {
+                let known: Vec<String> = RUNGS
+                    .iter()
+                    .map(|rung| format!("{} {}", rung.number, rung.name))
+                    .collect();
+                bail!("there is no rung `{name}`; there are {}", known.join(", "))
+            }
+        })
+        .collect()
+}

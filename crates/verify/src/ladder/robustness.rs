@@ -1,0 +1,316 @@
+//! Random presses, each of which has to converge or say why not, and never to lie.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use glam::DVec3;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use twintac_sensor::Sensor;
+use twintac_shape::{Pose, SignedDistance};
+use twintac_simulate::{Gel, SimulateSettings};
+use twintac_softbody::{Frame, SoftBody, SolveError, State};
+
+use super::Effort;
+use super::outcome::{Figure, Outcome, Plot};
+use super::plots;
+use super::random_press::{ENOUGH_N, draw};
+
+const SEED: u64 = 10;
+
+/// Longest way between two frames, mm.
+const STEP_MM: f64 = 0.4;
+
+/// Part of the indenter's force that may be missing in the balance of a frame: what the solver's tolerance leaves, many times over.
+const UNBALANCED: f64 = 0.01;
+
+/// How a press ended.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum End {
+    /// At its depth, or at enough force.
+    Converged,
+    /// In a typed error that left the last good state.
+    Failed(&'static str),
+    /// In something that no solver may return.
+    Wrong(&'static str),
+}
+
+/// What came of a press.
+struct Pressed {
+    index: u64,
+    indenter: String,
+    end: End,
+    wanted_mm: f64,
+    depth_mm: f64,
+    force_n: f64,
+    /// Newton iterations of each frame.
+    iterations: Vec<u32>,
+    smallest_volume_ratio: f64,
+    n_nodes: usize,
+    error: String,
+}
+
+pub(super) fn run(effort: Effort) -> Result<Outcome> {
+    let sensor =
+        Arc::new(Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?);
+    let coarse = SimulateSettings {
+        edges_per_height: 4.0,
+        edges_per_contact_radius: 2.0,
+        max_nodes: 900,
+        ..SimulateSettings::default()
+    };
+    let fine = SimulateSettings {
+        max_nodes: 7300,
+        ..SimulateSettings::default()
+    };
+    let sets = [
+        ("coarse mesh", coarse, effort.choose(300, 10_000)),
+        ("the paper's mesh", fine, effort.choose(4, 200)),
+    ];
+    let mut figures = Vec::new();
+    let (mut iterations, mut ratios, mut depths) = (Vec::new(), Vec::new(), Vec::new());
+    let mut done = format!(
+        "Half of the presses take an indenter of the sensor, half an invented sphere, cylinder, box or cone with rounded edges; each \
+         stands anywhere above the gel, tilted by up to 20°, and goes on from first touch in frames of at most {STEP_MM} mm to a depth \
+         of 10 to 70 % of the gel's thickness, or to {ENOUGH_N} N. A frame counts as wrong, whatever the solver says, if a number is not \
+         finite, a tetrahedron is inside out, a node is too deep inside a shape, or the forces do not balance within {} %; so does an \
+         error after which the state is not the one before. Seed {SEED}.\n",
+        100.0 * UNBALANCED
+    );
+    for (color, (set, settings, n_presses)) in sets.into_iter().enumerate() {
+        let all = press_all(set, &Gel::new(sensor.clone(), settings), n_presses)?;
+        let count =
+            |is_it: &dyn Fn(&End) -> bool| all.iter().filter(|press| is_it(&press.end)).count() as f64;
+        let percent = 100.0 / all.len() as f64;
+        let converged = percent * count(&|end| *end == End::Converged);
+        let n_nodes = all.iter().map(|press| press.n_nodes).sum::<usize>() / all.len();
+        figures.push(Figure::at_least(
+            99.5,
+            format!("{set}: {n_presses} presses, {n_nodes} nodes: converged"),
+            converged,
+            "%",
+        ));
+        let mut kinds: BTreeMap<&End, usize> = BTreeMap::new();
+        for press in &all {
+            *kinds.entry(&press.end).or_default() += 1;
+        }
+        for (end, count) in kinds {
+            if let End::Failed(kind) = end {
+                figures.push(Figure::told(format!("{set}: {kind}"), count as f64, ""));
+            }
+        }
+        let wrong = count(&|end| matches!(end, End::Wrong(_)));
+        figures.push(Figure::at_most(0.0, format!("{set}: wrong answers"), wrong, ""));
+        done.push_str(&failures(set, &all));
+
+        let frames = all.iter().flat_map(|press| &press.iterations);
+        let per_frame: Vec<f64> = frames.map(|count| f64::from(*count)).collect();
+        iterations.push(plots::histogram(set, color, &per_frame, [0.0, 60.0], 30));
+        let smallest: Vec<f64> = all.iter().map(|press| press.smallest_volume_ratio).collect();
+        ratios.push(plots::histogram(set, color, &smallest, [0.0, 1.0], 25));
+        let reached: Vec<f64> = all.iter().map(|press| press.depth_mm).collect();
+        depths.push(plots::histogram(set, color, &reached, [0.0, 6.0], 24));
+    }
+    let plot = |name, title, x_label, caption: &str, series| Plot {
+        name,
+        caption: caption.into(),
+        scene: plots::lines(title, [x_label, "how many"], true, series),
+    };
+    Ok(Outcome {
+        done,
+        figures,
+        plots: vec![
+            plot(
+                "iterations",
+                "Newton iterations of a frame",
+                "iterations, the last bin and more",
+                "Every frame of every press.",
+                iterations,
+            ),
+            plot(
+                "volume-ratio",
+                "Smallest volume ratio of a press",
+                "J",
+                "Of any tetrahedron in any frame of a press; 0 would be flat.",
+                ratios,
+            ),
+            plot(
+                "depth",
+                "Depth reached",
+                "depth, mm",
+                "Where presses ended: at the depth drawn, at 200 N, or in an error.",
+                depths,
+            ),
+        ],
+    })
+}
+
+fn press_all(set: &str, gel: &Gel, n_presses: u64) -> Result<Vec<Pressed>> {
+    let style = ProgressStyle::with_template("{prefix:>16} [{bar:30}] {pos}/{len} {elapsed}, {eta} left")?;
+    let bar = ProgressBar::new(n_presses)
+        .with_style(style)
+        .with_prefix(set.to_owned());
+    let all = (0..n_presses)
+        .into_par_iter()
+        .map(|index| {
+            let pressed = press(gel, index).with_context(|| format!("press {index} of seed {SEED}"));
+            bar.inc(1);
+            pressed
+        })
+        .collect();
+    bar.finish_and_clear();
+    all
+}
+
+fn press(gel: &Gel, index: u64) -> Result<Pressed> {
+    let press = draw(gel.sensor(), SEED, index)?;
+    let (place, indenter) = (&press.place, press.indenter.as_ref());
+    let mesh = gel.mesh(place)?;
+    let body = mesh.body();
+    let above = Pose {
+        position_mm: DVec3::new(place.x_mm, place.y_mm, 2.0 * gel.height_mm()),
+        rotation: place.rotation,
+    };
+    let touch = lowered(body, indenter, above);
+    let mut pressed = Pressed {
+        index,
+        indenter: place.indenter.clone(),
+        end: End::Converged,
+        wanted_mm: place.depth_mm,
+        depth_mm: 0.0,
+        force_n: 0.0,
+        iterations: Vec::new(),
+        smallest_volume_ratio: 1.0,
+        n_nodes: body.mesh().nodes_mm.len(),
+        error: String::new(),
+    };
+    let mut state = body.rest();
+    let n_frames = (place.depth_mm / STEP_MM).ceil() as u32;
+    for frame in 1..=n_frames {
+        let depth_mm = place.depth_mm * f64::from(frame) / f64::from(n_frames);
+        let pose = Pose {
+            position_mm: touch.position_mm - DVec3::Z * depth_mm,
+            ..touch
+        };
+        let before = state.displacements_mm().to_vec();
+        match body.advance(&mut state, indenter, &pose, 0.0) {
+            Ok(frame) => {
+                pressed.iterations.push(frame.iterations);
+                match check(body, &state, &frame) {
+                    Ok(smallest) => {
+                        pressed.smallest_volume_ratio = pressed.smallest_volume_ratio.min(smallest);
+                    }
+                    Err(what) => {
+                        pressed.end = End::Wrong(what);
+                        return Ok(pressed);
+                    }
+                }
+                (pressed.depth_mm, pressed.force_n) = (depth_mm, -frame.indenter_force_n.z);
+                if pressed.force_n >= ENOUGH_N {
+                    return Ok(pressed);
+                }
+            }
+            Err(error) => {
+                pressed.error = error.to_string();
+                pressed.end = if state.displacements_mm() != before {
+                    End::Wrong("an error that changed the state")
+                } else {
+                    End::Failed(kind(&error))
+                };
+                return Ok(pressed);
+            }
+        }
+    }
+    Ok(pressed)
+}
+
+/// Lowers an indenter until it touches a node of the body at rest.
+fn lowered(body: &SoftBody, indenter: &dyn SignedDistance, mut pose: Pose) -> Pose {
+    let mesh = body.mesh();
+    for _ in 0..200 {
+        let gap_mm = mesh
+            .sets
+            .free
+            .iter()
+            .map(|&node| pose.inverse_transform_point(mesh.nodes_mm[node as usize]))
+            .map(|at_mm| indenter.signed_distance(at_mm).distance_mm)
+            .fold(f64::INFINITY, f64::min);
+        if gap_mm < 1e-3 {
+            break;
+        }
+        pose.position_mm.z -= gap_mm;
+    }
+    pose
+}
+
+fn kind(error: &SolveError) -> &'static str {
+    match error {
+        SolveError::NotConverged { .. } => "not converged",
+        SolveError::Inverted { .. } => "inside out",
+        SolveError::Singular { .. } => "singular",
+        SolveError::Blocked { .. } => "blocked",
+        SolveError::Input { .. } => "refused",
+    }
+}
+
+/// The smallest volume ratio, worked out from the displacements anew; or what is wrong with a frame.
+fn check(body: &SoftBody, state: &State, frame: &Frame) -> Result<f64, &'static str> {
+    let rest = body.mesh();
+    let mut now = rest.clone();
+    for (at, moved) in now.nodes_mm.iter_mut().zip(state.displacements_mm()) {
+        *at += *moved;
+    }
+    let is_finite = frame.indenter_force_n.is_finite()
+        && now.nodes_mm.iter().all(|at| at.is_finite())
+        && body
+            .pressure_kpa(state)
+            .iter()
+            .all(|pressure| pressure.is_finite());
+    if !is_finite {
+        return Err("not a number");
+    }
+    let smallest = (0..rest.tets.len())
+        .map(|tet| now.tet_volume_mm3(tet) / rest.tet_volume_mm3(tet))
+        .fold(f64::INFINITY, f64::min);
+    if smallest <= 0.0 {
+        return Err("inside out");
+    }
+    if frame.penetration_mm > 0.0051 {
+        return Err("a node too deep");
+    }
+    let sum = frame.indenter_force_n + frame.board_reaction_n + frame.obstacle_reaction_n;
+    let load_n = frame.indenter_force_n.length();
+    if sum.length() > UNBALANCED * load_n.max(1e-3) {
+        return Err("out of balance");
+    }
+    if frame.indenter_force_n.z > 0.0 {
+        return Err("pulls");
+    }
+    Ok(smallest)
+}
+
+/// The first presses that did not converge, as a list.
+fn failures(set: &str, all: &[Pressed]) -> String {
+    let failed: Vec<&Pressed> = all.iter().filter(|press| press.end != End::Converged).collect();
+    let mut text = String::new();
+    if !failed.is_empty() {
+        text = format!("\nOf the presses on the {set}, {} did not converge", failed.len());
+        text.push_str(if failed.len() > 12 {
+            "; the first are\n\n"
+        } else {
+            ":\n\n"
+        });
+    }
+    for press in failed.into_iter().take(12) {
+        let what = match &press.end {
+            End::Wrong(what) => what,
+            _ => press.error.as_str(),
+        };
+        text.push_str(&format!(
+            "- press {}, {}, beyond {:.2} of {:.2} mm and {:.1} N: {what}\n",
+            press.index, press.indenter, press.depth_mm, press.wanted_mm, press.force_n
+        ));
+    }
+    text
+}
