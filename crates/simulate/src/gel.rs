@@ -6,10 +6,11 @@ use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
 use twintac_mesh::{Cuboid, Focus, MeshSettings, TetMesh};
 use twintac_sensor::Sensor;
-use twintac_shape::{Cavity, Pose, Shape, SignedDistance};
+use twintac_shape::{Pose, Shape, SignedDistance};
 use twintac_softbody::{Frame, Material, SoftBody};
 
 use crate::readout::{PortReadout, StressCluster};
+use crate::shell::Wall;
 use crate::touch::{contact_radius_mm, first_touch};
 use crate::{Honesty, SimulateError, SimulateSettings, Sweep, SweepFrame};
 
@@ -235,8 +236,9 @@ impl GelMesh {
         let clusters = StressCluster::for_each_taxel(mesh, sensor);
         if let Some(shell) = &sensor.shell {
             let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-            let cavity = Cavity::around(low.truncate(), high.truncate(), shell.gap_mm, shell.height_mm);
-            body = body.with_obstacle(Arc::new(cavity), Pose::IDENTITY);
+            for wall in Wall::around(low.truncate(), high.truncate(), shell.gap_mm, shell.height_mm) {
+                body = body.with_obstacle(Arc::new(wall), Pose::IDENTITY);
+            }
         }
         Ok(Self {
             body,

@@ -13,6 +13,7 @@ mod lattice;
 mod pchip;
 mod readout;
 mod settings;
+mod shell;
 mod sweep;
 mod touch;
 

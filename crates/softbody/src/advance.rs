@@ -120,7 +120,7 @@ impl SoftBody {
                 Ok(_) => (done, size) = (next, (2.0 * size).min(largest)),
                 Err(_) if 0.5 * size >= self.settings.min_substep * largest => {
                     size *= 0.5;
-                    state.contacts[0].drop_carried();
+                    state.contacts.iter_mut().for_each(Contact::drop_carried);
                 }
                 Err(failure) => {
                     let workspace = std::mem::take(&mut state.workspace);
@@ -160,7 +160,7 @@ impl SoftBody {
             gel_from_shape: *pose,
         }));
         let old = state.clone();
-        state.contacts[0].carry();
+        state.contacts.iter_mut().for_each(Contact::carry);
         state.contacts[0].forget_distances();
         drive.hold(self, part[1], &mut state.displacements_mm);
 

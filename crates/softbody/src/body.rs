@@ -160,7 +160,8 @@ impl SoftBody {
         })
     }
 
-    /// Adds a rigid shape that stands still. States made before do not know it.
+    /// Adds a rigid shape that stands still, best one without hollow corners: walls that meet are added one by one. States made before do not
+    /// know it.
     #[must_use]
     pub fn with_obstacle(mut self, shape: Arc<dyn SignedDistance>, gel_from_obstacle: Pose) -> Self {
         self.obstacles.push((shape, gel_from_obstacle));

@@ -1,10 +1,10 @@
 //! Frictionless contact of boundary nodes with rigid shapes, known by their signed distance.
 //!
 //! A node with gap `g` and a carried depth `c` adds about `κ (c - g)²/2` to the energy where `g < c`, and is pushed along the shape's outward
-//! normal with about `κ (c - g)`. With every step that ends well the indenter's contacts carry on: `c` becomes `c - g`, so that the force is
-//! there without any penetration (augmented Lagrangian; Hestenes, J. Optim. Theory Appl. 4, 1969), and what penetration is left
-//! comes from the last step alone. Other shapes carry nothing, but their stiffness `κ` is raised where nodes are too deep: in a hollow corner
-//! the direction of the nearest wall jumps outside the shape, but not inside, where alone a force without carried depth acts.
+//! normal with about `κ (c - g)`. With every step that ends well contacts carry on: `c` becomes `c - g`, so that the force is there without
+//! any penetration (augmented Lagrangian; Hestenes, J. Optim. Theory Appl. 4, 1969), and what penetration is left comes from the last
+//! step alone. In a hollow corner of a shape the direction of its nearest side jumps, and there is no equilibrium to be found: walls that
+//! meet are better given as shapes of their own, of which a node in the corner touches two.
 
 use glam::{DMat3, DVec3};
 use twintac_shape::{Pose, SignedDistance};
@@ -55,8 +55,6 @@ pub(crate) struct Touch {
 pub(crate) struct Contact {
     /// `[n_boundary_nodes]`
     pub(crate) touches: Vec<Touch>,
-    /// What the stiffness of the nodes is multiplied by.
-    pub(crate) stiffening: f64,
 }
 
 impl RigidBody<'_> {
@@ -125,7 +123,6 @@ impl Contact {
     pub(crate) fn new(n_boundary_nodes: usize) -> Self {
         Self {
             touches: vec![Touch::default(); n_boundary_nodes],
-            stiffening: 1.0,
         }
     }
 

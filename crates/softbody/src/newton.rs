@@ -26,9 +26,6 @@ const MAX_TRIALS: u32 = 20;
 /// Part of the decrease promised by the slope that a trial step must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// What contact stiffness is multiplied by where nodes are too deep inside a shape.
-const STIFFENING: f64 = 4.0;
-
 /// Steps below this part of their direction are short.
 const SHORT: f64 = 0.2;
 
@@ -273,7 +270,7 @@ impl Buffers {
             for (boundary, touch) in body.boundary.iter().zip(&mut contact.touches) {
                 let node = boundary.node as usize;
                 let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness * contact.stiffening);
+                evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness);
                 self.gradient_n[node] -= touch.normal * touch.force_n;
                 evaluation.load_n += touch.force_n;
             }
@@ -521,24 +518,19 @@ fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMu
             if touch.force_n > 0.0 {
                 let node = boundary.node as usize;
                 let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness * contact.stiffening, true);
+                let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, true);
                 add(node, &stiffness);
             }
         }
     }
 }
 
-/// Where a node is too deep inside of the indenter, carries the forces over; where in another shape, stiffens its contact. True if there are
-/// any.
+/// Where a node is too deep inside of a shape, carries that shape's forces over. True if there is any.
 fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
     let mut any = false;
-    for (shape, contact) in contacts.iter_mut().enumerate() {
+    for contact in contacts.iter_mut() {
         if contact.penetration_mm() > body.settings.penetration_mm {
-            if shape == 0 {
-                contact.carry();
-            } else {
-                contact.stiffening *= STIFFENING;
-            }
+            contact.carry();
             any = true;
         }
     }

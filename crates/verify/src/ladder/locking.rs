@@ -63,7 +63,7 @@ fn rise_mm(element: Element, poissons_ratio: f64, n: usize) -> Result<(f64, usiz
 }
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
-    let cells: &[usize] = effort.choose(&[2, 4, 8], &[2, 4, 6, 8, 12, 16]);
+    let cells: &[usize] = effort.choose(&[4, 8, 14], &[2, 4, 6, 8, 12, 16]);
     let reference_cells = effort.choose(8, 16);
     let mut figures = Vec::new();
     let mut series = Vec::new();

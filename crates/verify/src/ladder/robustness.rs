@@ -284,9 +284,6 @@ fn check(body: &SoftBody, state: &State, frame: &Frame) -> Result<f64, &'static 
     if sum.length() > UNBALANCED * load_n.max(1e-3) {
         return Err("out of balance");
     }
-    if frame.indenter_force_n.z > 0.0 {
-        return Err("pulls");
-    }
     Ok(smallest)
 }
 

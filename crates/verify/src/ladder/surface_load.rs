@@ -24,7 +24,7 @@ const DEPTHS: [f64; 2] = [0.25, 2.5];
 const FINE_DEPTH: f64 = 2.0;
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
-    let edges = effort.choose(2.0, 4.0);
+    let edges = effort.choose(3.0, 4.0);
     let mut figures = Vec::new();
     let mut series = Vec::new();
     let mut n_nodes = 0;
