@@ -10,7 +10,7 @@ use twintac_simulate::Followed;
 use crate::cases::{self, Case};
 
 /// Tolerance of the solver in real time.
-const FAST: f64 = 3e-3;
+pub(crate) const FAST: f64 = 3e-3;
 
 /// Tolerance of what it is compared to.
 const TIGHT: f64 = 1e-7;
@@ -75,7 +75,7 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
 }
 
 fn time(case: &Case) -> Result<Timed> {
-    let (fast, tight) = (case.follow(FAST)?, case.follow(TIGHT)?);
+    let (fast, tight) = (case.follow(FAST, &mut || ())?, case.follow(TIGHT, &mut || ())?);
     let times_ms: Vec<f64> = fast.frames.iter().map(|frame| 1e3 * frame.wall_time_s).collect();
     let total_s = times_ms.iter().sum::<f64>() / 1e3;
     let last = fast.frames.len() - 1;
@@ -116,7 +116,7 @@ fn largest_error(fast: &Followed, tight: &Followed, value: impl Fn(&Followed, us
 }
 
 /// Forces at 0.5, 1 and 2 mm on the way down, linear between frames.
-fn forces(followed: &Followed) -> BTreeMap<String, f64> {
+pub(crate) fn forces(followed: &Followed) -> BTreeMap<String, f64> {
     let start_mm = followed.frames[0].position_mm.z;
     let depth_mm = |frame: usize| start_mm - followed.frames[frame].position_mm.z;
     let mut found = BTreeMap::new();

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use twintac_protocol::{PressPath, Waypoint, Zero};
-use twintac_sensor::Sensor;
-use twintac_simulate::{Followed, Gel, SimulateSettings};
+use twintac_sensor::{Indenter, Sensor};
+use twintac_simulate::{Followed, Gel, PressPlace, SimulateSettings};
 
 /// Frames in a second: the rate of the paper's sensor, Hz.
 const RATE_HZ: f64 = 55.0;
@@ -55,20 +55,25 @@ name = "sphere-25"
 shape = { kind = "sphere", radius_mm = 12.5 }
 "#;
 
+/// A ball pressed into a bonded block.
+pub(crate) fn block(poissons_ratio: f64) -> Result<Case> {
+    let text = BLOCK.replace("POISSON", &poissons_ratio.to_string());
+    let sensor = Sensor::parse("block", &text, &no_files)?;
+    let poses = [(0.0, [0.0, 0.0, 0.0], 0.0), (1.0, [0.0, 0.0, -2.0], 0.0)];
+    Ok(Case {
+        name: "block, ball 2 mm deep in 1 s",
+        poissons_ratio,
+        n_nodes: [4000, 8000],
+        sensor: Arc::new(sensor),
+        path: path(&poses),
+    })
+}
+
 /// All cases.
 pub(crate) fn all() -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for poissons_ratio in [0.45, 0.49] {
-        let text = BLOCK.replace("POISSON", &poissons_ratio.to_string());
-        let sensor = Sensor::parse("block", &text, &no_files)?;
-        let poses = [(0.0, [0.0, 0.0, 0.0], 0.0), (1.0, [0.0, 0.0, -2.0], 0.0)];
-        cases.push(Case {
-            name: "block, ball 2 mm deep in 1 s",
-            poissons_ratio,
-            n_nodes: [4000, 8000],
-            sensor: Arc::new(sensor),
-            path: path(&poses),
-        });
+        cases.push(block(poissons_ratio)?);
     }
     let down_and_up = [
         (0.0, [0.0, 0.0, 0.0], 0.0),
@@ -111,8 +116,7 @@ pub(crate) fn all() -> Result<Vec<Case>> {
 }
 
 impl Case {
-    /// Follows the press with a solver tolerance.
-    pub(crate) fn follow(&self, tolerance: f64) -> Result<Followed> {
+    fn gel(&self, tolerance: f64) -> Gel {
         let mut settings = SimulateSettings {
             max_nodes: self.n_nodes[1],
             ..SimulateSettings::default()
@@ -122,14 +126,41 @@ impl Case {
         settings.edges_per_contact_radius = 8.0;
         settings.solver.tolerance = tolerance;
         settings.solver.max_iterations = 60;
-        let gel = Gel::new(self.sensor.clone(), settings);
-        let indenter = self
-            .sensor
+        Gel::new(self.sensor.clone(), settings)
+    }
+
+    fn indenter(&self) -> Result<&Indenter> {
+        self.sensor
             .indenters
             .iter()
             .find(|indenter| indenter.name == self.path.indenter)
-            .context("the sensor lacks the indenter")?;
-        let followed = gel.follow(&indenter.shape, &self.path, &mut || ())?;
+            .context("the sensor lacks the indenter")
+    }
+
+    /// The mesh of a press straight down, as JSON: `nodes_mm` and `tets`.
+    pub(crate) fn mesh_json(&self) -> Result<String> {
+        let indenter = self.indenter()?;
+        let (first, last) = (&self.path.poses[0], &self.path.poses[self.path.poses.len() - 1]);
+        let place = PressPlace {
+            indenter: indenter.name.clone(),
+            shape: indenter.shape.clone(),
+            x_mm: first.position_mm.x,
+            y_mm: first.position_mm.y,
+            rotation: DQuat::IDENTITY,
+            depth_mm: first.position_mm.z - last.position_mm.z,
+            enough_force_n: None,
+        };
+        let gel = self.gel(1.0).mesh(&place)?;
+        let mesh = gel.body().mesh();
+        let nodes_mm: Vec<[f64; 3]> = mesh.nodes_mm.iter().map(DVec3::to_array).collect();
+        Ok(serde_json::json!({ "nodes_mm": nodes_mm, "tets": mesh.tets }).to_string())
+    }
+
+    /// Follows the press with a solver tolerance, and says so after each frame.
+    pub(crate) fn follow(&self, tolerance: f64, advanced: &mut dyn FnMut()) -> Result<Followed> {
+        let followed = self
+            .gel(tolerance)
+            .follow(&self.indenter()?.shape, &self.path, advanced)?;
         if let Some(failure) = &followed.failure {
             anyhow::bail!("{}: {failure}", self.name);
         }

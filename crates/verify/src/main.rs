@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 mod bench;
 mod cases;
 mod ladder;
+mod peers;
 
 #[derive(Parser)]
 #[command(about = "Benchmarks and verification of the soft body")]
@@ -25,12 +26,22 @@ enum Task {
     },
     /// The verification ladder: closed forms, convergence, balance and robustness, each with a stated limit
     Ladder(ladder::Options),
+    /// The block press on other engines and on ours: makes a Python environment, writes docs/benchmarks/peers.*
+    Peers(peers::Options),
+    /// The block press on our engine alone: one JSON line with rate, forces and memory
+    Press {
+        /// Poisson's ratio of the block
+        #[arg(long)]
+        poissons_ratio: f64,
+    },
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Softbody { json } => bench::run(json).map(|()| true),
         Task::Ladder(options) => ladder::run(&options),
+        Task::Peers(options) => peers::run(&options).map(|()| true),
+        Task::Press { poissons_ratio } => peers::print_row(poissons_ratio).map(|()| true),
     };
     match result {
         Ok(true) => ExitCode::SUCCESS,

@@ -1,0 +1,118 @@
+//! Force error against real-time factor.
+
+use twintac_report::{Anchor, Ink, Scene};
+
+use super::row::Row;
+
+const SIZE: [f64; 2] = [640.0, 400.0];
+/// The box: left, top, right, bottom, px.
+const BOX: [f64; 4] = [56.0, 40.0, 470.0, 350.0];
+/// Decades of the real-time factor.
+const DECADES: [i32; 2] = [-4, 1];
+/// Decades of the error, %.
+const ERROR_DECADES: [i32; 2] = [-1, 2];
+
+/// Every run that gave figures: the largest force error over its depths, against its rate.
+pub(super) fn scene(rows: &[Row]) -> Scene {
+    let [left, top, right, bottom] = BOX;
+    let mut scene = Scene::new("force error against real-time factor", SIZE[0], SIZE[1]);
+    scene.rectangle([0.0, 0.0], SIZE, Ink::Paper, 1.0);
+    scene.title(
+        [left, 22.0],
+        "Ball pressed 2 mm into a bonded block: force error against rate",
+    );
+    let x = |rtf: f64| left + (right - left) * part(rtf, DECADES);
+    let y = |percent: f64| bottom - (bottom - top) * part(percent, ERROR_DECADES);
+    for decade in DECADES[0]..=DECADES[1] {
+        let value = 10f64.powi(decade);
+        scene.line([[x(value), top], [x(value), bottom]], Ink::Grid, 1.0);
+        scene.small(
+            [x(value), bottom + 16.0],
+            format!("{value}"),
+            Ink::Muted,
+            Anchor::Middle,
+        );
+    }
+    for decade in ERROR_DECADES[0]..=ERROR_DECADES[1] {
+        let value = 10f64.powi(decade);
+        scene.line([[left, y(value)], [right, y(value)]], Ink::Grid, 1.0);
+        scene.small(
+            [left - 6.0, y(value) + 4.0],
+            format!("{value}"),
+            Ink::Muted,
+            Anchor::End,
+        );
+    }
+    scene.line([[x(1.0), top], [x(1.0), bottom]], Ink::Muted, 1.0);
+    scene.small([x(1.0) + 4.0, top + 12.0], "real time", Ink::Muted, Anchor::Start);
+    let below = "real-time factor (simulated seconds per wall second)";
+    scene.small(
+        [(left + right) / 2.0, bottom + 36.0],
+        below,
+        Ink::Muted,
+        Anchor::Middle,
+    );
+    scene.upwards(
+        [16.0, (top + bottom) / 2.0],
+        "largest force error at 0.5, 1 and 2 mm (%)",
+    );
+
+    let mut legend: Vec<(&str, &str)> = Vec::new();
+    for row in rows {
+        let (Some(figures), Some(percent)) = (&row.figures, row.worst_percent()) else {
+            continue;
+        };
+        let key = (row.engine.as_str(), row.setting.as_str());
+        let ink = Ink::Series(
+            legend
+                .iter()
+                .position(|known| *known == key)
+                .unwrap_or(legend.len()),
+        );
+        if !legend.contains(&key) {
+            let at = [right + 18.0, top + 10.0 + 18.0 * legend.len() as f64];
+            scene.dot([at[0], at[1] - 4.0], 4.0, ink, 1.0);
+            scene.small(
+                [at[0] + 10.0, at[1]],
+                format!("{}, {}", key.0, key.1),
+                Ink::Text,
+                Anchor::Start,
+            );
+            legend.push(key);
+        }
+        let at = [x(figures.rtf), y(percent)];
+        // A press that was cut short has been judged on less.
+        if row.is_cut() {
+            scene.ring(at, 4.0, ink, None);
+        } else {
+            scene.dot(at, 4.0, ink, 0.9);
+        }
+    }
+    let at = [right + 18.0, top + 22.0 + 18.0 * legend.len() as f64];
+    scene.ring([at[0], at[1] - 4.0], 4.0, Ink::Muted, None);
+    scene.small(
+        [at[0] + 10.0, at[1]],
+        "ring: cut before 2 mm",
+        Ink::Muted,
+        Anchor::Start,
+    );
+    scene
+}
+
+/// Where a value lies between decades, 0 to 1; what lies outside sits on the edge.
+fn part(value: f64, decades: [i32; 2]) -> f64 {
+    let [low, high] = decades.map(f64::from);
+    ((value.log10() - low) / (high - low)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_are_equally_wide() {
+        assert!((part(1e-4, DECADES)).abs() < 1e-12);
+        assert!((part(1e-3, DECADES) - 0.2).abs() < 1e-12);
+        assert!((part(100.0, DECADES) - 1.0).abs() < 1e-12);
+    }
+}

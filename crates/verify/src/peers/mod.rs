@@ -1,0 +1,104 @@
+//! The same press on other engines, in one go: `cargo xtask bench peers`.
+//!
+//! Each run is a process of its own that prints one row of figures; what fails or takes too long is a row that says so.
+
+mod chart;
+mod ours;
+mod page;
+mod plan;
+mod process;
+mod row;
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+
+use crate::cases;
+use plan::Plan;
+use process::Python;
+use row::Row;
+
+pub(crate) use ours::print_row;
+
+/// Where the results go.
+const RESULTS: &str = "docs/benchmarks";
+
+/// What the runs leave behind and find again: the virtual environment, compiled kernels, meshes and logs.
+const WORK: &str = "target/peers";
+
+/// What to leave out where time is short.
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Poisson's ratios of the block
+    #[arg(long, value_delimiter = ',', default_values_t = plan::RATIOS)]
+    poissons_ratios: Vec<f64>,
+    /// Processor time after which a press of another engine is cut, s
+    #[arg(long, default_value_t = 60.0)]
+    limit_s: f64,
+    /// Use the kernels that an earlier call compiled; how long a first start takes is not stated then
+    #[arg(long)]
+    keep_kernels: bool,
+}
+
+/// Measures every engine and writes the page, the figures and the chart.
+pub(crate) fn run(options: &Options) -> Result<()> {
+    let ratios = &options.poissons_ratios;
+    let work = Path::new(WORK);
+    fs::create_dir_all(work).with_context(|| format!("creating {WORK}"))?;
+    let plan = Plan::read()?;
+    let mesh_file = std::path::absolute(work.join("mesh.json"))?;
+    write_whole(&mesh_file, cases::block(plan::RATIOS[0])?.mesh_json()?.as_bytes())?;
+
+    let mut rows = Vec::new();
+    for &poissons_ratio in ratios {
+        eprintln!("TwinTac, ν = {poissons_ratio}");
+        rows.push(process::ours(work, poissons_ratio));
+    }
+    let python = Python::prepare(work, &plan.packages);
+    for engine in &plan.engines {
+        let runs = plan.runs(engine, &mesh_file, ratios, options.limit_s);
+        let first_start_s = match &python {
+            Ok(python) if !options.keep_kernels => python.first_start(engine, &runs),
+            _ => None,
+        };
+        for run in runs {
+            eprintln!(
+                "{}, {}, {} mesh, ν = {}",
+                run.engine, run.setting, run.mesh, run.poissons_ratio
+            );
+            rows.push(match &python {
+                Ok(python) => python.row(&run, first_start_s),
+                Err(error) => Row::failed(&run, &format!("{error:#}")),
+            });
+        }
+    }
+    let results = Path::new(RESULTS);
+    fs::create_dir_all(results).with_context(|| format!("creating {RESULTS}"))?;
+    let conditions = process::conditions(options.limit_s);
+    write_whole(
+        &results.join("peers.json"),
+        page::json(&conditions, &rows)?.as_bytes(),
+    )?;
+    write_whole(
+        &results.join("peers.png"),
+        &twintac_report::png(&chart::scene(&rows), 2.0)?,
+    )?;
+    write_whole(
+        &results.join("peers.md"),
+        page::markdown(&conditions, &rows).as_bytes(),
+    )?;
+    eprintln!("wrote {RESULTS}/peers.md, peers.json and peers.png");
+    Ok(())
+}
+
+/// A file that appears whole or not at all.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let partial = path.with_extension("tmp");
+    let write = || -> std::io::Result<()> {
+        fs::File::create(&partial)?.write_all(bytes)?;
+        fs::rename(&partial, path)
+    };
+    write().with_context(|| format!("writing {}", path.display()))
+}
