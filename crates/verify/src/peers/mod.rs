@@ -2,6 +2,8 @@
 //!
 //! Each run is a process of its own that prints one row of figures; what fails or takes too long is a row that says so.
 
+#![allow(clippy::print_stderr)] // a tool for people at a terminal
+
 mod chart;
 mod ours;
 mod page;
@@ -73,21 +75,27 @@ pub(crate) fn run(options: &Options) -> Result<()> {
                 Err(error) => Row::failed(&run, &format!("{error:#}")),
             });
         }
+        // Whoever stops this early keeps the engines that are done.
+        write_results(&rows, options.limit_s)?;
     }
-    let results = Path::new(RESULTS);
-    fs::create_dir_all(results).with_context(|| format!("creating {RESULTS}"))?;
-    let conditions = process::conditions(options.limit_s);
+    Ok(())
+}
+
+fn write_results(rows: &[Row], limit_s: f64) -> Result<()> {
+    let folder = Path::new(RESULTS);
+    fs::create_dir_all(folder).with_context(|| format!("creating {RESULTS}"))?;
+    let conditions = process::conditions(limit_s);
     write_whole(
-        &results.join("peers.json"),
-        page::json(&conditions, &rows)?.as_bytes(),
+        &folder.join("peers.json"),
+        page::json(&conditions, rows)?.as_bytes(),
     )?;
     write_whole(
-        &results.join("peers.png"),
-        &twintac_report::png(&chart::scene(&rows), 2.0)?,
+        &folder.join("peers.png"),
+        &twintac_report::png(&chart::scene(rows), 2.0)?,
     )?;
     write_whole(
-        &results.join("peers.md"),
-        page::markdown(&conditions, &rows).as_bytes(),
+        &folder.join("peers.md"),
+        page::markdown(&conditions, rows).as_bytes(),
     )?;
     eprintln!("wrote {RESULTS}/peers.md, peers.json and peers.png");
     Ok(())
