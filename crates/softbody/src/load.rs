@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::MPA_PER_KPA;
 use crate::body::SoftBody;
-use crate::material::KPA_PER_MPA;
 
 /// Rows of small triangles that each triangle of the surface is cut into.
 const ROWS: u32 = 4;
@@ -20,7 +20,7 @@ impl SoftBody {
             let area_mm2 = mesh.area_vector_mm2(&triangle).length() / f64::from(ROWS * ROWS);
             for weights in middles() {
                 let at_mm: DVec3 = corners_mm.iter().zip(weights).map(|(at, w)| *at * w).sum();
-                let force_n = traction_kpa(at_mm) * (area_mm2 / KPA_PER_MPA);
+                let force_n = traction_kpa(at_mm) * (area_mm2 * MPA_PER_KPA);
                 for (node, weight) in triangle.iter().zip(weights) {
                     sums[*node as usize] += force_n * weight;
                 }

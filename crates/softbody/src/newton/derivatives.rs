@@ -6,7 +6,7 @@ use super::{Step, Unknowns};
 use crate::body::SoftBody;
 use crate::element::Response;
 use crate::linear::block::Vector;
-use crate::material::Relaxation;
+use crate::relaxation::Relaxation;
 use crate::state::State;
 
 /// Weights of a central difference of fourth order, at these multiples of the step.

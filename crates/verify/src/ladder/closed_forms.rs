@@ -8,7 +8,7 @@ use super::Effort;
 use super::outcome::{Figure, Outcome, Plot};
 use super::patch_test::{ELEMENTS, TIGHT, body_of, deform, irregular_block};
 use super::plots;
-use super::rubbers::{RUBBERS, Rubber};
+use super::rubbers::{Rubber, rubbers};
 
 /// How a block is deformed by an amount, and the first Piola–Kirchhoff stress of that, kPa.
 type ClosedForm = fn(&Rubber, f64) -> (DMat3, DMat3);
@@ -32,7 +32,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     for (family, closed_form, amounts) in FAMILIES {
         for (element_name, element) in ELEMENTS {
             let mut worst: f64 = 0.0;
-            for (color, rubber) in RUBBERS.iter().enumerate() {
+            for (color, rubber) in rubbers().iter().enumerate() {
                 let body = body_of(&mesh, rubber.material(), element, TIGHT)?;
                 let mut found_kpa = Vec::new();
                 for amount in amounts {

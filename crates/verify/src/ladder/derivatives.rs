@@ -9,7 +9,7 @@ use twintac_mesh::bricks;
 use super::Effort;
 use super::outcome::{Figure, Outcome};
 use super::patch_test::{ELEMENTS, TIGHT, body_of, deform, irregular_block, linear};
-use super::rubbers::RUBBERS;
+use super::rubbers::rubbers;
 
 /// Tolerance where there is no load: of the smallest one that counts, so that round-off is near.
 const UNLOADED: f64 = 1e-5;
@@ -22,7 +22,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let mut mesh = irregular_block([4, 3, 4]);
     let mut figures = Vec::new();
     for (element_name, element) in ELEMENTS {
-        for rubber in RUBBERS {
+        for rubber in &rubbers() {
             bricks::bond(&mut mesh, |at| at.z == 0.0);
             let body = body_of(&mesh, rubber.material(), element, TIGHT)?;
             let every: Vec<u32> = (0..body.mesh().nodes_mm.len() as u32).collect();

@@ -9,7 +9,7 @@ use twintac_softbody::{Element, Frame, Material, SoftBody, SolverSettings, State
 
 use super::Effort;
 use super::outcome::{Figure, Outcome};
-use super::rubbers::{BULK_KPA, RUBBERS};
+use super::rubbers::{BULK_KPA, rubbers};
 
 /// Both elements.
 pub(crate) const ELEMENTS: [(&str, Element); 2] = [
@@ -74,7 +74,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let mut figures = Vec::new();
     let mut n_nodes = 0;
     for (element_name, element) in ELEMENTS {
-        for rubber in RUBBERS {
+        for rubber in &rubbers() {
             let body = body_of(&mesh, rubber.material(), element, TIGHT)?;
             n_nodes = body.mesh().nodes_mm.len();
             let mut state = body.rest();

@@ -1,49 +1,113 @@
 //! Every law that the soft body knows, with its energy written a second time, as a function of the principal stretches.
 
 use glam::DVec3;
-use twintac_softbody::{Isochoric, Material};
+use twintac_material::{
+    LogarithmicNeoHookean, Material, Model, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, StableNeoHookean,
+    Yeoh,
+};
 
 /// Bulk modulus of all of them, kPa: 50 times the shear modulus.
 pub(crate) const BULK_KPA: f64 = 1200.0;
 
-/// A law and its energy of a change of shape, kPa, in `Ī1` and `Ī2`.
+/// The shear modulus of those that have one constant, kPa.
+const SHEAR_KPA: f64 = 23.5;
+
+/// Terms of an Ogden series: modulus, kPa, and exponent.
+const TERMS: [(f64, f64); 3] = [(9.0, 1.3), (0.6, 4.5), (-3.0, -2.0)];
+
+/// A law and its energy per reference volume, kPa, in the principal stretches; that of the mean volume change comes on top.
 pub(crate) struct Rubber {
     pub(crate) name: &'static str,
-    pub(crate) law: Isochoric,
-    energy_kpa: fn(f64, f64) -> f64,
+    pub(crate) law: Model,
+    energy_kpa: fn(DVec3) -> f64,
 }
 
-pub(crate) const RUBBERS: &[Rubber] = &[
-    Rubber {
-        name: "neo-Hookean",
-        law: Isochoric::NeoHookean {
-            shear_modulus_kpa: 23.5,
+/// Every law.
+pub(crate) fn rubbers() -> Vec<Rubber> {
+    let terms = TERMS.map(|(mu_kpa, alpha)| OgdenTerm { mu_kpa, alpha });
+    vec![
+        Rubber {
+            name: "neo-Hookean",
+            law: NeoHookean {
+                shear_modulus_kpa: SHEAR_KPA,
+            }
+            .into(),
+            energy_kpa: |stretches| 0.5 * SHEAR_KPA * (isochoric(stretches).element_sum() - 3.0),
         },
-        energy_kpa: |first, _| 11.75 * (first - 3.0),
-    },
-    Rubber {
-        name: "Mooney–Rivlin",
-        law: Isochoric::MooneyRivlin {
-            c10_kpa: 8.0,
-            c01_kpa: 3.5,
+        Rubber {
+            name: "Mooney–Rivlin",
+            law: MooneyRivlin {
+                c10_kpa: 8.0,
+                c01_kpa: 3.5,
+            }
+            .into(),
+            energy_kpa: |stretches| {
+                let squares = isochoric(stretches);
+                // Of a change of shape the product of the squares is 1.
+                8.0 * (squares.element_sum() - 3.0) + 3.5 * (squares.recip().element_sum() - 3.0)
+            },
         },
-        energy_kpa: |first, second| 8.0 * (first - 3.0) + 3.5 * (second - 3.0),
-    },
-    Rubber {
-        name: "Yeoh",
-        law: Isochoric::Yeoh {
-            c10_kpa: 7.9,
-            c20_kpa: 0.9,
-            c30_kpa: 0.12,
+        Rubber {
+            name: "Yeoh",
+            law: Yeoh {
+                c10_kpa: 7.9,
+                c20_kpa: 0.9,
+                c30_kpa: 0.12,
+            }
+            .into(),
+            energy_kpa: |stretches| {
+                let first = isochoric(stretches).element_sum() - 3.0;
+                first * (7.9 + first * (0.9 + 0.12 * first))
+            },
         },
-        energy_kpa: |first, _| (first - 3.0) * (7.9 + (first - 3.0) * (0.9 + 0.12 * (first - 3.0))),
-    },
-];
+        Rubber {
+            name: "Ogden",
+            law: Ogden {
+                terms: terms.to_vec(),
+            }
+            .into(),
+            energy_kpa: |stretches| {
+                let of_term = |(mu, alpha): (f64, f64)| {
+                    mu / alpha * (isochoric(stretches).powf(0.5 * alpha).element_sum() - 3.0)
+                };
+                TERMS.into_iter().map(of_term).sum()
+            },
+        },
+        Rubber {
+            name: "logarithmic neo-Hookean",
+            law: LogarithmicNeoHookean {
+                shear_modulus_kpa: SHEAR_KPA,
+            }
+            .into(),
+            energy_kpa: |stretches| {
+                0.5 * SHEAR_KPA * (stretches.length_squared() - 3.0)
+                    - SHEAR_KPA * stretches.element_product().ln()
+            },
+        },
+        Rubber {
+            name: "stable neo-Hookean",
+            law: StableNeoHookean {
+                shear_modulus_kpa: SHEAR_KPA,
+            }
+            .into(),
+            energy_kpa: |stretches| {
+                let (modulus, first) = (4.0 / 3.0 * SHEAR_KPA, stretches.length_squared());
+                0.5 * modulus * (first - 3.0 - ((first + 1.0) / 4.0).ln())
+                    - 0.75 * modulus * (stretches.element_product() - 1.0)
+            },
+        },
+    ]
+}
+
+/// Squares of the principal stretches without the change of volume.
+fn isochoric(stretches: DVec3) -> DVec3 {
+    stretches * stretches / stretches.element_product().cbrt().powi(2)
+}
 
 impl Rubber {
     pub(crate) fn material(&self) -> Material {
         Material {
-            isochoric: self.law,
+            model: self.law.clone(),
             bulk_modulus_kpa: BULK_KPA,
             prony: Vec::new(),
         }
@@ -51,12 +115,8 @@ impl Rubber {
 
     /// Energy per reference volume, kPa.
     fn whole_energy_kpa(&self, stretches: DVec3) -> f64 {
-        let volume = stretches.element_product();
-        let squares = stretches * stretches / volume.cbrt().powi(2);
-        let first = squares.element_sum();
-        // Of a change of shape the product of the squares is 1.
-        let second = squares.recip().element_sum();
-        (self.energy_kpa)(first, second) + 0.5 * BULK_KPA * (volume - 1.0).powi(2)
+        let change = stretches.element_product() - 1.0;
+        (self.energy_kpa)(stretches) + 0.5 * self.material().volume_modulus_kpa() * change * change
     }
 
     /// First Piola–Kirchhoff stress, kPa: the slopes `∂W/∂λ_i` by differences of sixth order, good to ten digits.
