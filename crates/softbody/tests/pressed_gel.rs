@@ -6,7 +6,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{Ball, Walls, block, by_place, disc_mean, even, graded, mirrored, press};
+use common::{Ball, Wall, block, by_place, disc_mean, even, graded, mirrored, press};
 use glam::{DQuat, DVec3};
 use twintac_material::Yeoh;
 use twintac_shape::Pose;
@@ -82,9 +82,19 @@ fn forces_balance_against_board_and_walls() {
         tolerance: 1e-8,
         ..SolverSettings::default()
     };
-    let body = SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.49), settings)
-        .unwrap()
-        .with_obstacle(Arc::new(Walls { half_mm: [8.2, 6.2] }), Pose::IDENTITY);
+    let mut body = SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.49), settings).unwrap();
+    for (inwards, from_origin_mm) in [
+        (DVec3::X, 8.2),
+        (DVec3::NEG_X, 8.2),
+        (DVec3::Y, 6.2),
+        (DVec3::NEG_Y, 6.2),
+    ] {
+        let wall = Wall {
+            inwards,
+            from_origin_mm,
+        };
+        body = body.with_obstacle(Arc::new(wall), Pose::IDENTITY);
+    }
     let mut state = body.rest();
     let ball = Ball { radius_mm: 5.0 };
     let rotation = DQuat::from_rotation_y(0.1);

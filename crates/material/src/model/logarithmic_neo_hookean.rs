@@ -1,6 +1,6 @@
 //! `W = μ/2 (I1 - 3) - μ ln J`, with `λ/2 (θ - 1)²` of the mean volume change on top: the compressible neo-Hookean material that resists
-//! collapse with a logarithm (Ogden, Non-Linear Elastic Deformations, 1984). The wide-spread `λ/2 (ln J)²` instead differs from that
-//! in the third order of the volume change: not at all, in a gel.
+//! collapse with a logarithm (Ogden, Non-Linear Elastic Deformations, 1984). The wide-spread `λ/2 (ln J)²` instead is the same
+//! but for the third order of the volume change, which in a gel is a few per cent at most.
 
 use serde::{Deserialize, Serialize};
 

@@ -117,7 +117,11 @@ impl<T: Real> Wide<T> {
     #[inline(always)]
     #[must_use]
     pub fn inverse_cube_root(self) -> Self {
-        self.map(T::inverse_cube_root)
+        let mut out = self;
+        for lane in &mut out.0 {
+            *lane = lane.inverse_cube_root();
+        }
+        out
     }
 
     /// Square roots.

@@ -64,32 +64,23 @@ impl SignedDistance for Ball {
     }
 }
 
-/// Everything outside a box about the z axis: four walls.
-pub(crate) struct Walls {
-    pub(crate) half_mm: [f64; 2],
+/// Everything behind an upright plane.
+pub(crate) struct Wall {
+    /// From the wall to the gel, a unit vector.
+    pub(crate) inwards: DVec3,
+    pub(crate) from_origin_mm: f64,
 }
 
-impl SignedDistance for Walls {
+impl SignedDistance for Wall {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
-        let past = point_mm.abs().truncate() - DVec2::from(self.half_mm);
-        let outwards = DVec2::new(point_mm.x.signum(), point_mm.y.signum());
-        let (distance_mm, gradient) = if past.max_element() > 0.0 {
-            let past = past.max(DVec2::ZERO);
-            (-past.length(), -past.normalize())
-        } else if past.x > past.y {
-            (-past.x, DVec2::NEG_X)
-        } else {
-            (-past.y, DVec2::NEG_Y)
-        };
-        let gradient = (gradient * outwards).extend(0.0);
         Distance {
-            distance_mm,
-            gradient,
+            distance_mm: self.inwards.dot(point_mm) + self.from_origin_mm,
+            gradient: self.inwards,
         }
     }
 
     fn bounds_mm(&self) -> (DVec3, DVec3) {
-        (DVec3::splat(-1e3), DVec3::splat(1e3))
+        (DVec3::NEG_INFINITY, DVec3::INFINITY)
     }
 }
 
