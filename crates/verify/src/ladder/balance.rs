@@ -36,6 +36,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let mut figures = Vec::new();
     let mut series = Vec::new();
     let mut most_n: f64 = 0.0;
+    let mut ended = String::new();
     for (color, (name, at_mm, tilt_rad)) in PRESSES.into_iter().enumerate() {
         let indenter = sensor.indenters.iter().find(|indenter| indenter.name == name);
         let shape = indenter
@@ -69,10 +70,15 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
                 position_mm: touch.position_mm - DVec3::Z * depth_mm,
                 ..touch
             };
-            let frame = mesh
-                .body()
-                .advance(&mut state, field.as_ref(), &pose, 0.0)
-                .with_context(|| format!("{name} at {depth_mm:.2} mm"))?;
+            let frame = match mesh.body().advance(&mut state, field.as_ref(), &pose, 0.0) {
+                Ok(frame) => frame,
+                Err(error) => {
+                    ended.push_str(&format!(
+                        " The press of the {name} ended at {depth_mm:.2} mm: {error}."
+                    ));
+                    break;
+                }
+            };
             let sum = frame.indenter_force_n + frame.board_reaction_n + frame.obstacle_reaction_n;
             force_n = frame.indenter_force_n.length();
             shell_n = frame.obstacle_reaction_n.length();
@@ -110,7 +116,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         done: format!(
             "The gel of the sensor `phystac`, with its shell, is pressed in {STEPS} steps into {} % of its height, or to {ENOUGH_N} N, with \
              a tolerance of 1e-8. The forces of the indenter, the board and the shell are summed, each from what that body's nodes feel; \
-             what is left of the sum, over the indenter's force, is the largest of all steps.",
+             what is left of the sum, over the indenter's force, is the largest of all steps.{ended}",
             100.0 * DEPTH
         ),
         figures,
