@@ -4,7 +4,7 @@ use twintac_report::{Anchor, Ink, Scene};
 
 use super::row::Row;
 
-const SIZE: [f64; 2] = [640.0, 400.0];
+const SIZE: [f64; 2] = [780.0, 400.0];
 /// The box: left, top, right, bottom, px.
 const BOX: [f64; 4] = [56.0, 40.0, 470.0, 350.0];
 /// Decades of the real-time factor.
@@ -63,12 +63,12 @@ pub(super) fn scene(rows: &[Row]) -> Scene {
             continue;
         };
         let key = (row.engine.as_str(), row.setting.as_str());
-        let ink = Ink::Series(
-            legend
-                .iter()
-                .position(|known| *known == key)
-                .unwrap_or(legend.len()),
-        );
+        let number = legend
+            .iter()
+            .position(|known| *known == key)
+            .unwrap_or(legend.len());
+        // The first row is ours; the others have a palette of six.
+        let ink = number.checked_sub(1).map_or(Ink::Text, Ink::Series);
         if !legend.contains(&key) {
             let at = [right + 18.0, top + 10.0 + 18.0 * legend.len() as f64];
             scene.dot([at[0], at[1] - 4.0], 4.0, ink, 1.0);

@@ -18,6 +18,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 
 use crate::cases;
+use page::Results;
 use plan::Plan;
 use process::Python;
 use row::Row;
@@ -42,10 +43,18 @@ pub(crate) struct Options {
     /// Use the kernels that an earlier call compiled; how long a first start takes is not stated then
     #[arg(long)]
     keep_kernels: bool,
+    /// Measure nothing: write the page and the chart of the figures that are there
+    #[arg(long)]
+    rewrite: bool,
 }
 
 /// Measures every engine and writes the page, the figures and the chart.
 pub(crate) fn run(options: &Options) -> Result<()> {
+    if options.rewrite {
+        let figures =
+            fs::read_to_string(Path::new(RESULTS).join("peers.json")).context("there are no figures yet")?;
+        return write_results(&serde_json::from_str(&figures)?);
+    }
     let ratios = &options.poissons_ratios;
     let work = Path::new(WORK);
     fs::create_dir_all(work).with_context(|| format!("creating {WORK}"))?;
@@ -76,27 +85,22 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             });
         }
         // Whoever stops this early keeps the engines that are done.
-        write_results(&rows, options.limit_s)?;
+        write_results(&Results {
+            conditions: process::conditions(options.limit_s),
+            rows: rows.clone(),
+        })?;
     }
     Ok(())
 }
 
-fn write_results(rows: &[Row], limit_s: f64) -> Result<()> {
+fn write_results(results: &Results) -> Result<()> {
     let folder = Path::new(RESULTS);
     fs::create_dir_all(folder).with_context(|| format!("creating {RESULTS}"))?;
-    let conditions = process::conditions(limit_s);
-    write_whole(
-        &folder.join("peers.json"),
-        page::json(&conditions, rows)?.as_bytes(),
-    )?;
-    write_whole(
-        &folder.join("peers.png"),
-        &twintac_report::png(&chart::scene(rows), 2.0)?,
-    )?;
-    write_whole(
-        &folder.join("peers.md"),
-        page::markdown(&conditions, rows).as_bytes(),
-    )?;
+    let figures = serde_json::to_string_pretty(results)? + "\n";
+    write_whole(&folder.join("peers.json"), figures.as_bytes())?;
+    let chart = twintac_report::png(&chart::scene(&results.rows), 2.0)?;
+    write_whole(&folder.join("peers.png"), &chart)?;
+    write_whole(&folder.join("peers.md"), page::markdown(results).as_bytes())?;
     eprintln!("wrote {RESULTS}/peers.md, peers.json and peers.png");
     Ok(())
 }

@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use anyhow::Result;
-use serde_json::json;
+use serde::{Deserialize, Serialize};
 
 use super::plan::RATIOS;
 use super::process::Conditions;
@@ -18,7 +17,7 @@ const HEADER: &str = "\
 ";
 
 /// The page, with the tables where its text wants them.
-pub(super) fn markdown(conditions: &Conditions, rows: &[Row]) -> String {
+pub(super) fn markdown(Results { conditions, rows }: &Results) -> String {
     let mut tables = String::new();
     for ratio in RATIOS {
         let lines: String = rows
@@ -44,8 +43,10 @@ pub(super) fn markdown(conditions: &Conditions, rows: &[Row]) -> String {
 }
 
 /// The page's figures, all digits.
-pub(super) fn json(conditions: &Conditions, rows: &[Row]) -> Result<String> {
-    Ok(serde_json::to_string_pretty(&json!({ "conditions": conditions, "rows": rows }))? + "\n")
+#[derive(Deserialize, Serialize)]
+pub(super) struct Results {
+    pub(super) conditions: Conditions,
+    pub(super) rows: Vec<Row>,
 }
 
 fn line(row: &Row) -> String {
@@ -110,7 +111,7 @@ fn settings(rows: &[Row]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::Map;
+    use serde_json::{Map, json};
 
     use super::super::plan::Run;
     use super::super::row::Figures;
@@ -132,6 +133,11 @@ mod tests {
         }
     }
 
+    fn results(rows: Vec<Row>) -> Results {
+        let conditions = conditions();
+        Results { conditions, rows }
+    }
+
     fn conditions() -> Conditions {
         Conditions {
             date: "today".into(),
@@ -147,7 +153,7 @@ mod tests {
     #[test]
     fn a_cut_press_says_how_deep_it_came() {
         let figures = Figures::parse(&PRINTED.replace('\n', " ")).unwrap();
-        let page = markdown(&conditions(), &[Row::measured(&run(), figures, Some(80.0))]);
+        let page = markdown(&results(vec![Row::measured(&run(), figures, Some(80.0))]));
         assert!(
             page.contains("| Engine 1.2 | fast | ours | 8050 / 33660 | 0.0470 | 21.1 | +10.0 % / +0.0 % / –, cut at 1.17 mm | 0.232 / 0.711 | 12.0 (80) | 343 |"),
             "{page}"
@@ -158,10 +164,22 @@ mod tests {
     #[test]
     fn a_failed_run_is_a_row_with_its_reason() {
         let row = Row::failed(&run(), "no module | named engine");
-        let page = markdown(&conditions(), std::slice::from_ref(&row));
+        let page = markdown(&results(vec![row]));
         assert!(page.contains("no result: no module / named engine |"), "{page}");
-        let read: serde_json::Value = serde_json::from_str(&json(&conditions(), &[row]).unwrap()).unwrap();
-        assert_eq!(read["rows"][0]["failure"], "no module | named engine");
+    }
+
+    #[test]
+    fn figures_that_were_written_are_read_again() {
+        let figures = Figures::parse(&PRINTED.replace('\n', " ")).unwrap();
+        let rows = vec![
+            Row::measured(&run(), figures, None),
+            Row::failed(&run(), "no module"),
+        ];
+        let written = serde_json::to_string(&results(rows)).unwrap();
+        let read: Results = serde_json::from_str(&written).unwrap();
+        assert_eq!(read.rows[0].figures.as_ref().unwrap().nodes, 8050);
+        assert!(read.rows[1].figures.is_none());
+        assert_eq!(serde_json::to_string(&read).unwrap(), written);
     }
 
     #[test]
@@ -172,7 +190,7 @@ mod tests {
 
     #[test]
     fn the_text_has_a_place_for_everything() {
-        let page = markdown(&conditions(), &[]);
+        let page = markdown(&results(Vec::new()));
         assert!(!page.contains('{'), "{page}");
     }
 }

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 
 use super::plan::{Engine, Run};
@@ -67,8 +67,9 @@ impl Python {
     fn figures(&self, run: &Run) -> Result<Figures> {
         let mut command = on_two_processors(&self.program);
         command
-            .arg(Path::new(SCRIPTS).join(&run.script))
+            .arg(std::path::absolute(Path::new(SCRIPTS).join(&run.script))?)
             .arg(serde_json::to_string(&run.parameters)?)
+            .current_dir(&self.work) // engines leave logs where they run
             .env("PYTHONDONTWRITEBYTECODE", "1")
             .env("WARP_CACHE_PATH", std::path::absolute(self.kernels())?);
         measured(
@@ -155,7 +156,7 @@ fn succeed(command: &mut Command) -> Result<()> {
 }
 
 /// What it was measured on, and when.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Conditions {
     pub(super) date: String,
     pub(super) processor: String,

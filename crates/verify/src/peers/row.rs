@@ -37,7 +37,7 @@ pub(super) struct Figures {
 }
 
 /// A run and what came of it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Row {
     pub(super) engine: String,
     pub(super) version: String,
@@ -47,7 +47,7 @@ pub(super) struct Row {
     /// Everything that the script was told.
     pub(super) parameters: Map<String, Value>,
     /// The engine's very first start, with compilation, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) first_start_s: Option<f64>,
     /// `None` if nothing came of it.
     #[serde(flatten)]
@@ -55,7 +55,7 @@ pub(super) struct Row {
     /// Error of the force, %, at depths, mm.
     pub(super) error_percent: BTreeMap<String, f64>,
     /// Why there are no figures.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) failure: Option<String>,
 }
 
