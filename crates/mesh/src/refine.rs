@@ -24,8 +24,10 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 /// The four at the corners: a corner and three midpoints, numbered from 4 on in the order of [`EDGES`].
 const CORNERS: [[usize; 4]; 4] = [[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]];
 
-/// The three ways to cut the octahedron between them: two opposite midpoints, and the ring of the others.
-const DIAGONALS: [([usize; 2], [usize; 4]); 3] = [
+/// A way to cut the octahedron between them: two opposite midpoints, and the ring of the others.
+type Diagonal = ([usize; 2], [usize; 4]);
+
+const DIAGONALS: [Diagonal; 3] = [
     ([4, 9], [5, 6, 8, 7]),
     ([5, 8], [4, 6, 9, 7]),
     ([6, 7], [4, 5, 9, 8]),
@@ -41,7 +43,7 @@ impl TetMesh {
     }
 
     /// Cuts every tetrahedron into eight, the octahedron inside along its shortest diagonal (Bey, Computing 55, 1995, leaves the choice
-    /// free). A new node is bonded if it lies on a boundary triangle whose corners are.
+    /// free); of equally short ones along that from the longest edge, so that mirror images are cut alike. A new node is bonded if it lies on a boundary triangle whose corners are.
     #[must_use]
     pub fn refined(&self) -> Refinement {
         let mut mesh = TetMesh {
@@ -64,17 +66,22 @@ impl TetMesh {
                     mesh.nodes_mm.len() as u32 - 1
                 });
             }
-            let length_mm = |[a, b]: [usize; 2]| {
-                let [a, b] = [a, b].map(|corner| mesh.nodes_mm[nodes[corner] as usize]);
-                a.distance(b)
+            let at_mm = |corner: usize| mesh.nodes_mm[nodes[corner] as usize];
+            let length_mm = |diagonal: &Diagonal| at_mm(diagonal.0[0]).distance(at_mm(diagonal.0[1]));
+            let longest_edge_mm = |diagonal: &Diagonal| {
+                let edges = diagonal.0.map(|midpoint| EDGES[midpoint - 4]);
+                let [one_mm, other_mm] = edges.map(|[a, b]| at_mm(a).distance(at_mm(b)));
+                one_mm.max(other_mm)
             };
-            let mut best = DIAGONALS[0];
+            let mut best = &DIAGONALS[0];
             for diagonal in &DIAGONALS[1..] {
-                if length_mm(diagonal.0) < 0.999_999 * length_mm(best.0) {
-                    best = *diagonal;
+                let ratio = length_mm(diagonal) / length_mm(best);
+                let is_tie = (ratio - 1.0).abs() < 1e-6;
+                if is_tie && longest_edge_mm(diagonal) > longest_edge_mm(best) || !is_tie && ratio < 1.0 {
+                    best = diagonal;
                 }
             }
-            let ([low, high], ring) = best;
+            let ([low, high], ring) = *best;
             let inner = (0..4).map(|i| [low, high, ring[i], ring[(i + 1) % 4]]);
             for child in CORNERS.into_iter().chain(inner) {
                 let mut child = child.map(|corner| nodes[corner]);

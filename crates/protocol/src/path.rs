@@ -23,6 +23,12 @@ pub struct PressPath {
     pub rate_hz: Option<f64>,
     /// Where the indenter is when; it moves evenly between.
     pub poses: Vec<Waypoint>,
+    /// The direction, in the gel's frame, of forces that waypoints ask for; of any length. Default straight down.
+    #[serde(default = "down", skip_serializing_if = "is_down")]
+    pub force_direction: DVec3,
+    /// How far along that direction the indenter may be from a pose to meet a force, to either side, mm. Default the gel's height.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_travel_mm: Option<f64>,
     /// Places in the gel, other than the taxels, at which to read the pressure.
     #[serde(default)]
     pub points: Vec<Point>,
@@ -49,6 +55,31 @@ pub struct Waypoint {
     /// Turn from the indenter's upright pose: an axis in the gel's frame, its length the angle, radians.
     #[serde(default)]
     pub turn_rad: DVec3,
+    /// Force on the gel along [`PressPath::force_direction`], N: the indenter goes along that direction, from the position given, to where it
+    /// presses with this force. On the way to this waypoint the force changes evenly, from what it was at the last one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_n: Option<f64>,
+}
+
+/// A moment of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathFrame {
+    /// Time, s.
+    pub time_s: f64,
+    /// The pose evenly between those of the waypoints before and after; heights as in the file.
+    pub pose: Pose,
+    /// How far between them, from 0 to 1.
+    pub part: f64,
+    /// The forces that they ask for, N.
+    pub forces_n: [Option<f64>; 2],
+}
+
+fn down() -> DVec3 {
+    DVec3::NEG_Z
+}
+
+fn is_down(direction: &DVec3) -> bool {
+    *direction == down()
 }
 
 /// A disc, parallel to the board, over which the gel's pressure is averaged.
@@ -92,6 +123,21 @@ impl PressPath {
                 return Err(document.error("rate_hz", format!("is {rate_hz} Hz"), hint));
             }
         }
+        for (index, force_n) in self.poses.iter().map(|pose| pose.force_n).enumerate() {
+            if let Some(force_n) = force_n.filter(|force_n| *force_n <= 0.0) {
+                let field = format!("poses[{index}].force_n");
+                let problem = format!("is {force_n} N");
+                let hint = "give a force above zero, or leave it out and give a position off the gel";
+                return Err(document.error(&field, problem, hint));
+            }
+        }
+        if self.force_direction.try_normalize().is_none() {
+            return Err(document.error("force_direction", "is zero", "give a vector of any length"));
+        }
+        if let Some(travel_mm) = self.force_travel_mm.filter(|travel_mm| *travel_mm <= 0.0) {
+            let problem = format!("is {travel_mm} mm");
+            return Err(document.error("force_travel_mm", problem, "give a distance above zero"));
+        }
         for (index, point) in self.points.iter().enumerate() {
             if point.radius_mm < 0.0 {
                 let field = format!("points[{index}].radius_mm");
@@ -107,33 +153,44 @@ impl PressPath {
         Ok(())
     }
 
-    /// Times, s, and poses of all frames; heights as in the file.
+    /// All frames, in time.
     #[must_use]
-    pub fn frames(&self) -> Vec<(f64, Pose)> {
+    pub fn frames(&self) -> Vec<PathFrame> {
         let Some(rate_hz) = self.rate_hz else {
-            return self.poses.iter().map(|pose| (pose.time_s, pose.pose())).collect();
+            return self.poses.iter().map(|pose| self.at(pose.time_s)).collect();
         };
         let (first_s, last_s) = (self.poses[0].time_s, self.poses[self.poses.len() - 1].time_s);
         let n_frames = ((last_s - first_s) * rate_hz + 1e-9).floor() as usize + 1;
         (0..n_frames)
-            .map(|frame| {
-                let time_s = first_s + frame as f64 / rate_hz;
-                (time_s, self.at(time_s))
-            })
+            .map(|frame| self.at(first_s + frame as f64 / rate_hz))
             .collect()
     }
 
-    fn at(&self, time_s: f64) -> Pose {
-        let next = self.poses.partition_point(|pose| pose.time_s <= time_s);
-        let Some(to) = self.poses.get(next) else {
-            return self.poses[self.poses.len() - 1].pose();
-        };
-        let from = self.poses[next.saturating_sub(1)];
+    /// Whether a waypoint asks for a force.
+    #[must_use]
+    pub fn asks_for_force(&self) -> bool {
+        self.poses.iter().any(|pose| pose.force_n.is_some())
+    }
+
+    /// The moment at a time from the first waypoint's on; the last one's for ever after.
+    fn at(&self, time_s: f64) -> PathFrame {
+        let after = self.poses.partition_point(|pose| pose.time_s < time_s);
+        let to = self.poses[after.min(self.poses.len() - 1)];
+        let from = self.poses[after.saturating_sub(1)];
         let part =
             ((time_s - from.time_s) / (to.time_s - from.time_s).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        Pose {
-            position_mm: from.position_mm.lerp(to.position_mm, part),
-            rotation: from.pose().rotation.slerp(to.pose().rotation, part),
+        let pose = match part {
+            1.0 => to.pose(),
+            _ => Pose {
+                position_mm: from.position_mm.lerp(to.position_mm, part),
+                rotation: from.pose().rotation.slerp(to.pose().rotation, part),
+            },
+        };
+        PathFrame {
+            time_s,
+            pose,
+            part,
+            forces_n: [from.force_n, to.force_n],
         }
     }
 }
@@ -168,11 +225,23 @@ points = [{ name = "below", position_mm = [0.0, 0.0, 0.0], radius_mm = 1.0 }]
     fn the_indenter_moves_evenly_between_poses() {
         let frames = PressPath::parse("path.toml", PATH).unwrap().frames();
         assert_eq!(frames.len(), 9);
-        let (time_s, pose) = frames[2];
-        assert!((time_s - 0.5).abs() < 1e-12);
-        assert!((pose.position_mm.z + 1.0).abs() < 1e-12);
-        assert!((pose.rotation.to_scaled_axis().x - 0.1).abs() < 1e-12);
-        assert!((frames[8].1.position_mm - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-12);
+        let frame = frames[2];
+        assert!((frame.time_s - 0.5).abs() < 1e-12);
+        assert!((frame.pose.position_mm.z + 1.0).abs() < 1e-12);
+        assert!((frame.pose.rotation.to_scaled_axis().x - 0.1).abs() < 1e-12);
+        assert_eq!(frames[8].pose.position_mm, DVec3::new(1.0, 0.0, -2.0));
+        assert_eq!(frame.forces_n, [None, None]);
+    }
+
+    #[test]
+    fn frames_know_the_forces_before_and_after() {
+        let text = PATH.replace("-2.0] },\n]", "-2.0], force_n = 2.0 },\n]");
+        let path = PressPath::parse("path.toml", &text).unwrap();
+        let frames = path.frames();
+        assert!(path.asks_for_force());
+        assert_eq!(frames[4].forces_n, [None, None]);
+        assert_eq!(frames[5].forces_n, [None, Some(2.0)]);
+        assert!((frames[5].part - 0.25).abs() < 1e-12);
     }
 
     #[test]
@@ -180,6 +249,16 @@ points = [{ name = "below", position_mm = [0.0, 0.0, 0.0], radius_mm = 1.0 }]
         for (from, to, words) in [
             ("time_s = 2.0", "time_s = 0.5", "path.toml:9: `poses[2].time_s`"),
             ("rate_hz = 4.0", "rate_hz = 0.0", "path.toml:5: `rate_hz`"),
+            (
+                "rate_hz = 4.0",
+                "force_direction = [0.0, 0.0, 0.0]",
+                "path.toml:5: `force_direction`",
+            ),
+            (
+                "-2.0] },\n]",
+                "-2.0], force_n = 0.0 },\n]",
+                "path.toml:9: `poses[2].force_n`",
+            ),
             (
                 "radius_mm = 1.0",
                 "radius_mm = -1.0",

@@ -236,6 +236,10 @@ impl Checker<'_> {
                     &format!("give {}", error.expected),
                 )
             })?;
+            if let Some(friction) = indenter.friction.filter(|friction| *friction < 0.0) {
+                let field = format!("indenters[{index}].friction");
+                return Err(self.error(&field, format!("is {friction}"), "give zero or more"));
+            }
         }
         Ok(())
     }

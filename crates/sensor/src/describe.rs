@@ -80,12 +80,17 @@ impl Sensor {
         for (index, indenter) in self.indenters.iter().enumerate() {
             let title = if index == 0 { "indenters" } else { "" };
             let mark = self.mark(&format!("indenters[{index}].shape"));
-            writeln!(
+            write!(
                 out,
                 "  {title:<11} {:<12} {}{mark}",
                 indenter.name,
                 shape_in_words(&indenter.shape)
             )?;
+            if let Some(friction) = indenter.friction {
+                let mark = self.mark(&format!("indenters[{index}].friction"));
+                write!(out, ", friction {friction}{mark}")?;
+            }
+            writeln!(out)?;
         }
         if !self.inferred.is_empty() {
             writeln!(out, "{MARK} inferred, not stated by the source")?;

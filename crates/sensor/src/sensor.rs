@@ -113,4 +113,7 @@ pub struct Indenter {
     pub name: String,
     /// Its shape.
     pub shape: Shape,
+    /// Coulomb's coefficient of friction on the gel; that of the solver's settings where it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
 }

@@ -6,7 +6,6 @@
 
 mod block;
 mod bvh;
-mod cavity;
 mod dome;
 mod pose;
 mod prism;
@@ -17,7 +16,6 @@ mod solid;
 mod stl;
 mod surface;
 
-pub use cavity::Cavity;
 pub use dome::Dome;
 pub use pose::Pose;
 pub use shape::{Shape, ShapeError};

@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use proptest::prelude::*;
-use twintac_shape::{Cavity, Dome, SignedDistance, Solid, Surfaces};
+use twintac_shape::{Dome, Solid, Surfaces};
 
 fn solids() -> Vec<Solid> {
     let block = |edge_radius_mm: f64| Solid::Block {
@@ -64,41 +64,6 @@ proptest! {
         let is_exact = found.distance_mm <= 0.0 || which == 2;
         prop_assert!(rest > -1e-7 && (rest < 1e-7 || !is_exact), "{:?} leaves {}", found, rest);
     }
-
-    #[test]
-    fn the_shell_is_where_the_gel_is_not(p in near(), q in near()) {
-        let cavity = Cavity::around(DVec2::new(-5.0, -4.0), DVec2::new(7.0, 4.0), 1.0, 5.0);
-        let found = cavity.signed_distance(p);
-        prop_assert!((found.gradient.length() - 1.0).abs() < 1e-9);
-        let change = found.distance_mm - cavity.signed_distance(q).distance_mm;
-        prop_assert!(change.abs() <= p.distance(q) + 1e-12);
-        if found.distance_mm > 0.0 {
-            let rest = cavity.signed_distance(p - found.gradient * found.distance_mm).distance_mm;
-            prop_assert!(rest.abs() < 1e-9);
-        }
-        let in_hole = p.x > -6.0 && p.x < 8.0 && p.y.abs() < 5.0;
-        if in_hole || p.z > 5.0 {
-            prop_assert!(found.distance_mm > 0.0 || found.distance_mm.abs() < 1e-9, "{} at {}", found.distance_mm, p);
-        }
-    }
-}
-
-#[test]
-fn the_shell_stands_a_gap_away_and_has_a_round_rim() {
-    let cavity = Cavity::around(DVec2::new(-5.0, -4.0), DVec2::new(7.0, 4.0), 1.0, 5.0);
-    let distance_mm = |x: f64, y: f64, z: f64| cavity.signed_distance(DVec3::new(x, y, z)).distance_mm;
-    assert!((distance_mm(7.0, 0.0, 2.0) - 1.0).abs() < 1e-12);
-    assert!((distance_mm(0.0, -4.5, 0.0) - 0.5).abs() < 1e-12);
-    assert!(
-        (distance_mm(9.0, 0.0, 2.0) + 1.0).abs() < 1e-12,
-        "1 mm into the wall"
-    );
-    assert!(
-        (distance_mm(20.0, 0.0, 6.0) - 1.0).abs() < 1e-12,
-        "above the wall"
-    );
-    // The sharp rim would be here; rounded by 0.5 mm it is (√2 - 1)/2 away.
-    assert!((distance_mm(8.0, 0.0, 5.0) - 0.5 * (2f64.sqrt() - 1.0)).abs() < 1e-12);
 }
 
 #[test]

@@ -1,14 +1,19 @@
-//! An indenter on a path of its own: down, aside, tilted, and up again.
+//! An indenter on a path of its own: down, aside, tilted, and up again, to poses or with forces.
 
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use serde::Serialize;
-use twintac_protocol::{PressPath, Zero};
+use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
+use twintac_softbody::{Frame, Push, SolveError, State};
 
+use crate::gel::GelMesh;
 use crate::readout::PortReadout;
 use crate::{Gel, Honesty, SimulateError};
+
+/// Part of the gel's height that a force of unknown effect is first taken to press in.
+const GUESSED_DEPTH: f64 = 0.25;
 
 /// The gel and the indenter at one moment of a path. Forces act on the gel, in its frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,6 +22,8 @@ pub struct FollowedFrame {
     pub time_s: f64,
     /// The indenter's origin, mm; z counts from the board.
     pub position_mm: DVec3,
+    /// How far the indenter is below where, at the place and turn of the first pose, it first touches the gel, mm.
+    pub depth_mm: f64,
     /// Force of the indenter, N.
     pub force_n: DVec3,
     /// Torque of the indenter about its origin, N mm.
@@ -53,31 +60,57 @@ impl Gel {
         path: &PressPath,
         advanced: &mut dyn FnMut(),
     ) -> Result<Followed, SimulateError> {
-        let mut frames = path.frames();
-        let first = frames[0].1;
+        let rough = self.rough_for(&path.indenter);
+        let first = path.frames()[0].pose;
+        let touch_mm = self.touch(shape, &first)?.position_mm.z;
         let zero_mm = match path.zero {
-            Zero::Touch => self.touch(shape, &first)?.position_mm.z,
+            Zero::Touch => touch_mm,
             Zero::Board => 0.0,
         };
-        for (_, pose) in &mut frames {
-            pose.position_mm.z += zero_mm;
-        }
-        let touch_mm = self.touch(shape, &first)?.position_mm.z;
+        let frames_of = |path: &PressPath| {
+            let mut frames = path.frames();
+            for frame in &mut frames {
+                frame.pose.position_mm.z += zero_mm;
+            }
+            frames
+        };
+        let frames = frames_of(path);
         let depth_mm = |pose: &Pose| touch_mm - pose.position_mm.z;
-        let deepest_mm = frames.iter().map(|(_, pose)| depth_mm(pose)).fold(0.0, f64::max);
-        let place = |pose: &Pose| pose.position_mm.truncate();
+        let is_pressed = |frame: &&PathFrame| depth_mm(&frame.pose) > 0.0 || frame.forces_n[1].is_some();
+        let place = |frame: &PathFrame| frame.pose.position_mm.truncate();
         // Half the gel's height apart, the fine parts of the mesh run into each other.
         let apart_mm = 0.5 * self.height_mm();
         let mut ways_mm: Vec<DVec2> = vec![DVec2::ZERO];
-        for (_, pose) in frames.iter().filter(|(_, pose)| depth_mm(pose) > 0.0) {
-            let way_mm = place(pose) - place(&first);
+        for frame in frames.iter().filter(is_pressed) {
+            let way_mm = place(frame) - place(&frames[0]);
             if ways_mm.iter().all(|other| other.distance(way_mm) > apart_mm) {
                 ways_mm.push(way_mm);
             }
         }
+        let ways_mm = &ways_mm[1..];
+        let mut deepest_mm = frames
+            .iter()
+            .map(|frame| depth_mm(&frame.pose))
+            .fold(1e-3, f64::max);
+        if path.asks_for_force() {
+            let guess_mm = deepest_mm.max(GUESSED_DEPTH * self.height_mm());
+            let gel = rough.coarse().mesh_along(shape, &first, guess_mm, ways_mm)?;
+            let mut walk = Walk::new(&gel, path, self.height_mm());
+            // Between waypoints forces and poses change evenly: the deepest place is at one.
+            let waypoints = PressPath {
+                rate_hz: None,
+                ..path.clone()
+            };
+            for frame in frames_of(&waypoints) {
+                if walk.step(&frame).is_err() {
+                    break;
+                }
+                deepest_mm = deepest_mm.max(walk.pose().map_or(0.0, |pose| depth_mm(&pose)));
+            }
+        }
         // Somebody waits for this one press.
-        let gel = self
-            .mesh_along(shape, &first, deepest_mm.max(1e-3), &ways_mm[1..])?
+        let gel = rough
+            .mesh_along(shape, &first, deepest_mm, ways_mm)?
             .on_two_threads();
         let mesh = gel.body.mesh();
         let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
@@ -89,30 +122,28 @@ impl Gel {
             .collect::<Result<Vec<_>, _>>()?;
         ports.extend(path.points.iter().map(|point| point.name.clone()).zip(&points));
 
-        let mut state = gel.body.rest();
+        let mut walk = Walk::new(&gel, path, self.height_mm());
         let mut followed = Followed {
             n_nodes: mesh.nodes_mm.len(),
             n_tets: mesh.tets.len(),
             frames: Vec::with_capacity(frames.len()),
             failure: None,
         };
-        let mut previous_s = frames[0].0;
-        for (time_s, pose) in &frames {
-            let frame = match gel
-                .body
-                .advance(&mut state, gel.indenter.as_ref(), pose, time_s - previous_s)
-            {
+        for path_frame in &frames {
+            let time_s = path_frame.time_s;
+            let frame = match walk.step(path_frame) {
                 Ok(frame) => frame,
                 Err(error) => {
                     followed.failure = Some(format!("at {time_s} s: {error}"));
                     break;
                 }
             };
-            previous_s = *time_s;
-            let nodal_kpa = gel.body.pressure_kpa(&state);
+            let pose = walk.pose().unwrap_or(path_frame.pose);
+            let nodal_kpa = gel.body.pressure_kpa(&walk.state);
             followed.frames.push(FollowedFrame {
-                time_s: *time_s,
+                time_s,
                 position_mm: pose.position_mm,
+                depth_mm: depth_mm(&pose),
                 force_n: frame.indenter_force_n,
                 torque_n_mm: frame.indenter_torque_n_mm,
                 pressure_kpa: ports
@@ -125,5 +156,68 @@ impl Gel {
             advanced();
         }
         Ok(followed)
+    }
+}
+
+/// A gel on whose indenter a path is followed.
+struct Walk<'a> {
+    gel: &'a GelMesh,
+    state: State,
+    direction: DVec3,
+    travel_mm: f64,
+    /// Time of the last frame, s.
+    time_s: Option<f64>,
+    /// How far beyond its pose the indenter was when a force decided last, mm.
+    beyond_mm: f64,
+    /// Force along the direction when a pose decided last, N.
+    force_n: f64,
+}
+
+impl<'a> Walk<'a> {
+    fn new(gel: &'a GelMesh, path: &PressPath, height_mm: f64) -> Self {
+        Self {
+            gel,
+            state: gel.body.rest(),
+            direction: path.force_direction.normalize_or(DVec3::NEG_Z),
+            travel_mm: path.force_travel_mm.unwrap_or(height_mm),
+            time_s: None,
+            beyond_mm: 0.0,
+            force_n: 0.0,
+        }
+    }
+
+    /// Where the indenter is.
+    fn pose(&self) -> Option<Pose> {
+        self.state.gel_from_indenter()
+    }
+
+    fn step(&mut self, to: &PathFrame) -> Result<Frame, SolveError> {
+        let time_step_s = to.time_s - self.time_s.unwrap_or(to.time_s);
+        let (body, indenter) = (&self.gel.body, self.gel.indenter.as_ref());
+        let mut pose = to.pose;
+        let frame = match to.forces_n {
+            [from_n, Some(to_n)] => {
+                let from_n = from_n.unwrap_or(self.force_n);
+                let push = Push {
+                    direction: self.direction,
+                    force_n: from_n + to.part * (to_n - from_n),
+                    travel_mm: self.travel_mm,
+                };
+                let frame = body.advance_to_force(&mut self.state, indenter, &pose, &push, time_step_s)?;
+                let found_mm = self.pose().map_or(pose.position_mm, |found| found.position_mm);
+                self.beyond_mm = (found_mm - pose.position_mm).dot(self.direction);
+                frame
+            }
+            [from_n, None] => {
+                if from_n.is_some() {
+                    pose.position_mm += self.direction * (self.beyond_mm * (1.0 - to.part));
+                }
+                let frame = body.advance(&mut self.state, indenter, &pose, time_step_s)?;
+                self.force_n = frame.indenter_force_n.dot(self.direction).max(0.0);
+                frame
+            }
+        };
+        self.time_s = Some(to.time_s);
+        Ok(frame)
     }
 }

@@ -127,7 +127,26 @@ impl Gel {
             position_mm: DVec3::new(place.x_mm, place.y_mm, 0.0),
             rotation: place.rotation,
         };
-        self.mesh_along(&place.shape, &above, place.depth_mm, &[])
+        self.rough_for(&place.indenter)
+            .mesh_along(&place.shape, &above, place.depth_mm, &[])
+    }
+
+    /// The same gel with the friction of an indenter of the sensor, if its description states one.
+    pub(crate) fn rough_for(&self, indenter: &str) -> Self {
+        let mut gel = self.clone();
+        let known = gel.sensor.indenters.iter().find(|known| known.name == indenter);
+        if let Some(friction) = known.and_then(|known| known.friction) {
+            gel.settings.solver.friction = friction;
+        }
+        gel
+    }
+
+    /// The same gel, meshed as coarsely as tells roughly how deep a force goes.
+    pub(crate) fn coarse(&self) -> Self {
+        let mut gel = self.clone();
+        gel.settings.edges_per_height = gel.settings.edges_per_height.min(4.0);
+        gel.settings.edges_per_contact_radius = gel.settings.edges_per_contact_radius.min(4.0);
+        gel
     }
 
     /// Meshes the gel for an indenter that touches first below a pose, goes this deep, and moves on by these ways.

@@ -64,30 +64,35 @@ impl SignedDistance for Wall {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use twintac_shape::Cavity;
 
     #[test]
-    fn the_nearest_wall_is_as_far_as_the_cavity_says() {
-        let (low, high) = (DVec2::new(-17.0, -9.0), DVec2::new(17.0, 9.0));
-        let walls = Wall::around(low, high, 1.0, 8.5);
-        let cavity = Cavity::around(low, high, 1.0, 8.5);
-        for x in -19..=19 {
-            for y in -11..=11 {
-                for z in 0..=12 {
-                    // Off the planes where the nearest wall changes.
-                    let at = DVec3::new(f64::from(x) + 0.013, f64::from(y) + 0.029, f64::from(z) + 0.007);
-                    let expected = cavity.signed_distance(at);
-                    let found = walls
-                        .iter()
-                        .map(|wall| wall.signed_distance(at))
-                        .min_by(|a, b| a.distance_mm.total_cmp(&b.distance_mm))
-                        .unwrap();
-                    if expected.distance_mm > 0.0 {
-                        assert!((found.distance_mm - expected.distance_mm).abs() < 1e-9, "{at}");
-                        assert!(found.gradient.distance(expected.gradient) < 1e-9, "{at}");
-                    }
-                }
-            }
+    fn walls_stand_a_gap_away_and_have_round_rims() {
+        let walls = Wall::around(DVec2::new(-5.0, -4.0), DVec2::new(7.0, 4.0), 1.0, 5.0);
+        let nearest = |x: f64, y: f64, z: f64| {
+            let found = walls.map(|wall| wall.signed_distance(DVec3::new(x, y, z)));
+            found
+                .into_iter()
+                .min_by(|a, b| a.distance_mm.total_cmp(&b.distance_mm))
+        };
+        let sqrt_half = 0.5f64.sqrt();
+        for (at, distance_mm, gradient) in [
+            ([7.0, 0.0, 2.0], 1.0, DVec3::NEG_X),
+            ([0.0, -4.5, 0.0], 0.5, DVec3::Y),
+            ([9.0, 0.0, 2.0], -1.0, DVec3::NEG_X),
+            ([20.0, 0.0, 6.0], 1.0, DVec3::Z),
+            // A sharp rim would be here: rounded by 0.5 mm it is (√2 - 1)/2 away.
+            (
+                [8.0, 0.0, 5.0],
+                sqrt_half - 0.5,
+                DVec3::new(-sqrt_half, 0.0, sqrt_half),
+            ),
+        ] {
+            let found = nearest(at[0], at[1], at[2]);
+            assert!(
+                found.is_some_and(|found| (found.distance_mm - distance_mm).abs() < 1e-12
+                    && found.gradient.distance(gradient) < 1e-12),
+                "{found:?} at {at:?}"
+            );
         }
     }
 }

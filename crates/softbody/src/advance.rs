@@ -5,14 +5,14 @@ use std::time::Instant;
 use glam::DVec3;
 use twintac_shape::{Pose, SignedDistance};
 
-use crate::SolveError;
 use crate::body::SoftBody;
-use crate::contact::{Contact, RigidBody};
+use crate::contact::{Contact, RigidBody, clash};
 use crate::element::{self, Forces, Response};
 use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::parallel::on_two_threads;
 use crate::relaxation::Relaxation;
 use crate::state::{Frame, Motion, State};
+use crate::{Blocker, SolveError};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
 const CLEARANCE_MM: f64 = 0.01;
@@ -37,7 +37,6 @@ impl SoftBody {
         time_step_s: f64,
     ) -> Result<Frame, SolveError> {
         check_pose(gel_from_indenter)?;
-        self.check_way(state, indenter, gel_from_indenter)?;
         let start = state
             .gel_from_indenter
             .unwrap_or_else(|| self.retreat(state, indenter, gel_from_indenter));
@@ -46,6 +45,7 @@ impl SoftBody {
             from: start,
             to: *gel_from_indenter,
         };
+        self.check_way(state, indenter, &drive)?;
         self.drive(state, &drive, time_step_s)
     }
 
@@ -162,6 +162,23 @@ impl SoftBody {
         let old = state.clone();
         state.contacts.iter_mut().for_each(Contact::carry);
         state.contacts[0].forget_distances();
+        let starts = |shape: usize| match shape {
+            0 => from,
+            _ => shapes[shape].gel_from_shape,
+        };
+        for (index, contact) in state.contacts.iter_mut().enumerate() {
+            if let Some(friction) = &mut contact.friction {
+                let start = RigidBody {
+                    gel_from_shape: starts(index),
+                    ..shapes[index]
+                };
+                friction.begin(
+                    &start,
+                    &contact.touches,
+                    self.boundary_mm(&state.displacements_mm),
+                );
+            }
+        }
         drive.hold(self, part[1], &mut state.displacements_mm);
 
         let State {
@@ -202,6 +219,12 @@ impl SoftBody {
         }
         match buffers.solve(self, &step, &mut x, iterations) {
             Ok(equilibrium) => {
+                for (shape, contact) in shapes.iter().zip(x.contacts.iter_mut()) {
+                    if let Some(friction) = &mut contact.friction {
+                        let at_mm = self.boundary_mm(x.displacements_mm);
+                        friction.settle(shape, &self.boundary, &contact.touches, at_mm);
+                    }
+                }
                 element::remember(
                     &self.elements,
                     self.material(),
@@ -249,13 +272,12 @@ impl SoftBody {
         let mut forces = vec![DVec3::ZERO; state.contacts.len()];
         let gradient_n = std::mem::take(&mut state.workspace.buffers(self).gradient_n);
         for (shape, contact) in state.contacts.iter().enumerate() {
-            for (boundary, touch) in self.boundary.iter().zip(&contact.touches) {
+            for (index, (boundary, touch)) in self.boundary.iter().zip(&contact.touches).enumerate() {
+                let mut force = contact.force_n(index);
                 // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
-                let force = if shape == 0 && touch.force_n > 0.0 {
-                    touch.normal * touch.force_n + gradient_n[boundary.node as usize]
-                } else {
-                    touch.normal * touch.force_n
-                };
+                if shape == 0 && touch.force_n > 0.0 {
+                    force += gradient_n[boundary.node as usize];
+                }
                 forces[shape] += force;
                 if shape == 0 {
                     torque += (at_mm(boundary.node as usize) - origin_mm).cross(force);
@@ -305,17 +327,48 @@ impl SoftBody {
             .collect()
     }
 
-    /// Refuses an indenter that reaches into what the body is bonded to: no gel is left there that could stop it.
-    fn check_way(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Result<(), SolveError> {
+    /// Refuses an indenter that would reach into something rigid on its way: no gel is left there that could stop it.
+    fn check_way(
+        &self,
+        state: &State,
+        indenter: &dyn SignedDistance,
+        drive: &Drive,
+    ) -> Result<(), SolveError> {
+        let n_parts = (1.0 / drive.largest_part(self.settings.max_travel_mm)).round() as u32;
+        // The way of an indenter without a past is made up.
+        let first = state.gel_from_indenter.map_or(n_parts, |_| 1);
+        (first..=n_parts).try_for_each(|part| {
+            let moving = RigidBody {
+                shape: indenter,
+                gel_from_shape: drive.pose(f64::from(part) / f64::from(n_parts)),
+            };
+            self.check_place(state, &moving)
+        })
+    }
+
+    fn check_place(&self, state: &State, indenter: &RigidBody) -> Result<(), SolveError> {
         for &node in &self.mesh().sets.bonded {
             let at_mm = self.mesh().nodes_mm[node as usize] + state.displacements_mm[node as usize];
-            let distance_mm = indenter
-                .signed_distance(pose.inverse_transform_point(at_mm))
-                .distance_mm;
+            let local_mm = indenter.gel_from_shape.inverse_transform_point(at_mm);
+            let distance_mm = indenter.shape.signed_distance(local_mm).distance_mm;
             if distance_mm < -self.settings.penetration_mm {
                 return Err(SolveError::Blocked {
+                    by: Blocker::Bonded,
                     at_mm,
                     depth_mm: -distance_mm,
+                });
+            }
+        }
+        for (shape, pose) in &self.obstacles {
+            let obstacle = RigidBody {
+                shape: shape.as_ref(),
+                gel_from_shape: *pose,
+            };
+            if let Some((at_mm, depth_mm)) = clash(indenter, &obstacle) {
+                return Err(SolveError::Blocked {
+                    by: Blocker::Obstacle,
+                    at_mm,
+                    depth_mm,
                 });
             }
         }

@@ -201,9 +201,13 @@ impl SoftBody {
             displacements_mm: vec![DVec3::ZERO; self.mesh.nodes_mm.len()],
             pressures_mpa: vec![0.0; self.volume_stiffness.len()],
             memory: Memory::new(self.elements.n_points(), &self.material.prony),
-            contacts: vec![Contact::new(self.boundary.len()); 1 + self.obstacles.len()],
+            contacts: std::iter::once(self.settings.friction)
+                .chain(self.obstacles.iter().map(|_| self.settings.obstacle_friction))
+                .map(|friction| Contact::new(self.boundary.len(), friction))
+                .collect(),
             gel_from_indenter: None,
             last: None,
+            stiffness_n_per_mm: None,
             workspace: crate::newton::Workspace::default(),
         }
     }
@@ -257,6 +261,14 @@ impl SoftBody {
                 (1.5 * square).sqrt() / (MPA_PER_KPA * volume)
             })
             .collect()
+    }
+
+    /// Where each boundary node is, mm. `[n_boundary_nodes]`
+    pub(crate) fn boundary_mm(&self, displacements_mm: &[DVec3]) -> impl Iterator<Item = DVec3> {
+        self.boundary.iter().map(|boundary| {
+            let node = boundary.node as usize;
+            self.mesh.nodes_mm[node] + displacements_mm[node]
+        })
     }
 
     /// The pressures of each slot's corners, MPa.

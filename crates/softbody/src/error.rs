@@ -81,13 +81,27 @@ pub enum SolveError {
         /// Part of the step that did converge.
         fraction: f64,
     },
-    /// The indenter would reach into what the body is bonded to.
-    #[error("the indenter would be {depth_mm:.3} mm deep in what the body is bonded to at {at_mm} mm")]
+    /// The indenter would reach into something rigid.
+    #[error("blocked: the indenter would be at least {depth_mm:.3} mm deep in {by} at {at_mm:.3} mm")]
     Blocked {
-        /// A bonded node inside the indenter, mm.
+        /// What it would reach into.
+        by: Blocker,
+        /// A place inside both, mm.
         at_mm: glam::DVec3,
-        /// How deep inside, mm.
+        /// How deep inside there, mm; elsewhere it may be deeper.
         depth_mm: f64,
+    },
+    /// The force asked for is not met anywhere within the travel.
+    #[error(
+        "a force of {wanted_n} N is not met within {travel_mm} mm of travel: {reached_n:.4} N where it was sought last"
+    )]
+    ForceNotReached {
+        /// The force asked for, N.
+        wanted_n: f64,
+        /// The force last found, N.
+        reached_n: f64,
+        /// Travel that was allowed, mm.
+        travel_mm: f64,
     },
     /// A pose or time that is no number, or a time that runs backwards.
     #[error("{what} is {found}, expected {expected}")]
@@ -99,4 +113,22 @@ pub enum SolveError {
         /// What was found.
         found: String,
     },
+}
+
+/// Something rigid that an indenter can meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blocker {
+    /// What the body is bonded to.
+    Bonded,
+    /// An obstacle.
+    Obstacle,
+}
+
+impl std::fmt::Display for Blocker {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Bonded => "what the body is bonded to",
+            Self::Obstacle => "an obstacle",
+        })
+    }
 }

@@ -14,14 +14,16 @@ mod linear;
 mod load;
 mod newton;
 mod parallel;
+mod push;
 mod relaxation;
 mod settings;
 mod state;
 
 pub use body::SoftBody;
 pub use element::Element;
-pub use error::{SoftBodyError, SolveError};
+pub use error::{Blocker, SoftBodyError, SolveError};
 pub use newton::DerivativeErrors;
+pub use push::Push;
 pub use settings::SolverSettings;
 pub use state::{Cost, Frame, State};
 pub use twintac_material::{Material, Model, PronyTerm};

@@ -182,7 +182,9 @@ impl Buffers {
                 if now.smallest_volume_ratio <= 0.0 {
                     return Err(Failure::Inverted);
                 }
-                if !push_out(body, x.contacts) {
+                let moved_n = follow_friction(x.contacts);
+                let has_pushed = push_out(body, x.contacts);
+                if !has_pushed && moved_n <= settings.tolerance * now.load_n {
                     self.foreseen_mpa.copy_from_slice(x.pressures_mpa);
                     return Ok(Equilibrium {
                         residual,
@@ -204,6 +206,9 @@ impl Buffers {
                     }
                     has_failed = false;
                     self.adapt_damping(length);
+                    if follow_friction(x.contacts) > 0.0 {
+                        now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+                    }
                 }
                 // A direction that leads nowhere: once more with new factors and a short leash.
                 Err(_) if !has_failed => {
@@ -273,6 +278,12 @@ impl Buffers {
                 evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness);
                 self.gradient_n[node] -= touch.normal * touch.force_n;
                 evaluation.load_n += touch.force_n;
+            }
+            if let Some(friction) = &mut contact.friction {
+                let at_mm = body.boundary_mm(x.displacements_mm);
+                evaluation.energy += friction.pull(shape, &body.boundary, at_mm, |boundary, force_n| {
+                    self.gradient_n[boundary.node as usize] -= force_n;
+                });
             }
         }
         self.cost.contact_s += started.elapsed().as_secs_f64();
@@ -514,25 +525,37 @@ fn is_admissible(body: &SoftBody, smallest_volume_ratio: f64) -> bool {
 
 fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(usize, &DMat3)) {
     for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
-        for (boundary, touch) in body.boundary.iter().zip(&contact.touches) {
+        for (index, (boundary, touch)) in body.boundary.iter().zip(&contact.touches).enumerate() {
+            let node = boundary.node as usize;
+            let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
             if touch.force_n > 0.0 {
-                let node = boundary.node as usize;
-                let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
                 let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, true);
+                add(node, &stiffness);
+            }
+            if let Some(friction) = &contact.friction
+                && let Some(stiffness) = friction.stiffness(index, shape, at_mm, boundary.stiffness)
+            {
                 add(node, &stiffness);
             }
         }
     }
 }
 
-/// Where a node is too deep inside of a shape, carries that shape's forces over. True if there is any.
+/// Lets friction follow the normal forces; returns by how much its limits change altogether, N.
+fn follow_friction(contacts: &mut [Contact]) -> f64 {
+    let frictions = contacts
+        .iter_mut()
+        .filter_map(|contact| Some((contact.friction.as_mut()?, &contact.touches)));
+    frictions
+        .map(|(friction, touches)| friction.follow(touches))
+        .sum()
+}
+
+/// Carries the forces of those shapes over in which a node is too deep. True if there are any.
 fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
     let mut any = false;
-    for contact in contacts.iter_mut() {
-        if contact.penetration_mm() > body.settings.penetration_mm {
-            contact.carry();
-            any = true;
-        }
+    for contact in contacts {
+        any |= contact.push_out(body.settings.penetration_mm);
     }
     any
 }

@@ -23,6 +23,12 @@ pub struct SolverSettings {
     pub contact_stiffness: f64,
     /// Largest depth of a node inside a shape after a step, mm; contact is stiffened until it is reached. Default 0.005.
     pub penetration_mm: f64,
+    /// Coulomb's coefficient of friction between the body and the indenter. Default 0. A node in touch gives way elastically, by up to the
+    /// friction over its contact stiffness, before it slips: `μ p / (contact_stiffness G)` local edge lengths at a contact pressure `p` and a
+    /// shear modulus `G`, far less than the body itself gives.
+    pub friction: f64,
+    /// Coulomb's coefficient of friction between the body and its obstacles. Default 0.
+    pub obstacle_friction: f64,
 }
 
 impl Default for SolverSettings {
@@ -35,6 +41,8 @@ impl Default for SolverSettings {
             min_substep: 1.0 / 16.0,
             contact_stiffness: 100.0,
             penetration_mm: 0.005,
+            friction: 0.0,
+            obstacle_friction: 0.0,
         }
     }
 }
@@ -58,6 +66,18 @@ impl SolverSettings {
         positive("min_substep", self.min_substep)?;
         positive("contact_stiffness", self.contact_stiffness)?;
         positive("penetration_mm", self.penetration_mm)?;
+        for (field, found) in [
+            ("friction", self.friction),
+            ("obstacle_friction", self.obstacle_friction),
+        ] {
+            if !(found.is_finite() && found >= 0.0) {
+                return Err(SoftBodyError::Setting {
+                    field,
+                    expected: "a finite number, 0 or above",
+                    found,
+                });
+            }
+        }
         Ok(())
     }
 }

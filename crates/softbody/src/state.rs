@@ -18,6 +18,8 @@ pub struct State {
     pub(crate) gel_from_indenter: Option<Pose>,
     /// Last accepted motion, to start the next from.
     pub(crate) last: Option<Motion>,
+    /// How the force rose over the way where it was prescribed last, N/mm.
+    pub(crate) stiffness_n_per_mm: Option<f64>,
     pub(crate) workspace: Workspace,
 }
 
@@ -29,6 +31,12 @@ pub(crate) struct Motion {
 }
 
 impl State {
+    /// Where the indenter is; none before the first step.
+    #[must_use]
+    pub fn gel_from_indenter(&self) -> Option<Pose> {
+        self.gel_from_indenter
+    }
+
     /// How far a node has moved from its place at rest, mm.
     #[must_use]
     pub fn displacement_mm(&self, node: usize) -> DVec3 {

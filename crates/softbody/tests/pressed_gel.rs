@@ -4,9 +4,7 @@
 
 mod common;
 
-use std::sync::Arc;
-
-use common::{Ball, Wall, block, by_place, disc_mean, even, graded, mirrored, press};
+use common::{Ball, block, by_place, disc_mean, even, graded, mirrored, press, walled};
 use glam::{DQuat, DVec3};
 use twintac_material::Yeoh;
 use twintac_shape::Pose;
@@ -82,27 +80,16 @@ fn forces_balance_against_board_and_walls() {
         tolerance: 1e-8,
         ..SolverSettings::default()
     };
-    let mut body = SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.49), settings).unwrap();
-    for (inwards, from_origin_mm) in [
-        (DVec3::X, 8.2),
-        (DVec3::NEG_X, 8.2),
-        (DVec3::Y, 6.2),
-        (DVec3::NEG_Y, 6.2),
-    ] {
-        let wall = Wall {
-            inwards,
-            from_origin_mm,
-        };
-        body = body.with_obstacle(Arc::new(wall), Pose::IDENTITY);
-    }
+    let body = SoftBody::new(&mesh, Material::neo_hookean(70.0, 0.49), settings).unwrap();
+    let body = walled(body, [8.2, 6.2]);
     let mut state = body.rest();
     let ball = Ball { radius_mm: 5.0 };
     let rotation = DQuat::from_rotation_y(0.1);
     let mut pushed_n = 0.0;
     for depth_mm in [0.5, 1.0, 1.5, 2.0, 2.5] {
-        // Off the centre, so that the walls' forces do not cancel.
+        // Off the centre, so that the walls' forces do not cancel, but nowhere in an endlessly high wall.
         let pose = Pose {
-            position_mm: DVec3::new(3.0, 1.0, 6.0 - depth_mm),
+            position_mm: DVec3::new(2.5, 0.5, 6.0 - depth_mm),
             rotation,
         };
         let frame = body.advance(&mut state, &ball, &pose, 0.0).unwrap();

@@ -187,8 +187,11 @@ fn path(poses: &[(f64, [f64; 3], f64)]) -> PressPath {
                 time_s,
                 position_mm: DVec3::from_array(position_mm),
                 turn_rad: DVec3::Y * tilt_rad,
+                force_n: None,
             })
             .collect(),
+        force_direction: DVec3::NEG_Z,
+        force_travel_mm: None,
         points: Vec::new(),
     }
 }

@@ -1,6 +1,8 @@
 //! Blocks, spheres and boxes to press.
 #![allow(dead_code, unused_imports)] // each test takes what it needs
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use twintac_material::{
     LogarithmicNeoHookean, Model, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, StableNeoHookean, Yeoh,
@@ -82,6 +84,25 @@ impl SignedDistance for Wall {
     fn bounds_mm(&self) -> (DVec3, DVec3) {
         (DVec3::NEG_INFINITY, DVec3::INFINITY)
     }
+}
+
+/// The body within four walls about the z axis.
+pub(crate) fn walled(body: SoftBody, half_mm: [f64; 2]) -> SoftBody {
+    let [x_mm, y_mm] = half_mm;
+    [
+        (DVec3::X, x_mm),
+        (DVec3::NEG_X, x_mm),
+        (DVec3::Y, y_mm),
+        (DVec3::NEG_Y, y_mm),
+    ]
+    .into_iter()
+    .fold(body, |body, (inwards, from_origin_mm)| {
+        let wall = Wall {
+            inwards,
+            from_origin_mm,
+        };
+        body.with_obstacle(Arc::new(wall), Pose::IDENTITY)
+    })
 }
 
 /// Presses straight down from the height at which the origin touches.

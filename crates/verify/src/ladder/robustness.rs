@@ -250,6 +250,7 @@ fn kind(error: &SolveError) -> &'static str {
         SolveError::Inverted { .. } => "inside out",
         SolveError::Singular { .. } => "singular",
         SolveError::Blocked { .. } => "blocked",
+        SolveError::ForceNotReached { .. } => "force not reached",
         SolveError::Input { .. } => "refused",
     }
 }

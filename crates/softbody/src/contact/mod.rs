@@ -1,10 +1,16 @@
-//! Frictionless contact of boundary nodes with rigid shapes, known by their signed distance.
+//! Contact of boundary nodes with rigid shapes, known by their signed distance.
 //!
 //! A node with gap `g` and a carried depth `c` adds about `κ (c - g)²/2` to the energy where `g < c`, and is pushed along the shape's outward
 //! normal with about `κ (c - g)`. With every step that ends well contacts carry on: `c` becomes `c - g`, so that the force is there without
 //! any penetration (augmented Lagrangian; Hestenes, J. Optim. Theory Appl. 4, 1969), and what penetration is left comes from the last
 //! step alone. In a hollow corner of a shape the direction of its nearest side jumps, and there is no equilibrium to be found: walls that
 //! meet are better given as shapes of their own, of which a node in the corner touches two.
+
+mod clash;
+mod friction;
+
+pub(crate) use clash::clash;
+pub(crate) use friction::Friction;
 
 use glam::{DMat3, DVec3};
 use twintac_shape::{Pose, SignedDistance};
@@ -17,6 +23,12 @@ const CURVATURE_STEP_MM: f64 = 1e-4;
 
 /// Depth past the carried one beyond which the curvature of a shape counts no more, mm: before equilibrium, deep nodes would make the energy bend down.
 const CURVED_MM: f64 = 0.01;
+
+/// How much stiffer a contact is made that carrying its force over does not push out,
+const STIFFENING: f64 = 4.0;
+
+/// which is one that leaves more than this part of the depth.
+const STUCK: f64 = 0.5;
 
 /// A node that can touch.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +46,7 @@ pub(crate) struct RigidBody<'a> {
 }
 
 /// What one boundary node feels of one shape.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
     /// Distance to the shape, mm; negative inside. Where the node is surely out of touch, a lower bound above zero.
     pub(crate) gap_mm: f64,
@@ -44,6 +56,8 @@ pub(crate) struct Touch {
     pub(crate) force_n: f64,
     /// Depth that stands for the force carried over from before, mm.
     carried_mm: f64,
+    /// By how much this contact is stiffer than usual.
+    stiffening: f64,
     /// Where the gap was measured last, in the shape's frame.
     measured_at_mm: DVec3,
     /// What was measured there; a signed distance changes no faster than its point moves.
@@ -55,6 +69,30 @@ pub(crate) struct Touch {
 pub(crate) struct Contact {
     /// `[n_boundary_nodes]`
     pub(crate) touches: Vec<Touch>,
+    /// Depth of the deepest node when nodes were last pushed out in this step, mm.
+    pushed_mm: f64,
+    /// None for a coefficient of zero.
+    pub(crate) friction: Option<Friction>,
+}
+
+impl Touch {
+    /// Out of touch.
+    const OFF: Self = Self {
+        gap_mm: 0.0,
+        normal: DVec3::ZERO,
+        force_n: 0.0,
+        carried_mm: 0.0,
+        stiffening: 1.0,
+        measured_at_mm: DVec3::ZERO,
+        measured_mm: 0.0,
+    };
+
+    /// Gives another stiffness to a force that is carried over.
+    fn carry(&mut self, stiffening: f64) {
+        let carried_mm = (self.carried_mm - self.gap_mm).max(0.0);
+        self.carried_mm = carried_mm * self.stiffening / stiffening;
+        self.stiffening = stiffening;
+    }
 }
 
 impl RigidBody<'_> {
@@ -73,7 +111,7 @@ impl RigidBody<'_> {
         touch.measured_mm = distance.distance_mm;
         touch.gap_mm = distance.distance_mm;
         touch.normal = self.gel_from_shape.rotation * distance.gradient;
-        let (energy, force_n, _) = penalty(touch.gap_mm - touch.carried_mm, stiffness);
+        let (energy, force_n, _) = penalty(touch.gap_mm - touch.carried_mm, stiffness * touch.stiffening);
         touch.force_n = force_n;
         energy
     }
@@ -87,7 +125,7 @@ impl RigidBody<'_> {
         with_curvature: bool,
     ) -> DMat3 {
         let normal = touch.normal;
-        let (_, _, stiffness) = penalty(touch.gap_mm - touch.carried_mm, stiffness);
+        let (_, _, stiffness) = penalty(touch.gap_mm - touch.carried_mm, stiffness * touch.stiffening);
         let mut sum = outer(normal * stiffness, normal);
         if with_curvature {
             let tangent = normal.any_orthonormal_vector();
@@ -120,17 +158,43 @@ impl RigidBody<'_> {
 
 impl Contact {
     /// No contact yet.
-    pub(crate) fn new(n_boundary_nodes: usize) -> Self {
+    pub(crate) fn new(n_boundary_nodes: usize, friction: f64) -> Self {
         Self {
-            touches: vec![Touch::default(); n_boundary_nodes],
+            touches: vec![Touch::OFF; n_boundary_nodes],
+            pushed_mm: f64::INFINITY,
+            friction: (friction > 0.0).then(|| Friction::new(friction, n_boundary_nodes)),
         }
+    }
+
+    /// Force of the shape on a boundary node, N.
+    pub(crate) fn force_n(&self, index: usize) -> DVec3 {
+        let touch = &self.touches[index];
+        let pushed_n = touch.normal * touch.force_n;
+        self.friction
+            .as_ref()
+            .map_or(pushed_n, |friction| pushed_n + friction.force_n(index))
     }
 
     /// Carries the forces as they are over to the next step.
     pub(crate) fn carry(&mut self) {
-        for touch in &mut self.touches {
-            touch.carried_mm = (touch.carried_mm - touch.gap_mm).max(0.0);
+        self.touches.iter_mut().for_each(|touch| touch.carry(1.0));
+        self.pushed_mm = f64::INFINITY;
+    }
+
+    /// Carries the forces over within a step if nodes are deeper than allowed; true if there are any. Where that helps no more they are made
+    /// stiffer: neighbours on a hilltop would take turns at slipping off.
+    pub(crate) fn push_out(&mut self, allowed_mm: f64) -> bool {
+        let deepest_mm = self.penetration_mm();
+        if deepest_mm <= allowed_mm {
+            return false;
         }
+        let is_stuck = deepest_mm > STUCK * self.pushed_mm;
+        self.pushed_mm = deepest_mm;
+        for touch in &mut self.touches {
+            let is_deep = is_stuck && touch.gap_mm < -allowed_mm;
+            touch.carry(touch.stiffening * if is_deep { STIFFENING } else { 1.0 });
+        }
+        true
     }
 
     /// Carries nothing over.

@@ -1,0 +1,154 @@
+//! Coulomb friction of boundary nodes on a rigid shape.
+//!
+//! A node in touch hangs on a point of the shape by a spring along the surface that carries at most the coefficient times the normal force:
+//! it is elastic up to a slip of `μ f / k`, and drags its end along beyond. With the normal forces of the last iterate ("lagged", as Li et al.,
+//! Incremental Potential Contact, ACM Trans. Graph. 39, 2020) the spring has an energy and a symmetric tangent, and what it gives back is never
+//! more than what went in; as the end of a spring that holds stays where it is, a held press does not creep.
+//! The law is that of Simo and Laursen (Comput. Struct. 42, 1992).
+
+use glam::{DMat3, DVec3};
+
+use super::{BoundaryNode, RigidBody, Touch, outer};
+
+/// A node no farther from the shape than this stands on it, mm.
+const STANDING_MM: f64 = 0.001;
+
+/// Friction of all boundary nodes on one shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Friction {
+    coefficient: f64,
+    /// `[n_boundary_nodes]`
+    grips: Vec<Grip>,
+}
+
+/// How one node is held.
+#[derive(Clone, Copy, Debug, Default)]
+struct Grip {
+    /// The point of the shape that the node hangs on, in the shape's frame; none where the node was off the shape when the step began: it
+    /// lands without friction, as how much of the step it spent in touch is not known.
+    anchor_mm: Option<DVec3>,
+    /// Outward normal of the shape, and the most that the spring carries, N: both of the last iterate.
+    normal: DVec3,
+    most_n: f64,
+    /// Force on the node, N.
+    force_n: DVec3,
+}
+
+impl Friction {
+    /// Nothing held yet.
+    pub(crate) fn new(coefficient: f64, n_boundary_nodes: usize) -> Self {
+        Self {
+            coefficient,
+            grips: vec![Grip::default(); n_boundary_nodes],
+        }
+    }
+
+    /// Begins a step: nodes that stand on the shape, where it is before the step, are held from now on.
+    pub(crate) fn begin(&mut self, shape: &RigidBody, touches: &[Touch], at_mm: impl Iterator<Item = DVec3>) {
+        for ((grip, touch), at_mm) in self.grips.iter_mut().zip(touches).zip(at_mm) {
+            if grip.anchor_mm.is_none() && touch.gap_mm <= STANDING_MM {
+                let local_mm = shape.gel_from_shape.inverse_transform_point(at_mm);
+                let distance_mm = shape.shape.signed_distance(local_mm).distance_mm;
+                grip.anchor_mm = (distance_mm <= STANDING_MM).then_some(local_mm);
+            }
+        }
+    }
+
+    /// Takes over normals and normal forces; returns by how much the springs' limits change altogether, N.
+    pub(crate) fn follow(&mut self, touches: &[Touch]) -> f64 {
+        let mut change_n = 0.0;
+        for (grip, touch) in self.grips.iter_mut().zip(touches) {
+            if grip.anchor_mm.is_some() {
+                let most_n = self.coefficient * touch.force_n;
+                change_n += (most_n - grip.most_n).abs();
+                (grip.normal, grip.most_n) = (touch.normal, most_n);
+            }
+        }
+        change_n
+    }
+
+    /// Updates the force on each node that is held, and hands it out with the node's place among boundary nodes; returns the energy, N mm.
+    pub(crate) fn pull(
+        &mut self,
+        shape: &RigidBody,
+        boundary: &[BoundaryNode],
+        at_mm: impl Iterator<Item = DVec3>,
+        mut add: impl FnMut(&BoundaryNode, DVec3),
+    ) -> f64 {
+        let mut energy = 0.0;
+        for ((grip, boundary), at_mm) in self.grips.iter_mut().zip(boundary).zip(at_mm) {
+            grip.force_n = DVec3::ZERO;
+            if grip.most_n > 0.0
+                && let Some(slip_mm) = grip.slip_mm(shape, at_mm)
+            {
+                let length_mm = slip_mm.length();
+                let elastic_mm = grip.most_n / boundary.stiffness;
+                if length_mm <= elastic_mm {
+                    energy += 0.5 * boundary.stiffness * length_mm * length_mm;
+                    grip.force_n = -slip_mm * boundary.stiffness;
+                } else {
+                    energy += grip.most_n * (length_mm - 0.5 * elastic_mm);
+                    grip.force_n = -slip_mm * (grip.most_n / length_mm);
+                }
+                add(boundary, grip.force_n);
+            }
+        }
+        energy
+    }
+
+    /// Second derivative of the energy at a boundary node, N/mm; none where the node is not held.
+    pub(crate) fn stiffness(
+        &self,
+        index: usize,
+        shape: &RigidBody,
+        at_mm: DVec3,
+        stiffness: f64,
+    ) -> Option<DMat3> {
+        let grip = &self.grips[index];
+        let slip_mm = grip.slip_mm(shape, at_mm).filter(|_| grip.most_n > 0.0)?;
+        let length_mm = slip_mm.length();
+        let plane = DMat3::IDENTITY - outer(grip.normal, grip.normal);
+        Some(if length_mm * stiffness <= grip.most_n {
+            plane * stiffness
+        } else {
+            let along = slip_mm / length_mm;
+            (plane - outer(along, along)) * (grip.most_n / length_mm)
+        })
+    }
+
+    /// Ends a step: what slipped has dragged its anchor along, and what has left the shape is free.
+    pub(crate) fn settle(
+        &mut self,
+        shape: &RigidBody,
+        boundary: &[BoundaryNode],
+        touches: &[Touch],
+        at_mm: impl Iterator<Item = DVec3>,
+    ) {
+        let nodes = self.grips.iter_mut().zip(boundary).zip(touches).zip(at_mm);
+        for (((grip, boundary), touch), at_mm) in nodes {
+            if touch.force_n <= 0.0 {
+                *grip = Grip::default();
+                continue;
+            }
+            (grip.normal, grip.most_n) = (touch.normal, self.coefficient * touch.force_n);
+            let held_mm = grip
+                .slip_mm(shape, at_mm)
+                .unwrap_or(DVec3::ZERO)
+                .clamp_length_max(grip.most_n / boundary.stiffness);
+            grip.anchor_mm = Some(shape.gel_from_shape.inverse_transform_point(at_mm - held_mm));
+        }
+    }
+
+    /// Force on a boundary node, N.
+    pub(crate) fn force_n(&self, index: usize) -> DVec3 {
+        self.grips[index].force_n
+    }
+}
+
+impl Grip {
+    /// How far the node is from its anchor along the surface, mm; none where it has no anchor.
+    fn slip_mm(&self, shape: &RigidBody, at_mm: DVec3) -> Option<DVec3> {
+        let anchor_mm = shape.gel_from_shape.transform_point(self.anchor_mm?);
+        Some((at_mm - anchor_mm).reject_from_normalized(self.normal))
+    }
+}

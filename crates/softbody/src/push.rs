@@ -1,0 +1,267 @@
+//! Pressing with a force instead of to a pose.
+
+use glam::DVec3;
+use twintac_shape::{Pose, SignedDistance};
+
+use crate::SolveError;
+use crate::body::SoftBody;
+use crate::state::{Frame, State};
+
+/// First step into the body, and first step from a place whose stiffness is not known, mm.
+const FIRST_STEP_MM: f64 = 0.1;
+
+/// A gap that counts as touch, mm.
+const TOUCH_MM: f64 = 1e-3;
+
+/// How much farther than the last step the next may go.
+const MAX_GROWTH: f64 = 4.0;
+
+/// Tries after which the force is given up.
+const MAX_TRIES: u32 = 40;
+
+/// Part of the force, and width of what is left of the way, mm, below which the rest is taken up in steps of no time from place to place: what
+/// penetration is left of a motion makes the force at a place uncertain by more, but not that of a body that hardly moves.
+const NEAR: f64 = 1e-3;
+
+/// How far from the force asked for the one found may be, in tolerances of the solver.
+const TOLERANCES: f64 = 10.0;
+
+/// A force to press with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// The direction, a unit vector in the body's frame, along which the indenter is pushed and may move.
+    pub direction: DVec3,
+    /// Force of the indenter on the body along that direction, N, above 0.
+    pub force_n: f64,
+    /// How far the indenter may be from the pose that it is given, to either side along the direction, mm.
+    pub travel_mm: f64,
+}
+
+impl SoftBody {
+    /// Takes the indenter within a time to where it presses with a force: to the pose, moved along the force's direction as far as it takes.
+    /// [`State::gel_from_indenter`] then tells where that is. The force is met to ten times the relative tolerance of the settings.
+    ///
+    /// Secant steps, each a whole solution from where the body was before, so that a body that remembers is asked about one motion only; the
+    /// last ones, about a thousandth of the force apart, from one to the next.
+    ///
+    /// # Errors
+    /// [`SolveError::ForceNotReached`] if the force is not met within the travel, and the errors of [`SoftBody::advance`] if those are what
+    /// stops the indenter. The state is then as it was.
+    pub fn advance_to_force(
+        &self,
+        state: &mut State,
+        indenter: &dyn SignedDistance,
+        gel_from_indenter: &Pose,
+        push: &Push,
+        time_step_s: f64,
+    ) -> Result<Frame, SolveError> {
+        push.check()?;
+        let pose_at = |offset_mm: f64| Pose {
+            position_mm: gel_from_indenter.position_mm + push.direction * offset_mm,
+            ..*gel_from_indenter
+        };
+        let farthest_mm = push.travel_mm;
+        let now_mm = state.gel_from_indenter.map_or(-farthest_mm, |pose| {
+            let past_mm = (pose.position_mm - gel_from_indenter.position_mm).dot(push.direction);
+            past_mm.clamp(-farthest_mm, farthest_mm)
+        });
+        let now_n = self.indenter_force_n(state).dot(push.direction);
+        let mut slope = state.stiffness_n_per_mm.filter(|_| now_n > 0.0);
+        let mut next_mm = match slope {
+            Some(slope) => now_mm + (push.force_n - now_n) / slope,
+            None if now_n > 0.0 => now_mm,
+            None => self.approach(state, indenter, &pose_at, now_mm, farthest_mm) + FIRST_STEP_MM,
+        };
+        let goal_n = (TOLERANCES * self.settings.tolerance * push.force_n).max(self.negligible_load_n());
+        let mut search = Search {
+            low: None,
+            high: None,
+            last: None,
+        };
+        let mut spare = std::mem::take(&mut state.workspace);
+        // Where the next try starts from, and the time that it has for it.
+        let (mut base, mut left_s) = (state.clone(), time_step_s);
+        let mut motion = state.last.clone();
+        let mut is_near = false;
+        let mut iterations = 0;
+        let mut failure = None;
+        let mut reached_n = now_n;
+        for _ in 0..MAX_TRIES {
+            next_mm = next_mm.clamp(-farthest_mm, farthest_mm);
+            let mut trial = base.clone();
+            trial.workspace = std::mem::take(&mut spare);
+            trial.last.clone_from(&motion);
+            match self.advance(&mut trial, indenter, &pose_at(next_mm), left_s) {
+                Ok(frame) => {
+                    iterations += frame.iterations;
+                    let force_n = frame.indenter_force_n.dot(push.direction);
+                    let missing_n = push.force_n - force_n;
+                    reached_n = force_n;
+                    // Places that are too close tell more about what is left of penetration.
+                    slope = slope
+                        .filter(|_| is_near)
+                        .or_else(|| search.slope(next_mm, force_n))
+                        .or(slope);
+                    if missing_n.abs() <= goal_n {
+                        trial.stiffness_n_per_mm = slope;
+                        *state = trial;
+                        return Ok(Frame { iterations, ..frame });
+                    }
+                    let is_at_end = next_mm == farthest_mm.copysign(missing_n);
+                    motion.clone_from(&trial.last);
+                    spare = std::mem::take(&mut trial.workspace);
+                    if is_at_end {
+                        break;
+                    }
+                    let tried = (next_mm, force_n);
+                    next_mm = search.next(next_mm, missing_n, slope);
+                    search.last = Some(tried);
+                    is_near = missing_n.abs() <= NEAR * push.force_n || search.width_mm() <= NEAR;
+                    if is_near {
+                        (base, left_s) = (trial, 0.0);
+                        (search.low, search.high) = (None, None);
+                    }
+                }
+                Err(error) => {
+                    spare = std::mem::take(&mut trial.workspace);
+                    failure = Some(error);
+                    let Some(between_mm) = search.retreat(next_mm, now_mm) else {
+                        break;
+                    };
+                    next_mm = between_mm;
+                }
+            }
+        }
+        state.workspace = spare;
+        Err(failure.unwrap_or(SolveError::ForceNotReached {
+            wanted_n: push.force_n,
+            reached_n,
+            travel_mm: farthest_mm,
+        }))
+    }
+
+    /// How far the indenter can go along its way before a node of the boundary touches it, mm; at most `farthest_mm`.
+    fn approach(
+        &self,
+        state: &State,
+        indenter: &dyn SignedDistance,
+        pose_at: &dyn Fn(f64) -> Pose,
+        from_mm: f64,
+        farthest_mm: f64,
+    ) -> f64 {
+        let mut offset_mm = from_mm;
+        while offset_mm < farthest_mm {
+            let pose = pose_at(offset_mm);
+            let gap_mm = self
+                .boundary_mm(&state.displacements_mm)
+                .map(|at_mm| {
+                    indenter
+                        .signed_distance(pose.inverse_transform_point(at_mm))
+                        .distance_mm
+                })
+                .fold(f64::INFINITY, f64::min);
+            if gap_mm <= TOUCH_MM {
+                break;
+            }
+            // A distance changes no faster than its point moves.
+            offset_mm += gap_mm;
+        }
+        offset_mm.min(farthest_mm)
+    }
+
+    /// Force of the indenter as it stands, N.
+    fn indenter_force_n(&self, state: &State) -> DVec3 {
+        (0..self.boundary.len())
+            .map(|index| state.contacts[0].force_n(index))
+            .sum()
+    }
+}
+
+impl Push {
+    fn check(&self) -> Result<(), SolveError> {
+        let problem = |what, expected: &str, found: String| {
+            Err(SolveError::Input {
+                what,
+                expected: expected.into(),
+                found,
+            })
+        };
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        if !self.direction.is_normalized() {
+            problem(
+                "direction of the force",
+                "a unit vector",
+                self.direction.to_string(),
+            )
+        } else if !positive(self.force_n) {
+            problem(
+                "force",
+                "a finite number of N above 0",
+                format!("{} N", self.force_n),
+            )
+        } else if !positive(self.travel_mm) {
+            problem(
+                "travel",
+                "a finite number of mm above 0",
+                format!("{} mm", self.travel_mm),
+            )
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// What is known of the force over the way.
+struct Search {
+    /// Farthest place that is not far enough, mm.
+    low: Option<f64>,
+    /// Nearest place that is too far, or that can't be reached, mm.
+    high: Option<f64>,
+    /// Last place and its force, mm and N.
+    last: Option<(f64, f64)>,
+}
+
+impl Search {
+    /// Distance between too far and not far enough, mm.
+    fn width_mm(&self) -> f64 {
+        match (self.low, self.high) {
+            (Some(low), Some(high)) => high - low,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Slope of the force from the last place to this, N/mm, if it makes sense.
+    fn slope(&self, at_mm: f64, force_n: f64) -> Option<f64> {
+        let (last_mm, last_n) = self.last?;
+        let slope = (force_n - last_n) / (at_mm - last_mm);
+        (slope.is_finite() && slope > 0.0).then_some(slope)
+    }
+
+    /// Where to try next after a place where the force misses by so much, mm.
+    fn next(&mut self, at_mm: f64, missing_n: f64, slope: Option<f64>) -> f64 {
+        let step_mm = self
+            .last
+            .map_or(FIRST_STEP_MM, |(last_mm, _)| (at_mm - last_mm).abs());
+        let most_mm = (MAX_GROWTH * step_mm).max(FIRST_STEP_MM);
+        let next_mm = match slope {
+            Some(slope) => at_mm + (missing_n / slope).clamp(-most_mm, most_mm),
+            None => at_mm + FIRST_STEP_MM.copysign(missing_n),
+        };
+        if missing_n > 0.0 {
+            self.low = Some(self.low.map_or(at_mm, |low| low.max(at_mm)));
+        } else {
+            self.high = Some(self.high.map_or(at_mm, |high| high.min(at_mm)));
+        }
+        match (self.low, self.high) {
+            (Some(low), Some(high)) if low < high && !(low < next_mm && next_mm < high) => 0.5 * (low + high),
+            _ => next_mm,
+        }
+    }
+
+    /// Where to try next after a place that can't be reached, mm; none if there is nothing left to try.
+    fn retreat(&mut self, at_mm: f64, safe_mm: f64) -> Option<f64> {
+        self.high = Some(self.high.map_or(at_mm, |high| high.min(at_mm)));
+        let low_mm = self.low.unwrap_or(safe_mm);
+        (at_mm - low_mm > TOUCH_MM).then_some(0.5 * (low_mm + at_mm))
+    }
+}
