@@ -30,10 +30,18 @@ const UNBALANCED: f64 = 0.01;
 enum End {
     /// At its depth, or at enough force.
     Converged,
+    /// Where the indenter met the shell or the board, which bear any load.
+    Stopped,
     /// In a typed error that left the last good state.
     Failed(&'static str),
     /// In something that no solver may return.
     Wrong(&'static str),
+}
+
+impl End {
+    fn is_well(&self) -> bool {
+        matches!(self, Self::Converged | Self::Stopped)
+    }
 }
 
 /// What came of a press.
@@ -52,8 +60,12 @@ struct Pressed {
 }
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
-    let sensor =
-        Arc::new(Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?);
+    let sensor = Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?;
+    let bare = Sensor {
+        shell: None,
+        ..sensor.clone()
+    };
+    let sensors = [Arc::new(sensor), Arc::new(bare)];
     let coarse = SimulateSettings {
         edges_per_height: 4.0,
         edges_per_contact_radius: 2.0,
@@ -65,25 +77,28 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         ..SimulateSettings::default()
     };
     let sets = [
-        ("coarse mesh", coarse, effort.choose(300, 10_000)),
+        ("a coarse mesh", coarse, effort.choose(300, 10_000)),
         ("the paper's mesh", fine, effort.choose(4, 200)),
     ];
     let mut figures = Vec::new();
     let (mut iterations, mut ratios, mut depths) = (Vec::new(), Vec::new(), Vec::new());
     let mut done = format!(
-        "Half of the presses take an indenter of the sensor, half an invented sphere, cylinder, box or cone with rounded edges; each \
+        "Every other press is on the sensor in its shell, the others on its gel alone. Half of the presses take an indenter of the sensor, half an invented sphere, cylinder, box or cone with rounded edges; each \
          stands anywhere above the gel, tilted by up to 20°, and goes on from first touch in frames of at most {STEP_MM} mm to a depth \
-         of 10 to 70 % of the gel's thickness, or to {ENOUGH_N} N. A frame counts as wrong, whatever the solver says, if a number is not \
+         of 10 to 70 % of the gel's thickness, to {ENOUGH_N} N, or to where it meets the shell or the board. A frame counts as wrong, whatever the solver says, if a number is not \
          finite, a tetrahedron is inside out, a node is too deep inside a shape, or the forces do not balance within {} %; so does an \
          error after which the state is not the one before. Seed {SEED}.\n",
         100.0 * UNBALANCED
     );
     for (color, (set, settings, n_presses)) in sets.into_iter().enumerate() {
-        let all = press_all(set, &Gel::new(sensor.clone(), settings), n_presses)?;
+        let gels = sensors
+            .each_ref()
+            .map(|sensor| Gel::new(sensor.clone(), settings.clone()));
+        let all = press_all(set, &gels, n_presses)?;
         let count =
             |is_it: &dyn Fn(&End) -> bool| all.iter().filter(|press| is_it(&press.end)).count() as f64;
         let percent = 100.0 / all.len() as f64;
-        let converged = percent * count(&|end| *end == End::Converged);
+        let converged = percent * count(&End::is_well);
         let n_nodes = all.iter().map(|press| press.n_nodes).sum::<usize>() / all.len();
         figures.push(Figure::at_least(
             99.5,
@@ -96,8 +111,15 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
             *kinds.entry(&press.end).or_default() += 1;
         }
         for (end, count) in kinds {
-            if let End::Failed(kind) = end {
-                figures.push(Figure::told(format!("{set}: {kind}"), count as f64, ""));
+            match end {
+                End::Stopped => {
+                    let name = format!("{set}: of these stopped by the shell or the board");
+                    figures.push(Figure::told(name, percent * count as f64, "%"));
+                }
+                End::Failed(kind) => {
+                    figures.push(Figure::told(format!("{set}: {kind}"), count as f64, ""));
+                }
+                End::Converged | End::Wrong(_) => {}
             }
         }
         let wrong = count(&|end| matches!(end, End::Wrong(_)));
@@ -146,7 +168,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
     })
 }
 
-fn press_all(set: &str, gel: &Gel, n_presses: u64) -> Result<Vec<Pressed>> {
+fn press_all(set: &str, gels: &[Gel; 2], n_presses: u64) -> Result<Vec<Pressed>> {
     let style = ProgressStyle::with_template("{prefix:>16} [{bar:30}] {pos}/{len} {elapsed}, {eta} left")?;
     let bar = ProgressBar::new(n_presses)
         .with_style(style)
@@ -154,7 +176,7 @@ fn press_all(set: &str, gel: &Gel, n_presses: u64) -> Result<Vec<Pressed>> {
     let all = (0..n_presses)
         .into_par_iter()
         .map(|index| {
-            let pressed = press(gel, index).with_context(|| format!("press {index} of seed {SEED}"));
+            let pressed = press(&gels[index as usize % 2], index).with_context(|| format!("press {index} of seed {SEED}"));
             bar.inc(1);
             pressed
         })
@@ -215,6 +237,8 @@ fn press(gel: &Gel, index: u64) -> Result<Pressed> {
                 pressed.error = error.to_string();
                 pressed.end = if state.displacements_mm() != before {
                     End::Wrong("an error that changed the state")
+                } else if matches!(error, SolveError::Blocked { .. }) {
+                    End::Stopped
                 } else {
                     End::Failed(kind(&error))
                 };
@@ -290,10 +314,10 @@ fn check(body: &SoftBody, state: &State, frame: &Frame) -> Result<f64, &'static 
 
 /// The first presses that did not converge, as a list.
 fn failures(set: &str, all: &[Pressed]) -> String {
-    let failed: Vec<&Pressed> = all.iter().filter(|press| press.end != End::Converged).collect();
+    let failed: Vec<&Pressed> = all.iter().filter(|press| !press.end.is_well()).collect();
     let mut text = String::new();
     if !failed.is_empty() {
-        text = format!("\nOf the presses on the {set}, {} did not converge", failed.len());
+        text = format!("\nOf the presses on {set}, {} did not converge", failed.len());
         text.push_str(if failed.len() > 12 {
             "; the first are\n\n"
         } else {
