@@ -18,8 +18,8 @@ pub(crate) struct Prism {
 /// How a prism lies in its shape's frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Placement {
-    /// The profile lies in the xy plane, turned about z by an angle; the prism stands on z = 0.
-    Upright { turn_rad: f64 },
+    /// The profile lies in the xy plane; the prism stands on z = 0.
+    Upright,
     /// The profile's plane is xz; the prism is centred on y = 0.
     Lying,
 }
@@ -33,18 +33,15 @@ impl Prism {
 impl SignedDistance for Prism {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
         match self.placement {
-            Placement::Upright { turn_rad } => {
-                let turn = DVec2::from_angle(turn_rad);
-                let inner = DVec2::new(turn.x, -turn.y).rotate(point_mm.truncate());
+            Placement::Upright => {
                 let height_mm = point_mm.z - self.center_z_mm();
                 let found = extrude(
-                    self.profile.signed_distance(inner),
+                    self.profile.signed_distance(point_mm.truncate()),
                     slab(height_mm, self.half_length_mm),
                 );
-                let gradient = turn.rotate(found.gradient.truncate()).extend(found.gradient.z);
                 Distance {
                     distance_mm: found.distance_mm - self.radius_mm,
-                    gradient,
+                    ..found
                 }
             }
             Placement::Lying => {
@@ -65,29 +62,14 @@ impl SignedDistance for Prism {
     fn bounds_mm(&self) -> (DVec3, DVec3) {
         let (low, high) = self.profile.bounds_mm();
         let reach_mm = self.half_length_mm + self.radius_mm;
-        let (low, high) = match self.placement {
-            Placement::Upright { turn_rad } => {
-                let turn = DVec2::from_angle(turn_rad);
-                let half = 0.5 * (high - low);
-                let middle = turn.rotate(0.5 * (low + high));
-                let turned = DVec2::new(
-                    (turn.x * half.x).abs() + (turn.y * half.y).abs(),
-                    (turn.y * half.x).abs() + (turn.x * half.y).abs(),
-                ) + DVec2::splat(self.radius_mm);
-                (
-                    (middle - turned).extend(0.0),
-                    (middle + turned).extend(2.0 * reach_mm),
-                )
-            }
-            Placement::Lying => {
-                let (low, high) = (low - self.radius_mm, high + self.radius_mm);
-                (
-                    DVec3::new(low.x, -reach_mm, low.y),
-                    DVec3::new(high.x, reach_mm, high.y),
-                )
-            }
-        };
-        (low, high)
+        let (low, high) = (low - self.radius_mm, high + self.radius_mm);
+        match self.placement {
+            Placement::Upright => (low.extend(0.0), high.extend(2.0 * reach_mm)),
+            Placement::Lying => (
+                DVec3::new(low.x, -reach_mm, low.y),
+                DVec3::new(high.x, reach_mm, high.y),
+            ),
+        }
     }
 }
 
@@ -122,35 +104,5 @@ pub(crate) fn extrude(profile: PlaneDistance, (level_mm, level_sign): (f64, f64)
             distance_mm: level_mm,
             gradient: along,
         }
-    }
-}
-
-/// Several shapes as one: exact outside; inside, where they overlap, it is the larger depth of theirs, never
-/// more than the true one.
-pub(crate) struct Union(pub(crate) Vec<Prism>);
-
-impl SignedDistance for Union {
-    fn signed_distance(&self, point_mm: DVec3) -> Distance {
-        let nothing = Distance {
-            distance_mm: f64::INFINITY,
-            gradient: DVec3::Z,
-        };
-        self.0
-            .iter()
-            .map(|part| part.signed_distance(point_mm))
-            .fold(nothing, |closest, next| {
-                if next.distance_mm < closest.distance_mm {
-                    next
-                } else {
-                    closest
-                }
-            })
-    }
-
-    fn bounds_mm(&self) -> (DVec3, DVec3) {
-        self.0.iter().map(SignedDistance::bounds_mm).fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), (part_low, part_high)| (low.min(part_low), high.max(part_high)),
-        )
     }
 }

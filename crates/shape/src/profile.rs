@@ -1,6 +1,8 @@
 //! Exact signed distances in the plane.
 
-use glam::DVec2;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
+
+use glam::{DVec2, Vec2Swizzles};
 
 /// Signed distance in a plane, with its outward unit gradient.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +20,12 @@ pub(crate) enum Profile {
     Annulus {
         inner_radius_mm: f64,
         outer_radius_mm: f64,
+    },
+    /// Two crossed bars along the diagonals of the plane, their hollow corners rounded by a radius of at most the difference of the sizes.
+    X {
+        half_length_mm: f64,
+        half_width_mm: f64,
+        hollow_radius_mm: f64,
     },
     /// A convex polygon with at least three corners, counterclockwise, without edges of length zero.
     Convex { corners_mm: Vec<DVec2> },
@@ -66,6 +74,23 @@ impl Profile {
                     }
                 }
             }
+            Self::X {
+                half_length_mm,
+                half_width_mm,
+                hollow_radius_mm,
+            } => {
+                let eighth = DVec2::from_angle(FRAC_PI_4);
+                let along_bars_mm = eighth.rotate(point_mm);
+                let found = crossed_bars(
+                    DVec2::new(*half_length_mm, *half_width_mm),
+                    *hollow_radius_mm,
+                    along_bars_mm,
+                );
+                PlaneDistance {
+                    gradient: DVec2::new(eighth.x, -eighth.y).rotate(found.gradient),
+                    ..found
+                }
+            }
             Self::Convex { corners_mm } => convex(corners_mm, point_mm),
         }
     }
@@ -77,6 +102,14 @@ impl Profile {
             | Self::Annulus {
                 outer_radius_mm: r, ..
             } => (DVec2::splat(-r), DVec2::splat(*r)),
+            Self::X {
+                half_length_mm,
+                half_width_mm,
+                ..
+            } => {
+                let reach_mm = DVec2::splat((half_length_mm + half_width_mm) * FRAC_1_SQRT_2);
+                (-reach_mm, reach_mm)
+            }
             Self::Convex { corners_mm } => corners_mm
                 .iter()
                 .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), corner| {
@@ -93,6 +126,47 @@ fn outward(point_mm: DVec2, length_mm: f64) -> DVec2 {
     } else {
         DVec2::X
     }
+}
+
+/// Bars of half a size along both axes, seen in the eighth of the plane that holds half a bar's side and end.
+fn crossed_bars(half_mm: DVec2, hollow_radius_mm: f64, point_mm: DVec2) -> PlaneDistance {
+    let mut folded_mm = point_mm.abs();
+    let is_swapped = folded_mm.y > folded_mm.x;
+    if is_swapped {
+        folded_mm = folded_mm.yx();
+    }
+    let hollow_center_mm = DVec2::splat(half_mm.y + hollow_radius_mm);
+    let beyond_mm = folded_mm - half_mm;
+    let mut found = if folded_mm.x < hollow_center_mm.x {
+        let to_center_mm = hollow_center_mm - folded_mm;
+        let from_center_mm = to_center_mm.length();
+        PlaneDistance {
+            distance_mm: hollow_radius_mm - from_center_mm,
+            gradient: outward(to_center_mm, from_center_mm),
+        }
+    } else {
+        PlaneDistance {
+            distance_mm: beyond_mm.y,
+            gradient: DVec2::Y,
+        }
+    };
+    if beyond_mm.x > 0.0 && beyond_mm.y > 0.0 {
+        let distance_mm = beyond_mm.length();
+        found = PlaneDistance {
+            distance_mm,
+            gradient: beyond_mm / distance_mm,
+        };
+    } else if beyond_mm.x > found.distance_mm {
+        found = PlaneDistance {
+            distance_mm: beyond_mm.x,
+            gradient: DVec2::X,
+        };
+    }
+    if is_swapped {
+        found.gradient = found.gradient.yx();
+    }
+    found.gradient *= DVec2::ONE.copysign(point_mm);
+    found
 }
 
 /// Inside, the nearest edge's line counts; outside, the nearest point of the nearest edge.

@@ -1,12 +1,12 @@
 //! The rigid shapes that press.
 
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::prism::{Placement, Prism, Union};
+use crate::prism::{Placement, Prism};
 use crate::profile::Profile;
 use crate::{Distance, SignedDistance, Surfaces, TriangleSurface};
 
@@ -45,7 +45,7 @@ pub enum Shape {
         width_mm: f64,
         /// Height, mm.
         height_mm: f64,
-        /// Edge rounding, mm.
+        /// Rounding of the edges, and of the hollow corners between the bars as far as there is room, mm.
         edge_radius_mm: f64,
     },
     /// An upright tube.
@@ -236,8 +236,8 @@ impl Shape {
         }
     }
 
-    /// The shape as a signed distance, exact everywhere but inside the crossing of an X, with its origin at
-    /// the point of first touch (for triangle surfaces: at the height of their lowest point).
+    /// The shape as an exact signed distance, with its origin at the point of first touch (for triangle surfaces: at the height of their
+    /// lowest point).
     ///
     /// # Errors
     /// Those of [`Shape::validate`], and an STL file that is not among the surfaces.
@@ -247,7 +247,7 @@ impl Shape {
             profile,
             half_length_mm: 0.5 * height_mm - radius_mm,
             radius_mm,
-            placement: Placement::Upright { turn_rad: 0.0 },
+            placement: Placement::Upright,
         };
         Ok(match *self {
             Self::Sphere { radius_mm } => Box::new(Ball { radius_mm }),
@@ -275,12 +275,13 @@ impl Shape {
                 height_mm,
                 edge_radius_mm: edge,
             } => {
-                let half = DVec2::new(0.5 * length_mm - edge, 0.5 * width_mm - edge);
-                let bar = |turn_rad: f64| Prism {
-                    placement: Placement::Upright { turn_rad },
-                    ..upright(Profile::rectangle(half), height_mm, edge)
+                let (half_length_mm, half_width_mm) = (0.5 * length_mm - edge, 0.5 * width_mm - edge);
+                let profile = Profile::X {
+                    half_length_mm,
+                    half_width_mm,
+                    hollow_radius_mm: (2.0 * edge).min(half_length_mm - half_width_mm),
                 };
-                Box::new(Union(vec![bar(FRAC_PI_4), bar(-FRAC_PI_4)]))
+                Box::new(upright(profile, height_mm, edge))
             }
             Self::Ring {
                 outer_radius_mm,

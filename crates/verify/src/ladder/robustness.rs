@@ -176,7 +176,8 @@ fn press_all(set: &str, gels: &[Gel; 2], n_presses: u64) -> Result<Vec<Pressed>>
     let all = (0..n_presses)
         .into_par_iter()
         .map(|index| {
-            let pressed = press(&gels[index as usize % 2], index).with_context(|| format!("press {index} of seed {SEED}"));
+            let pressed = press(&gels[index as usize % 2], index)
+                .with_context(|| format!("press {index} of seed {SEED}"));
             bar.inc(1);
             pressed
         })
