@@ -107,6 +107,8 @@ impl Clone for Workspace {
 
 pub(crate) struct Buffers {
     matrix: Matrix,
+    /// Whether it led well when it was used last: then it is good enough for more, in this step and the next.
+    has_matrix: bool,
     factors: Factors,
     has_factors: bool,
     cycle: Cycle,
@@ -139,10 +141,11 @@ impl Workspace {
             let n_free = body.pattern.halves.free;
             Box::new(Buffers {
                 matrix: body.pattern.matrix(),
+                has_matrix: false,
                 factors: body.coarse.factors(),
                 has_factors: false,
                 cycle: Cycle::new(&body.pattern),
-                gradients: ConjugateGradients::new(n_free, body.volume_stiffness.len()),
+                gradients: ConjugateGradients::new(&body.pattern),
                 coarse_tangents: vec![CoarseTangent::default(); body.elements.n_slots()],
                 forces: Forces::default(),
                 volumes: Volumes::default(),
@@ -172,7 +175,6 @@ impl Buffers {
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut has_failed = false;
-        let mut has_matrix = false;
         for iteration in 0..=settings.max_iterations {
             let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n());
             // A start is taken for the answer only if it is much better than it has to be: errors must not pile up from step to step.
@@ -195,10 +197,10 @@ impl Buffers {
                 continue;
             }
             *iterations += 1;
-            self.find_direction(body, step, x, has_matrix)?;
+            self.find_direction(body, step, x)?;
             match self.search(body, step, x, &now) {
                 Ok((next, length)) => {
-                    has_matrix = length == 1.0 && next.unbalanced_n <= SLOW * now.unbalanced_n;
+                    self.has_matrix = length == 1.0 && next.unbalanced_n <= SLOW * now.unbalanced_n;
                     now = next;
                     let changes = self.start_mpa.iter().zip(&self.gradients.solution_mpa);
                     for (foreseen, (start, change)) in self.foreseen_mpa.iter_mut().zip(changes) {
@@ -213,7 +215,7 @@ impl Buffers {
                 // A direction that leads nowhere: once more with new factors and a short leash.
                 Err(_) if !has_failed => {
                     has_failed = true;
-                    has_matrix = false;
+                    self.has_matrix = false;
                     self.has_factors = false;
                     self.adapt_damping(0.0);
                     now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
@@ -222,6 +224,7 @@ impl Buffers {
                 Err(_) => break,
             }
         }
+        self.has_matrix = false;
         Err(Failure::NotConverged {
             residual: now.unbalanced_n / now.load_n.max(body.negligible_load_n()),
         })
@@ -304,15 +307,9 @@ impl Buffers {
     }
 
     /// Newton's direction at the unknowns; where the energy is not convex, that of a stiffened, convex one.
-    fn find_direction(
-        &mut self,
-        body: &SoftBody,
-        step: &Step,
-        x: &Unknowns,
-        has_matrix: bool,
-    ) -> Result<(), Failure> {
+    fn find_direction(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
         let started = Instant::now();
-        if !has_matrix {
+        if !self.has_matrix {
             self.assemble(body, step, x);
         }
         self.add_contact(body, step, x);
@@ -322,7 +319,7 @@ impl Buffers {
         }
         let mut is_fresh = false;
         loop {
-            for (residual, gradient) in self.gradients.residual.iter_mut().zip(&self.gradient_n) {
+            for (residual, gradient) in self.gradients.vectors.residual.iter_mut().zip(&self.gradient_n) {
                 *residual = Vector::from_dvec3(-*gradient);
             }
             let mut system = TwoLevel {
@@ -348,7 +345,7 @@ impl Buffers {
             self.factorise(body, step, x)?;
             is_fresh = true;
         }
-        for (direction, solution) in self.direction_mm.iter_mut().zip(&self.gradients.solution) {
+        for (direction, solution) in self.direction_mm.iter_mut().zip(&self.gradients.vectors.solution) {
             *direction = solution.to_dvec3();
         }
         Ok(())
@@ -428,6 +425,7 @@ impl Buffers {
             &self.corners,
             self.matrix.between(&body.pattern),
         );
+        self.matrix.scale_slopes(&body.pattern);
     }
 
     /// Completes the matrix with what contact and damping add.

@@ -86,13 +86,12 @@ impl Block {
         }
     }
 
-    /// Adds `a v⊗v`.
+    /// Adds `v⊗v`.
     #[inline(always)]
-    pub(crate) fn add_square(&mut self, v: &Vector, a: f32) {
+    pub(crate) fn add_square(&mut self, v: &Vector) {
         for j in 0..3 {
-            let scale = a * v.0[j];
             for i in 0..4 {
-                self.0[j][i] += scale * v.0[i];
+                self.0[j][i] += v.0[j] * v.0[i];
             }
         }
     }

@@ -3,19 +3,20 @@
 //! `[A -B; -Bᵀ -1/D]`, factorised as `L D Lᵀ` without pivoting, in an order chosen once. `D` has exactly one negative entry for
 //! each pressure if and only if the energy is convex here (Sylvester's law of inertia).
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, MatMut, Par, Side, Spec};
+use faer::{Par, Side, Spec};
 use glam::{DVec3, Mat3};
 
 use super::block::Vector;
 use super::elimination_order::elimination_order;
+use super::triangles::{Layout, Triangles};
 use crate::SoftBodyError;
 use crate::element::CoarseTangent;
 
@@ -27,6 +28,7 @@ pub(crate) struct CoarseSystem {
     /// Lower triangle by columns.
     lower: SymbolicSparseColMat<u32>,
     symbolic: SymbolicCholesky<u32>,
+    layout: Layout,
     /// Where each entry of each tetrahedron's tangent goes.
     blocks: Vec<TetBlocks>,
     /// Where a node's own entries, the diagonal ones of its columns, stand. `[n_nodes]`
@@ -46,6 +48,7 @@ type TetBlocks = [(bool, u32); 10];
 pub(crate) struct Factors {
     matrix: Vec<f32>,
     factors: Vec<f32>,
+    triangles: Triangles,
     unknowns: Vec<f32>,
     scratch: MemBuffer,
 }
@@ -73,7 +76,7 @@ impl CoarseSystem {
             neighbours.sort_unstable();
             neighbours.dedup();
         }
-        let order = elimination_order(nodes_mm, &neighbours);
+        let (order, halves) = elimination_order(nodes_mm, &neighbours);
         let free: Vec<bool> = bonded.iter().map(|bonded| !bonded).collect();
         let mut first = vec![0; n_nodes];
         let mut rank = vec![0; n_nodes];
@@ -117,6 +120,18 @@ impl CoarseSystem {
             n_unknowns: size,
             reason: error.to_string(),
         })?;
+        let SymbolicCholeskyRaw::Supernodal(supernodes) = symbolic.raw() else {
+            return Err(SoftBodyError::Analysis {
+                n_unknowns: size,
+                reason: "the factors have no supernodes".into(),
+            });
+        };
+        let (low, others) = order.split_at(halves[0]);
+        let n_columns = [low, &others[..halves[1]]].map(|half| {
+            let columns = half.iter().map(|&node| unknowns(&free, node) as usize);
+            columns.sum()
+        });
+        let layout = Layout::new(supernodes, n_columns);
         let offset = |row: u32, column: u32| {
             later[column as usize]
                 .iter()
@@ -148,6 +163,7 @@ impl CoarseSystem {
             first,
             lower,
             symbolic,
+            layout,
             blocks,
             diagonals: Vec::new(),
             corners: corners.to_vec(),
@@ -169,14 +185,13 @@ impl CoarseSystem {
 
     /// Memory for the numbers.
     pub(crate) fn factors(&self) -> Factors {
-        let scratch = StackReq::or(
-            self.symbolic
-                .factorize_numeric_ldlt_scratch::<f32>(Par::Seq, Spec::default()),
-            self.symbolic.solve_in_place_scratch::<f32>(1, Par::Seq),
-        );
+        let scratch = self
+            .symbolic
+            .factorize_numeric_ldlt_scratch::<f32>(Par::Seq, Spec::default());
         Factors {
             matrix: self.base.clone(),
             factors: vec![0.0; self.symbolic.len_val()],
+            triangles: self.layout.triangles(),
             unknowns: vec![0.0; self.lower.ncols()],
             scratch: MemBuffer::new(scratch),
         }
@@ -293,6 +308,7 @@ impl CoarseSystem {
         let Factors {
             matrix,
             factors,
+            triangles,
             scratch,
             ..
         } = factors;
@@ -324,6 +340,7 @@ impl CoarseSystem {
                 n_negative += usize::from(pivot < 0.0);
             }
         }
+        triangles.take(&self.layout, factors);
         Ok(n_negative == self.free.len())
     }
 
@@ -343,13 +360,7 @@ impl CoarseSystem {
                 }
             }
         }
-        let n_unknowns = factors.unknowns.len();
-        LdltRef::new(&self.symbolic, &factors.factors).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(&mut factors.unknowns, n_unknowns, 1),
-            Par::Seq,
-            MemStack::new(&mut factors.scratch),
-        );
+        factors.triangles.solve(&self.layout, &mut factors.unknowns);
         for (node, force) in forces.iter_mut().enumerate() {
             let first = self.first[node] as usize;
             *force = Vector::ZERO;

@@ -4,11 +4,12 @@
 use super::block::Vector;
 use super::coarse::{CoarseSystem, Factors};
 use super::matrix::{Matrix, Pattern};
+use super::sweep::{Step, Vectors};
 
 /// Memory of the cycle.
 pub(crate) struct Cycle {
-    defect: Vec<Vector>,
     coarse: Vec<Vector>,
+    moved_volumes: Vec<f32>,
 }
 
 /// The system and what preconditions it.
@@ -22,36 +23,53 @@ pub(crate) struct TwoLevel<'a> {
     pub(crate) cycle: &'a mut Cycle,
 }
 
+/// Scalar products of a residual `r` and of what the cycle makes of it, `z`.
+#[derive(Clone, Copy)]
+pub(crate) struct Products {
+    /// `zᵀ r`
+    pub(crate) square: f64,
+    /// `zᵀ H z`
+    pub(crate) curvature: f64,
+}
+
 impl Cycle {
     pub(crate) fn new(pattern: &Pattern) -> Self {
         Self {
-            defect: vec![Vector::ZERO; pattern.halves.free],
             coarse: vec![Vector::ZERO; pattern.n_coarse()],
+            moved_volumes: vec![0.0; pattern.n_coarse()],
         }
     }
 }
 
 impl TwoLevel<'_> {
-    /// `x ← M⁻¹ f`, and `D Bᵀ x`.
-    pub(crate) fn precondition(&mut self, forces: &[Vector], x: &mut [Vector], pressures: &mut [f32]) {
-        let Cycle { defect, coarse } = &mut *self.cycle;
+    /// Takes a step, and preconditions what it leaves of the residual. Leaves the `√D Bᵀ` of that, too.
+    pub(crate) fn run(&mut self, step: Step, vectors: &mut Vectors, volumes: &mut [f32]) -> Products {
+        let Cycle {
+            coarse,
+            moved_volumes,
+        } = &mut *self.cycle;
         let (matrix, pattern) = (self.matrix, self.pattern);
-        matrix.sweep_forward(pattern, forces, x, pressures, defect);
-        matrix.complete_defect(pattern, pressures, defect);
+        matrix.sweep_forward(pattern, step, vectors, volumes, moved_volumes);
+        matrix.take_volumes(pattern, volumes, &mut vectors.defect);
         coarse.fill(Vector::ZERO);
-        for (defect, ends) in defect.iter().zip(self.ends) {
+        for (defect, ends) in vectors.defect.iter().zip(self.ends) {
             for end in ends {
                 let coarse = &mut coarse[*end as usize];
                 *coarse = coarse.plus_scaled(*defect, 0.5);
             }
         }
         self.coarse.solve(self.factors, coarse);
-        for (x, ends) in x.iter_mut().zip(self.ends) {
+        for (x, ends) in vectors.preconditioned.iter_mut().zip(self.ends) {
             for end in ends {
                 *x = x.plus_scaled(coarse[*end as usize], 0.5);
             }
         }
-        matrix.pressures(pattern, x, pressures);
-        matrix.sweep_backward(pattern, forces, x, pressures, defect);
+        matrix.volumes(pattern, &vectors.preconditioned, volumes);
+        let squares = matrix.sweep_backward(pattern, vectors, volumes);
+        let volumes: f64 = volumes.iter().map(|&volume| f64::from(volume).powi(2)).sum();
+        Products {
+            square: squares.residual,
+            curvature: squares.residual + squares.above + volumes - squares.volumes,
+        }
     }
 }

@@ -8,13 +8,14 @@ use glam::DVec3;
 /// Sets of this size are not cut further.
 const LEAF: usize = 24;
 
-/// Nodes in the order of elimination. `neighbours[n]` are the nodes that share a tetrahedron with node `n`.
-pub(crate) fn elimination_order(positions_mm: &[DVec3], neighbours: &[Vec<u32>]) -> Vec<u32> {
+/// Nodes in the order of elimination, and how many the two halves have that come first and do not touch each other. `neighbours[n]` are the
+/// nodes that share a tetrahedron with node `n`.
+pub(crate) fn elimination_order(positions_mm: &[DVec3], neighbours: &[Vec<u32>]) -> (Vec<u32>, [usize; 2]) {
     let mut order = Vec::with_capacity(positions_mm.len());
     let mut side = vec![0; positions_mm.len()];
     let all = (0..positions_mm.len() as u32).collect();
-    dissect(all, positions_mm, neighbours, &mut side, &mut 0, &mut order);
-    order
+    let halves = dissect(all, positions_mm, neighbours, &mut side, &mut 0, &mut order);
+    (order, halves)
 }
 
 fn dissect(
@@ -24,10 +25,10 @@ fn dissect(
     side: &mut [u32],
     last_mark: &mut u32,
     order: &mut Vec<u32>,
-) {
+) -> [usize; 2] {
     if nodes.len() <= LEAF {
         order.extend(nodes);
-        return;
+        return [0, 0];
     }
     let best = (0..3)
         .map(|axis| {
@@ -37,11 +38,16 @@ fn dissect(
         .min_by_key(|[low, high, separator]| separator.len() * nodes.len() + low.len().max(high.len()));
     match best {
         Some([low, high, separator]) if !low.is_empty() && !high.is_empty() => {
+            let halves = [low.len(), high.len()];
             dissect(low, positions_mm, neighbours, side, last_mark, order);
             dissect(high, positions_mm, neighbours, side, last_mark, order);
             order.extend(separator);
+            halves
         }
-        _ => order.extend(nodes),
+        _ => {
+            order.extend(nodes);
+            [0, 0]
+        }
     }
 }
 
@@ -95,7 +101,14 @@ mod tests {
                     .collect()
             })
             .collect();
-        let mut order = elimination_order(&positions, &neighbours);
+        let (mut order, [low, high]) = elimination_order(&positions, &neighbours);
+        let (low, high) = order[..low + high].split_at(low);
+        let touches = |node: &u32| {
+            neighbours[*node as usize]
+                .iter()
+                .any(|other| high.contains(other))
+        };
+        assert!(!low.is_empty() && !low.iter().any(touches));
         order.sort_unstable();
         assert_eq!(order, (0..n as u32).collect::<Vec<_>>());
     }

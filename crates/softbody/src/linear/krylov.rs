@@ -1,21 +1,17 @@
 //! Newton's linear system by conjugate gradients.
 
-use super::block::Vector;
 use super::cycle::TwoLevel;
+use super::matrix::Pattern;
+use super::sweep::{Step, Vectors};
 
-/// Vectors of the iteration. `[n_free]`
+/// Memory of the iteration.
 pub(crate) struct ConjugateGradients {
-    /// What is left of the right-hand side.
-    pub(crate) residual: Vec<Vector>,
-    /// The solution so far.
-    pub(crate) solution: Vec<Vector>,
-    direction: Vec<Vector>,
-    preconditioned: Vec<Vector>,
-    product: Vec<Vector>,
-    /// `D Bᵀ` times the solution: how much it takes off the pressures. `[n_coarse]`
+    pub(crate) vectors: Vectors,
+    /// `D Bᵀ` times the solution: how much it takes off the pressures, MPa. `[n_coarse]`
     pub(crate) solution_mpa: Vec<f32>,
-    direction_mpa: Vec<f32>,
-    preconditioned_mpa: Vec<f32>,
+    /// `√D Bᵀ` times the direction, and times what is preconditioned.
+    direction_volumes: Vec<f32>,
+    volumes: Vec<f32>,
 }
 
 /// How an iteration ended.
@@ -29,18 +25,13 @@ pub(crate) enum Outcome {
 }
 
 impl ConjugateGradients {
-    pub(crate) fn new(n_free: usize, n_coarse: usize) -> Self {
-        let zeros = || vec![Vector::ZERO; n_free];
-        let no_pressures = || vec![0.0; n_coarse];
+    pub(crate) fn new(pattern: &Pattern) -> Self {
+        let zeros = || vec![0.0; pattern.n_coarse()];
         Self {
-            residual: zeros(),
-            solution: zeros(),
-            direction: zeros(),
-            preconditioned: zeros(),
-            product: zeros(),
-            solution_mpa: no_pressures(),
-            direction_mpa: no_pressures(),
-            preconditioned_mpa: no_pressures(),
+            vectors: Vectors::new(pattern.halves.free),
+            solution_mpa: zeros(),
+            direction_volumes: zeros(),
+            volumes: zeros(),
         }
     }
 
@@ -51,68 +42,58 @@ impl ConjugateGradients {
         tolerance: f64,
         max_iterations: u32,
     ) -> (Outcome, u32) {
-        self.solution.fill(Vector::ZERO);
+        self.vectors.restart();
         self.solution_mpa.fill(0.0);
-        let mut old_square = f64::INFINITY;
+        let mut step = Step::default();
+        let (mut old_square, mut old_curvature) = (f64::INFINITY, 0.0);
         let mut won = 0.0;
         for iteration in 0..max_iterations {
-            system.precondition(
-                &self.residual,
-                &mut self.preconditioned,
-                &mut self.preconditioned_mpa,
-            );
-            let square = dot(&self.residual, &self.preconditioned);
+            let products = system.run(step, &mut self.vectors, &mut self.volumes);
+            let square = products.square;
             if square == 0.0 {
                 return (Outcome::Converged, iteration);
             }
             if square.is_nan() || square < 0.0 {
                 return (Outcome::NotConvex, iteration);
             }
-            let ratio = (square / old_square) as f32;
-            for (d, z) in self.direction.iter_mut().zip(&self.preconditioned) {
-                *d = if iteration == 0 {
-                    *z
-                } else {
-                    z.plus_scaled(*d, ratio)
-                };
-            }
-            for (d, z) in self.direction_mpa.iter_mut().zip(&self.preconditioned_mpa) {
-                *d = if iteration == 0 { *z } else { *z + *d * ratio };
-            }
-            system.matrix.multiply(
-                system.pattern,
-                &self.direction,
-                &self.direction_mpa,
-                &mut self.product,
-            );
-            let curvature = dot(&self.direction, &self.product);
+            let ratio = square / old_square;
+            // Directions are conjugate.
+            let curvature = products.curvature - ratio * ratio * old_curvature;
             if curvature.is_nan() || curvature <= 0.0 {
                 if iteration == 0 {
-                    self.solution.copy_from_slice(&self.direction);
-                    self.solution_mpa.copy_from_slice(&self.direction_mpa);
+                    let length = 1.0;
+                    self.move_along(system.pattern, Step { length, ratio: 0.0 });
                 }
                 return (Outcome::NotConvex, iteration);
             }
             let length = square / curvature;
-            for (x, d) in self.solution.iter_mut().zip(&self.direction) {
-                *x = x.plus_scaled(*d, length as f32);
-            }
-            for (x, d) in self.solution_mpa.iter_mut().zip(&self.direction_mpa) {
-                *x += d * length as f32;
-            }
-            for (r, p) in self.residual.iter_mut().zip(&self.product) {
-                *r = r.plus_scaled(*p, -length as f32);
-            }
+            step = Step {
+                length: length as f32,
+                ratio: ratio as f32,
+            };
+            self.move_volumes(system.pattern, step);
             won += length * square;
             if length * square <= tolerance * tolerance * won {
+                self.vectors.finish(step);
                 return (Outcome::Converged, iteration + 1);
             }
-            old_square = square;
+            (old_square, old_curvature) = (square, curvature);
         }
+        self.vectors.finish(step);
         (Outcome::Slow, max_iterations)
     }
-}
 
-fn dot(a: &[Vector], b: &[Vector]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| f64::from(a.dot(b))).sum()
+    fn move_along(&mut self, pattern: &Pattern, step: Step) {
+        self.move_volumes(pattern, step);
+        self.vectors.finish(step);
+    }
+
+    fn move_volumes(&mut self, pattern: &Pattern, step: Step) {
+        let directions = self.direction_volumes.iter_mut().zip(&self.volumes);
+        let solutions = self.solution_mpa.iter_mut().zip(&pattern.root_stiffness);
+        for ((direction, volume), (solution, root)) in directions.zip(solutions) {
+            *direction = volume + *direction * step.ratio;
+            *solution += root * *direction * step.length;
+        }
+    }
 }

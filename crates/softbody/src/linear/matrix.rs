@@ -1,10 +1,8 @@
-//! The system on the fine mesh: of `A` the diagonal and what stands below it, and `B`, by rows.
+//! The system on the fine mesh: of `A` the diagonal and what stands below it, and `B √D`, by rows.
 
 use std::ops::Range;
 
-use pulp::NullaryFnOnce;
-
-use super::block::{Block, Sum, Vector};
+use super::block::{Block, Vector};
 use super::numbering::Halves;
 use crate::element::{Elements, NODES, NodeBlock, NodeSlopes, Sink, Table};
 use crate::parallel::join_halves;
@@ -18,12 +16,12 @@ pub(crate) struct Pattern {
     pub(crate) halves: Halves,
     /// Blocks of each row below the diagonal, ascending. `[n_free + 1]`
     rows: Vec<u32>,
-    columns: Vec<u32>,
+    pub(super) columns: Vec<u32>,
     /// Coarse nodes whose volume each row's node changes. `[n_free + 1]`
     slope_rows: Vec<u32>,
-    slope_columns: Vec<u32>,
-    /// Bulk modulus over volume of each coarse node, MPa/mm³.
-    volume_stiffness: Vec<f32>,
+    pub(super) slope_columns: Vec<u32>,
+    /// Square roots of the bulk modulus over the volume of each coarse node, `√D`.
+    pub(super) root_stiffness: Vec<f32>,
     /// Where the blocks of each slot's pairs go: a row for a node with itself, else twice a block, plus one for its transpose.
     /// `[n_slots][most_pairs]`, flat.
     block_places: Vec<u32>,
@@ -35,14 +33,15 @@ pub(crate) struct Pattern {
 /// The numbers of the system.
 pub(crate) struct Matrix {
     diagonal: Vec<Block>,
-    blocks: Vec<Block>,
-    slopes: Vec<Vector>,
+    pub(super) blocks: Vec<Block>,
+    /// Rows of `B √D`.
+    pub(super) slopes: Vec<Vector>,
     /// Stiffness that is added to the diagonal: of contact, of damping. `[n_free]`
     pub(crate) extra: Vec<Block>,
     /// The whole diagonal of `A`. `[n_free]`
-    own: Vec<Block>,
+    pub(super) own: Vec<Block>,
     /// Inverse of the diagonal of `H`. `[n_free]`
-    inverse: Vec<Block>,
+    pub(super) inverse: Vec<Block>,
 }
 
 /// Adds the tangents of one half, or of what lies between.
@@ -131,9 +130,9 @@ impl Pattern {
             columns,
             slope_rows,
             slope_columns,
-            volume_stiffness: volume_stiffness
+            root_stiffness: volume_stiffness
                 .iter()
-                .map(|&stiffness| stiffness as f32)
+                .map(|stiffness| stiffness.sqrt() as f32)
                 .collect(),
             block_places,
             most_pairs,
@@ -154,16 +153,16 @@ impl Pattern {
     }
 
     pub(crate) fn n_coarse(&self) -> usize {
-        self.volume_stiffness.len()
+        self.root_stiffness.len()
     }
 
     #[inline(always)]
-    fn blocks_of(&self, row: usize) -> Range<usize> {
+    pub(super) fn blocks_of(&self, row: usize) -> Range<usize> {
         self.rows[row] as usize..self.rows[row + 1] as usize
     }
 
     #[inline(always)]
-    fn slopes_of(&self, row: usize) -> Range<usize> {
+    pub(super) fn slopes_of(&self, row: usize) -> Range<usize> {
         self.slope_rows[row] as usize..self.slope_rows[row + 1] as usize
     }
 }
@@ -215,6 +214,13 @@ impl Matrix {
         }
     }
 
+    /// Scales the slopes that were added up: from `B` to `B √D`.
+    pub(crate) fn scale_slopes(&mut self, pattern: &Pattern) {
+        for (slope, column) in self.slopes.iter_mut().zip(&pattern.slope_columns) {
+            *slope = Vector::ZERO.plus_scaled(*slope, pattern.root_stiffness[*column as usize]);
+        }
+    }
+
     /// Completes the diagonal with the extra stiffness as it is now.
     pub(crate) fn complete(&mut self, pattern: &Pattern) {
         let half = pattern.halves.free / 2;
@@ -225,8 +231,7 @@ impl Matrix {
                 own.add(&extra[row]);
                 let mut whole = *own;
                 for at in pattern.slopes_of(row) {
-                    let stiffness = pattern.volume_stiffness[pattern.slope_columns[at] as usize];
-                    whole.add_square(&slopes[at], stiffness);
+                    whole.add_square(&slopes[at]);
                 }
                 *inverse = whole.inverse();
             }
@@ -236,191 +241,6 @@ impl Matrix {
         join_halves(
             || complete(0, own.0, inverse.0),
             || complete(half, own.1, inverse.1),
-        );
-    }
-
-    /// `D Bᵀ x`, MPa.
-    pub(crate) fn pressures(&self, pattern: &Pattern, x: &[Vector], pressures: &mut [f32]) {
-        let halves = pattern.halves;
-        pressures.fill(0.0);
-        let (low, high) = pressures.split_at_mut(halves.coarse);
-        let add = |rows, first, pressures: &mut [f32]| {
-            pulp::Arch::new().dispatch(Pressures {
-                pattern,
-                matrix: self,
-                rows,
-                x,
-                first,
-                pressures,
-            });
-        };
-        join_halves(
-            || add(0..halves.first, 0, low),
-            || add(halves.first..halves.both, halves.coarse, high),
-        );
-        add(halves.both..halves.free, 0, pressures);
-        for (pressure, stiffness) in pressures.iter_mut().zip(&pattern.volume_stiffness) {
-            *pressure *= stiffness;
-        }
-    }
-
-    /// `y ← H x` for given `D Bᵀ x`.
-    pub(crate) fn multiply(&self, pattern: &Pattern, x: &[Vector], pressures: &[f32], y: &mut [Vector]) {
-        let halves = pattern.halves;
-        let (low, high) = y.split_at_mut(halves.first);
-        join_halves(
-            || self.multiply_rows(pattern, 0..halves.first, x, pressures, 0, low),
-            || {
-                self.multiply_rows(
-                    pattern,
-                    halves.first..halves.both,
-                    x,
-                    pressures,
-                    halves.first,
-                    high,
-                )
-            },
-        );
-        self.multiply_rows(pattern, halves.both..halves.free, x, pressures, 0, y);
-    }
-
-    /// `y` begins at row `first`.
-    fn multiply_rows(
-        &self,
-        pattern: &Pattern,
-        rows: Range<usize>,
-        x: &[Vector],
-        pressures: &[f32],
-        first: usize,
-        y: &mut [Vector],
-    ) {
-        pulp::Arch::new().dispatch(Product {
-            pattern,
-            matrix: self,
-            rows,
-            x,
-            pressures,
-            first,
-            y,
-        });
-    }
-
-    /// One sweep of block Gauss–Seidel from zero. Leaves `x`, `D Bᵀ x`, and of `f - A x` what stands above the diagonal: the rows are
-    /// solved for what was known when their turn came.
-    pub(crate) fn sweep_forward(
-        &self,
-        pattern: &Pattern,
-        forces: &[Vector],
-        x: &mut [Vector],
-        pressures: &mut [f32],
-        defect: &mut [Vector],
-    ) {
-        pressures.fill(0.0);
-        let halves = pattern.halves;
-        let (low, high) = x.split_at_mut(halves.first);
-        let (low_pressures, high_pressures) = pressures.split_at_mut(halves.coarse);
-        let (low_defect, high_defect) = defect.split_at_mut(halves.first);
-        let rows = |rows, part: Part| {
-            pulp::Arch::new().dispatch(Forward {
-                pattern,
-                matrix: self,
-                forces,
-                rows,
-                part,
-            });
-        };
-        let first = Part {
-            first: 0,
-            x: low,
-            other: low_defect,
-            first_pressure: 0,
-            pressures: low_pressures,
-        };
-        let second = Part {
-            first: halves.first,
-            x: high,
-            other: high_defect,
-            first_pressure: halves.coarse,
-            pressures: high_pressures,
-        };
-        join_halves(
-            || rows(0..halves.first, first),
-            || rows(halves.first..halves.both, second),
-        );
-        let between = Part {
-            first: 0,
-            x,
-            other: defect,
-            first_pressure: 0,
-            pressures,
-        };
-        rows(halves.both..halves.free, between);
-    }
-
-    /// Takes what the pressures add off the defect of a forward sweep.
-    pub(crate) fn complete_defect(&self, pattern: &Pattern, pressures: &[f32], defect: &mut [Vector]) {
-        let half = pattern.halves.free / 2;
-        let (first, second) = defect.split_at_mut(half);
-        let run = |first, defect| {
-            pulp::Arch::new().dispatch(PressureDefect {
-                pattern,
-                matrix: self,
-                pressures,
-                first,
-                defect,
-            });
-        };
-        join_halves(|| run(0, first), || run(half, second));
-    }
-
-    /// One sweep of block Gauss–Seidel the other way, from `x` and its `D Bᵀ x`. `above` is memory.
-    pub(crate) fn sweep_backward(
-        &self,
-        pattern: &Pattern,
-        forces: &[Vector],
-        x: &mut [Vector],
-        pressures: &mut [f32],
-        above: &mut [Vector],
-    ) {
-        let halves = pattern.halves;
-        above.fill(Vector::ZERO);
-        let rows = |rows, part: Part| {
-            pulp::Arch::new().dispatch(Backward {
-                pattern,
-                matrix: self,
-                forces,
-                rows,
-                part,
-            });
-        };
-        let between = Part {
-            first: 0,
-            x: &mut *x,
-            other: &mut *above,
-            first_pressure: 0,
-            pressures: &mut *pressures,
-        };
-        rows(halves.both..halves.free, between);
-        let (low, high) = x.split_at_mut(halves.first);
-        let (low_pressures, high_pressures) = pressures.split_at_mut(halves.coarse);
-        let (low_above, high_above) = above.split_at_mut(halves.first);
-        let first = Part {
-            first: 0,
-            x: low,
-            other: low_above,
-            first_pressure: 0,
-            pressures: low_pressures,
-        };
-        let second = Part {
-            first: halves.first,
-            x: high,
-            other: high_above,
-            first_pressure: halves.coarse,
-            pressures: high_pressures,
-        };
-        join_halves(
-            || rows(0..halves.first, first),
-            || rows(halves.first..halves.both, second),
         );
     }
 }
@@ -465,212 +285,6 @@ impl Sink for FineSink<'_> {
                     }
                 }
             }
-        }
-    }
-}
-
-/// Rows of vectors that begin at row `first`, and pressures from `first_pressure` on.
-struct Part<'a> {
-    first: usize,
-    x: &'a mut [Vector],
-    other: &'a mut [Vector],
-    first_pressure: usize,
-    pressures: &'a mut [f32],
-}
-
-struct Product<'a> {
-    pattern: &'a Pattern,
-    matrix: &'a Matrix,
-    rows: Range<usize>,
-    x: &'a [Vector],
-    pressures: &'a [f32],
-    first: usize,
-    y: &'a mut [Vector],
-}
-
-impl NullaryFnOnce for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let (pattern, matrix) = (self.pattern, self.matrix);
-        for row in self.rows {
-            let x = &self.x[row];
-            let mut sum = Sum::default();
-            sum.add(&matrix.own[row], x);
-            let range = pattern.blocks_of(row);
-            for (block, column) in matrix.blocks[range.clone()].iter().zip(&pattern.columns[range]) {
-                let column = *column as usize;
-                sum.add(block, &self.x[column]);
-                let y = &mut self.y[column - self.first];
-                *y = y.plus_scaled(block.transpose_product(x), 1.0);
-            }
-            sum.add_slopes(pattern, matrix, row, self.pressures, 0);
-            self.y[row - self.first] = sum.total();
-        }
-    }
-}
-
-struct Pressures<'a> {
-    pattern: &'a Pattern,
-    matrix: &'a Matrix,
-    rows: Range<usize>,
-    x: &'a [Vector],
-    first: usize,
-    pressures: &'a mut [f32],
-}
-
-impl NullaryFnOnce for Pressures<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        for row in self.rows {
-            let range = self.pattern.slopes_of(row);
-            let slopes = &self.matrix.slopes[range.clone()];
-            for (slope, column) in slopes.iter().zip(&self.pattern.slope_columns[range]) {
-                self.pressures[*column as usize - self.first] += slope.dot(&self.x[row]);
-            }
-        }
-    }
-}
-
-struct PressureDefect<'a> {
-    pattern: &'a Pattern,
-    matrix: &'a Matrix,
-    pressures: &'a [f32],
-    first: usize,
-    defect: &'a mut [Vector],
-}
-
-impl NullaryFnOnce for PressureDefect<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        for (row, defect) in (self.first..).zip(self.defect) {
-            let mut sum = Sum::default();
-            sum.add_slopes(self.pattern, self.matrix, row, self.pressures, 0);
-            *defect = sum.taken_from(defect);
-        }
-    }
-}
-
-struct Forward<'a> {
-    pattern: &'a Pattern,
-    matrix: &'a Matrix,
-    forces: &'a [Vector],
-    rows: Range<usize>,
-    /// The other vector is the defect.
-    part: Part<'a>,
-}
-
-impl NullaryFnOnce for Forward<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let (pattern, matrix, part) = (self.pattern, self.matrix, self.part);
-        for row in self.rows {
-            let range = pattern.blocks_of(row);
-            let (blocks, columns) = (&matrix.blocks[range.clone()], &pattern.columns[range]);
-            let mut sum = Sum::default();
-            for (block, column) in blocks.iter().zip(columns) {
-                sum.add(block, &part.x[*column as usize - part.first]);
-            }
-            let known = sum.taken_from(&self.forces[row]);
-            let mut sum = Sum::default();
-            sum.add_slopes(pattern, matrix, row, part.pressures, part.first_pressure);
-            let x = matrix.inverse[row].times(&sum.taken_from(&known));
-            part.x[row - part.first] = x;
-            let own = matrix.own[row].times(&x);
-            part.other[row - part.first] = known.plus_scaled(own, -1.0);
-            for (block, column) in blocks.iter().zip(columns) {
-                let defect = &mut part.other[*column as usize - part.first];
-                *defect = defect.plus_scaled(block.transpose_product(&x), -1.0);
-            }
-            matrix.move_pressures(pattern, row, &x, part.pressures, part.first_pressure);
-        }
-    }
-}
-
-struct Backward<'a> {
-    pattern: &'a Pattern,
-    matrix: &'a Matrix,
-    forces: &'a [Vector],
-    rows: Range<usize>,
-    /// The other vector is what stands above the diagonal of `A x`, as far as it is known.
-    part: Part<'a>,
-}
-
-impl NullaryFnOnce for Backward<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let (pattern, matrix, part) = (self.pattern, self.matrix, self.part);
-        for row in self.rows.rev() {
-            let range = pattern.blocks_of(row);
-            let (blocks, columns) = (&matrix.blocks[range.clone()], &pattern.columns[range]);
-            let x = part.x[row - part.first];
-            let mut sum = Sum::default();
-            for (block, column) in blocks.iter().zip(columns) {
-                sum.add(block, &part.x[*column as usize - part.first]);
-            }
-            sum.add(&matrix.own[row], &x);
-            sum.add_slopes(pattern, matrix, row, part.pressures, part.first_pressure);
-            let known = self.forces[row].plus_scaled(part.other[row - part.first], -1.0);
-            let change = matrix.inverse[row].times(&sum.taken_from(&known));
-            let x = x.plus_scaled(change, 1.0);
-            part.x[row - part.first] = x;
-            for (block, column) in blocks.iter().zip(columns) {
-                let above = &mut part.other[*column as usize - part.first];
-                *above = above.plus_scaled(block.transpose_product(&x), 1.0);
-            }
-            matrix.move_pressures(pattern, row, &change, part.pressures, part.first_pressure);
-        }
-    }
-}
-
-impl Matrix {
-    /// What a row's change does to the pressures.
-    #[inline(always)]
-    fn move_pressures(
-        &self,
-        pattern: &Pattern,
-        row: usize,
-        change: &Vector,
-        pressures: &mut [f32],
-        first: usize,
-    ) {
-        let range = pattern.slopes_of(row);
-        for (slope, column) in self.slopes[range.clone()]
-            .iter()
-            .zip(&pattern.slope_columns[range])
-        {
-            let column = *column as usize;
-            pressures[column - first] += pattern.volume_stiffness[column] * slope.dot(change);
-        }
-    }
-}
-
-impl Sum {
-    /// Adds `B p` of a row.
-    #[inline(always)]
-    fn add_slopes(
-        &mut self,
-        pattern: &Pattern,
-        matrix: &Matrix,
-        row: usize,
-        pressures: &[f32],
-        first: usize,
-    ) {
-        let range = pattern.slopes_of(row);
-        let slopes = matrix.slopes[range.clone()]
-            .iter()
-            .zip(&pattern.slope_columns[range]);
-        for (slope, column) in slopes {
-            self.add_scaled(slope, pressures[*column as usize - first]);
         }
     }
 }

@@ -10,3 +10,6 @@ mod elimination_order;
 pub(crate) mod krylov;
 pub(crate) mod matrix;
 pub(crate) mod numbering;
+mod product;
+mod sweep;
+mod triangles;

@@ -82,12 +82,7 @@ impl SoftBody {
         buffers.assemble(self, &step, &x);
         buffers.add_contact(self, &step, &x);
         let way: Vec<Vector> = direction.iter().map(|way| Vector::from_dvec3(*way)).collect();
-        let mut pressures = vec![0.0; pressures_mpa.len()];
-        let mut product = vec![Vector::ZERO; n_free];
-        buffers.matrix.pressures(&self.pattern, &way, &mut pressures);
-        buffers
-            .matrix
-            .multiply(&self.pattern, &way, &pressures, &mut product);
+        let product = buffers.matrix.product(&self.pattern, &way);
 
         let force: f64 = super::dot(&buffers.gradient_n[..n_free], direction);
         let (mut wrong, mut whole) = (0.0, 0.0);
