@@ -11,7 +11,7 @@ use crate::element::{self, Forces, Response};
 use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::parallel::on_two_threads;
 use crate::relaxation::Relaxation;
-use crate::state::{Frame, Motion, State};
+use crate::state::{Frame, State};
 use crate::{Blocker, SolveError};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
@@ -95,7 +95,8 @@ impl SoftBody {
                 found: format!("{time_step_s} s"),
             });
         }
-        let before = state.clone();
+        // Only a step in several parts can fail after one of them.
+        let mut before = None;
         let mut iterations = 0;
         let largest = drive.largest_part(self.settings.max_travel_mm);
         let (mut done, mut size) = (0.0, largest);
@@ -106,6 +107,9 @@ impl SoftBody {
             } else {
                 done + size
             };
+            if next < 1.0 && before.is_none() {
+                before = Some(state.clone());
+            }
             match self.substep(
                 state,
                 drive,
@@ -123,8 +127,10 @@ impl SoftBody {
                     state.contacts.iter_mut().for_each(Contact::drop_carried);
                 }
                 Err(failure) => {
-                    let workspace = std::mem::take(&mut state.workspace);
-                    *state = State { workspace, ..before };
+                    if let Some(before) = before {
+                        let workspace = std::mem::take(&mut state.workspace);
+                        *state = State { workspace, ..before };
+                    }
                     return Err(match failure {
                         Failure::NotConverged { residual } => SolveError::NotConverged {
                             fraction: done,
@@ -159,28 +165,6 @@ impl SoftBody {
             shape: shape.as_ref(),
             gel_from_shape: *pose,
         }));
-        let old = state.clone();
-        state.contacts.iter_mut().for_each(Contact::carry);
-        state.contacts[0].forget_distances();
-        let starts = |shape: usize| match shape {
-            0 => from,
-            _ => shapes[shape].gel_from_shape,
-        };
-        for (index, contact) in state.contacts.iter_mut().enumerate() {
-            if let Some(friction) = &mut contact.friction {
-                let start = RigidBody {
-                    gel_from_shape: starts(index),
-                    ..shapes[index]
-                };
-                friction.begin(
-                    &start,
-                    &contact.touches,
-                    self.boundary_mm(&state.displacements_mm),
-                );
-            }
-        }
-        drive.hold(self, part[1], &mut state.displacements_mm);
-
         let State {
             displacements_mm,
             pressures_mpa,
@@ -191,6 +175,26 @@ impl SoftBody {
             ..
         } = &mut *state;
         let buffers = workspace.buffers(self);
+        buffers.old.displacements_mm.clone_from(displacements_mm);
+        buffers.old.pressures_mpa.clone_from(pressures_mpa);
+        buffers.old.contacts.clone_from(contacts);
+        contacts.iter_mut().for_each(Contact::carry);
+        contacts[0].forget_distances();
+        for (index, contact) in contacts.iter_mut().enumerate() {
+            if let Some(friction) = &mut contact.friction {
+                let start = match index {
+                    0 => from,
+                    _ => shapes[index].gel_from_shape,
+                };
+                let shape = RigidBody {
+                    gel_from_shape: start,
+                    ..shapes[index]
+                };
+                friction.begin(&shape, &contact.touches, self.boundary_mm(displacements_mm));
+            }
+        }
+        drive.hold(self, part[1], displacements_mm);
+
         let step = Step {
             response: Response {
                 material: self.material(),
@@ -213,7 +217,7 @@ impl SoftBody {
                 *u += *change * ratio;
             }
             if !buffers.is_valid(self, &mut x) {
-                x.displacements_mm.copy_from_slice(&old.displacements_mm);
+                x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
                 drive.hold(self, part[1], x.displacements_mm);
             }
         }
@@ -233,25 +237,21 @@ impl SoftBody {
                     memory,
                 );
                 if let Drive::Indenter { .. } = drive {
-                    let displacements_mm = state
-                        .displacements_mm
-                        .iter()
-                        .zip(&old.displacements_mm)
-                        .map(|(new, old)| *new - *old)
-                        .collect();
                     if travel_mm != DVec3::ZERO {
-                        state.last = Some(Motion {
-                            travel_mm,
-                            displacements_mm,
-                        });
+                        let motion = last.get_or_insert_default();
+                        motion.travel_mm = travel_mm;
+                        let ends = displacements_mm.iter().zip(&buffers.old.displacements_mm);
+                        motion.displacements_mm.clear();
+                        motion.displacements_mm.extend(ends.map(|(new, old)| *new - *old));
                     }
                     state.gel_from_indenter = Some(to);
                 }
                 Ok(equilibrium)
             }
             Err(failure) => {
-                let workspace = std::mem::take(&mut state.workspace);
-                *state = State { workspace, ..old };
+                displacements_mm.clone_from(&buffers.old.displacements_mm);
+                pressures_mpa.clone_from(&buffers.old.pressures_mpa);
+                contacts.clone_from(&buffers.old.contacts);
                 Err(failure)
             }
         }

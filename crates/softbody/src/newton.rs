@@ -69,6 +69,14 @@ pub(crate) struct Unknowns<'a> {
     pub(crate) contacts: &'a mut Vec<Contact>,
 }
 
+/// Unknowns before a step.
+#[derive(Default)]
+pub(crate) struct Beginning {
+    pub(crate) displacements_mm: Vec<DVec3>,
+    pub(crate) pressures_mpa: Vec<f64>,
+    pub(crate) contacts: Vec<Contact>,
+}
+
 /// Why a step failed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Failure {
@@ -130,6 +138,8 @@ pub(crate) struct Buffers {
     foreseen_mpa: Vec<f64>,
     start_mm: Vec<DVec3>,
     start_mpa: Vec<f64>,
+    /// Where the step began.
+    pub(crate) old: Beginning,
     /// What has been spent since this was last taken.
     pub(crate) cost: Cost,
 }
@@ -156,6 +166,7 @@ impl Workspace {
                 foreseen_mpa: vec![0.0; body.volume_stiffness.len()],
                 start_mm: vec![DVec3::ZERO; n_nodes],
                 start_mpa: vec![0.0; body.volume_stiffness.len()],
+                old: Beginning::default(),
                 cost: Cost::default(),
             })
         })

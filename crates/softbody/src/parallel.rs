@@ -5,6 +5,9 @@
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Pauses of a helper between two looks for work, which cost the other thread something: a microsecond or so.
+const SPINS: u32 = 32;
+
 thread_local! {
     static MAY_SPLIT: Cell<bool> = const { Cell::new(false) };
 }
@@ -33,7 +36,9 @@ pub(crate) fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         || {
             while !is_done.load(Ordering::Relaxed) {
                 rayon::yield_now();
-                std::hint::spin_loop();
+                for _ in 0..SPINS {
+                    std::hint::spin_loop();
+                }
             }
         },
     );

@@ -24,7 +24,7 @@ pub struct State {
 }
 
 /// A motion of the indenter, and how the body followed.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct Motion {
     pub(crate) travel_mm: DVec3,
     pub(crate) displacements_mm: Vec<DVec3>,

@@ -65,7 +65,7 @@ pub(crate) struct Touch {
 }
 
 /// What all boundary nodes feel of one shape.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Contact {
     /// `[n_boundary_nodes]`
     pub(crate) touches: Vec<Touch>,
@@ -153,6 +153,23 @@ impl RigidBody<'_> {
             sum -= outer(tangent * mixed + other * second, other) * force;
         }
         sum
+    }
+}
+
+impl Clone for Contact {
+    fn clone(&self) -> Self {
+        Self {
+            touches: self.touches.clone(),
+            pushed_mm: self.pushed_mm,
+            friction: self.friction.clone(),
+        }
+    }
+
+    /// Without new memory: every step begins with it.
+    fn clone_from(&mut self, source: &Self) {
+        self.touches.clone_from(&source.touches);
+        self.pushed_mm = source.pushed_mm;
+        self.friction.clone_from(&source.friction);
     }
 }
 
