@@ -8,7 +8,7 @@ use twintac_protocol::{PressPath, Zero};
 use twintac_shape::{Pose, Shape};
 
 use crate::readout::PortReadout;
-use crate::{Gel, Honesty, SimulateError};
+use crate::{Gel, GelMesh, Honesty, SimulateError};
 
 /// The gel and the indenter at one moment of a path. Forces act on the gel, in its frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -43,25 +43,13 @@ pub struct Followed {
 }
 
 impl Gel {
-    /// Takes an indenter along a path. The mesh is fine wherever the path presses.
+    /// Meshes the gel for a path: fine wherever the path presses.
     ///
     /// # Errors
-    /// Those of [`Gel::mesh`], and a point outside the gel. A path that can't be followed to its end is no error.
-    pub fn follow(
-        &self,
-        shape: &Shape,
-        path: &PressPath,
-        advanced: &mut dyn FnMut(),
-    ) -> Result<Followed, SimulateError> {
-        let mut frames = path.frames();
+    /// Those of [`Gel::mesh`].
+    pub fn mesh_along(&self, shape: &Shape, path: &PressPath) -> Result<GelMesh, SimulateError> {
+        let frames = self.poses(shape, path)?;
         let first = frames[0].1;
-        let zero_mm = match path.zero {
-            Zero::Touch => self.touch(shape, &first)?.position_mm.z,
-            Zero::Board => 0.0,
-        };
-        for (_, pose) in &mut frames {
-            pose.position_mm.z += zero_mm;
-        }
         let touch_mm = self.touch(shape, &first)?.position_mm.z;
         let depth_mm = |pose: &Pose| touch_mm - pose.position_mm.z;
         let deepest_mm = frames.iter().map(|(_, pose)| depth_mm(pose)).fold(0.0, f64::max);
@@ -75,10 +63,34 @@ impl Gel {
                 ways_mm.push(way_mm);
             }
         }
+        self.mesh_for(shape, &first, deepest_mm.max(1e-3), Some(&ways_mm[1..]))
+    }
+
+    /// Times and poses in the gel's frame.
+    fn poses(&self, shape: &Shape, path: &PressPath) -> Result<Vec<(f64, Pose)>, SimulateError> {
+        let mut frames = path.frames();
+        if let (Zero::Touch, Some((_, first))) = (path.zero, frames.first()) {
+            let zero_mm = self.touch(shape, first)?.position_mm.z;
+            for (_, pose) in &mut frames {
+                pose.position_mm.z += zero_mm;
+            }
+        }
+        Ok(frames)
+    }
+
+    /// Takes an indenter along a path. The mesh is fine wherever the path presses.
+    ///
+    /// # Errors
+    /// Those of [`Gel::mesh`], and a point outside the gel. A path that can't be followed to its end is no error.
+    pub fn follow(
+        &self,
+        shape: &Shape,
+        path: &PressPath,
+        advanced: &mut dyn FnMut(),
+    ) -> Result<Followed, SimulateError> {
+        let frames = self.poses(shape, path)?;
         // Somebody waits for this one press.
-        let gel = self
-            .mesh_along(shape, &first, deepest_mm.max(1e-3), &ways_mm[1..])?
-            .on_two_threads();
+        let gel = self.mesh_along(shape, path)?.on_two_threads();
         let mesh = gel.body.mesh();
         let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
         let mut ports: Vec<(String, &PortReadout)> = taxels.zip(&gel.ports).collect();

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use twintac_protocol::{PressPath, Waypoint, Zero};
 use twintac_sensor::{Indenter, Sensor};
-use twintac_simulate::{Followed, Gel, PressPlace, SimulateSettings};
+use twintac_simulate::{Followed, Gel, SimulateSettings};
 
 /// Frames in a second: the rate of the paper's sensor, Hz.
 const RATE_HZ: f64 = 55.0;
@@ -117,13 +117,7 @@ pub(crate) fn all() -> Result<Vec<Case>> {
 
 impl Case {
     fn gel(&self, tolerance: f64) -> Gel {
-        let mut settings = SimulateSettings {
-            max_nodes: self.n_nodes[1],
-            ..SimulateSettings::default()
-        };
-        // Finer than asked for; the limit decides.
-        settings.edges_per_height = 12.0;
-        settings.edges_per_contact_radius = 8.0;
+        let mut settings = SimulateSettings::default();
         settings.solver.tolerance = tolerance;
         settings.solver.max_iterations = 60;
         Gel::new(self.sensor.clone(), settings)
@@ -137,20 +131,10 @@ impl Case {
             .context("the sensor lacks the indenter")
     }
 
-    /// The mesh of a press straight down, as JSON: `nodes_mm` and `tets`.
+    /// The mesh, as JSON: `nodes_mm` and `tets`.
     pub(crate) fn mesh_json(&self) -> Result<String> {
         let indenter = self.indenter()?;
-        let (first, last) = (&self.path.poses[0], &self.path.poses[self.path.poses.len() - 1]);
-        let place = PressPlace {
-            indenter: indenter.name.clone(),
-            shape: indenter.shape.clone(),
-            x_mm: first.position_mm.x,
-            y_mm: first.position_mm.y,
-            rotation: DQuat::IDENTITY,
-            depth_mm: first.position_mm.z - last.position_mm.z,
-            enough_force_n: None,
-        };
-        let gel = self.gel(1.0).mesh(&place)?;
+        let gel = self.gel(1.0).mesh_along(&indenter.shape, &self.path)?;
         let mesh = gel.body().mesh();
         let nodes_mm: Vec<[f64; 3]> = mesh.nodes_mm.iter().map(DVec3::to_array).collect();
         Ok(serde_json::json!({ "nodes_mm": nodes_mm, "tets": mesh.tets }).to_string())
