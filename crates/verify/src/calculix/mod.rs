@@ -81,7 +81,14 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
         figures,
         plots: vec![Plot {
             name: "pressure",
-            caption: "TwinTac in colour, CalculiX dashed.".into(),
+            caption: format!(
+                "From the top: {}.",
+                compared
+                    .iter()
+                    .map(|compared| compared.case.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
             scene: plot(&compared),
         }],
     })
@@ -156,7 +163,7 @@ fn plot(compared: &[Compared]) -> Scene {
             })
         };
         Panel {
-            name: compared.case.clone(),
+            name: compared.case.split('-').next().unwrap_or_default().to_owned(),
             y_label: "kPa".to_owned(),
             series: series(0).chain(series(1)).collect(),
             y_range: None,
