@@ -9,7 +9,7 @@ use std::process::{Command, ExitCode, ExitStatus};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench peers | verify [rung…] [--quick] [--json]>
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench peers | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, then test: what CI runs
   lint   formatting and clippy, warnings are errors
   test   every test, optimised

@@ -1,7 +1,16 @@
 //! The lines of a mesh along x or y.
 
 use crate::size::SizeField;
-use crate::{Focus, MeshError};
+use crate::{MeshError, Stretch};
+
+/// A focus as one axis sees it.
+pub(crate) struct Core<'a> {
+    pub(crate) center_mm: f64,
+    pub(crate) radius_mm: f64,
+    pub(crate) edge_mm: f64,
+    pub(crate) growth: f64,
+    pub(crate) stretches: &'a [Stretch],
+}
 
 /// Lines across one axis: where the contact wants them, and where the inclusions want them.
 ///
@@ -17,20 +26,19 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Lines from `low` to `high`, outwards from the focus given as (its place on this axis, the focus), or else from the middle. The
-    /// mirror line keeps a margin to both ends.
+    /// Lines from `low` to `high`, outwards from the focus, or else from the middle. The mirror line keeps a margin to both ends.
     pub(crate) fn new(
         [low_mm, high_mm]: [f64; 2],
-        focus: Option<(f64, &Focus)>,
+        focus: Option<Core<'_>>,
         faces_mm: &[f64],
         size: &SizeField,
         margin_mm: f64,
     ) -> Result<Self, MeshError> {
-        let core_mm = match focus {
-            Some((center_mm, focus)) => core([low_mm, high_mm], center_mm, focus),
-            None => vec![0.5 * (low_mm + high_mm)],
+        let middle_mm = 0.5 * (low_mm + high_mm);
+        let (center_mm, core_mm) = match focus {
+            Some(core) => (core.center_mm, core.lines_mm([low_mm, high_mm])?),
+            None => (middle_mm, vec![middle_mm]),
         };
-        let center_mm = focus.map_or(0.5 * (low_mm + high_mm), |(center_mm, _)| center_mm);
         let mut ideal_mm = vec![low_mm];
         match (core_mm.first(), core_mm.last()) {
             (Some(&first_mm), Some(&last_mm)) => {
@@ -63,14 +71,39 @@ impl Axis {
     }
 }
 
-/// Evenly spaced lines across the focus, those left out that would be within half an edge of an end.
-fn core([low_mm, high_mm]: [f64; 2], center_mm: f64, focus: &Focus) -> Vec<f64> {
-    let half = (focus.radius_mm / focus.edge_mm - 1e-9).ceil().clamp(1.0, 2000.0) as i32;
-    let margin_mm = 0.5 * focus.edge_mm;
-    (-half..=half)
-        .map(|step| center_mm + f64::from(step) * focus.edge_mm)
-        .filter(|&line_mm| line_mm > low_mm + margin_mm && line_mm < high_mm - margin_mm)
-        .collect()
+impl Core<'_> {
+    /// Lines across the focus, evenly spaced but for its stretches; those left out that would be within half an edge of an end.
+    fn lines_mm(&self, [low_mm, high_mm]: [f64; 2]) -> Result<Vec<f64>, MeshError> {
+        let [below_mm, above_mm] = [self.side_mm(-1.0)?, self.side_mm(1.0)?];
+        let offsets_mm = below_mm
+            .iter()
+            .skip(1)
+            .rev()
+            .map(|away_mm| -away_mm)
+            .chain(above_mm);
+        let margin_mm = 0.5 * self.edge_mm;
+        Ok(offsets_mm
+            .map(|offset_mm| self.center_mm + offset_mm)
+            .filter(|&line_mm| line_mm > low_mm + margin_mm && line_mm < high_mm - margin_mm)
+            .collect())
+    }
+
+    /// Distances of the lines on one side, the one through the centre first.
+    fn side_mm(&self, sign: f64) -> Result<Vec<f64>, MeshError> {
+        let n_edges = (self.radius_mm / self.edge_mm - 1e-9).ceil().clamp(1.0, 2000.0);
+        if self.stretches.is_empty() {
+            return Ok((0..=n_edges as u32)
+                .map(|line| f64::from(line) * self.edge_mm)
+                .collect());
+        }
+        let mut size = SizeField::new(self.edge_mm, self.growth);
+        for stretch in self.stretches {
+            size.refine(sign * stretch.offset_mm, stretch.reach_mm, stretch.edge_mm);
+        }
+        let mut lines_mm = vec![0.0];
+        size.divide(0.0, self.radius_mm, &mut lines_mm)?;
+        Ok(lines_mm)
+    }
 }
 
 /// Moves lines so that one lies in every face: the choice of lines that moves them least, the lines between spread evenly.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Core};
 use crate::settings::{Cuboid, MeshSettings};
 use crate::size::SizeField;
 use crate::{Focus, MeshError};
@@ -36,10 +36,7 @@ impl Lattice {
         settings: &MeshSettings,
         margin_mm: f64,
     ) -> Result<Self, MeshError> {
-        let smallest_mm = settings
-            .focuses
-            .iter()
-            .fold(settings.edge_mm, |e, focus| e.min(focus.edge_mm));
+        let smallest_mm = settings.smallest_edge_mm();
         let faces = |axis: usize| {
             let ends = [low_mm[axis], high_mm[axis]];
             distinct_faces(
@@ -53,12 +50,22 @@ impl Lattice {
             let mut size = SizeField::new(settings.edge_mm, settings.growth);
             for focus in &settings.focuses {
                 size.refine(focus.center_mm[axis], focus.radius_mm, focus.edge_mm);
+                for stretch in &focus.stretches[axis] {
+                    size.refine(
+                        focus.center_mm[axis] + stretch.offset_mm,
+                        stretch.reach_mm,
+                        stretch.edge_mm,
+                    );
+                }
             }
             size.separate(&planes);
-            let focus = settings
-                .focuses
-                .first()
-                .map(|focus: &Focus| (focus.center_mm[axis], focus));
+            let focus = settings.focuses.first().map(|focus: &Focus| Core {
+                center_mm: focus.center_mm[axis],
+                radius_mm: focus.radius_mm,
+                edge_mm: focus.edge_mm,
+                growth: settings.growth,
+                stretches: &focus.stretches[axis],
+            });
             Axis::new([low_mm[axis], high_mm[axis]], focus, &planes, &size, margin_mm)
         };
         let (x, y) = (across(0)?, across(1)?);

@@ -25,7 +25,7 @@
 //!     min_mm: DVec3::new(x_mm - 1.0, -1.25, 0.0),
 //!     max_mm: DVec3::new(x_mm + 1.0, 1.25, 1.1),
 //! });
-//! let tip = Focus { center_mm: DVec3::new(3.0, 0.5, 6.0), radius_mm: 2.0, edge_mm: 0.5 };
+//! let tip = Focus { center_mm: DVec3::new(3.0, 0.5, 6.0), radius_mm: 2.0, edge_mm: 0.5, stretches: Default::default() };
 //! let settings = MeshSettings { edge_mm: 1.5, focuses: vec![tip], ..MeshSettings::default() };
 //!
 //! let mesh = generate(&strip, &Surfaces::new(), &chips, &settings)?;
@@ -77,6 +77,6 @@ pub use error::MeshError;
 pub use generate::{generate, generate_with_node_count};
 pub use quality::{Quality, Spread};
 pub use refine::Refinement;
-pub use settings::{Cuboid, Focus, MeshSettings};
+pub use settings::{Cuboid, Focus, MeshSettings, Stretch};
 pub use tet_mesh::{NodeSets, TetMesh};
 pub use volume::gel_volume_mm3;

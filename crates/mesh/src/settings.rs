@@ -31,6 +31,21 @@ pub struct Focus {
     pub radius_mm: f64,
     /// Edge length on the disc, mm.
     pub edge_mm: f64,
+    /// Where edges have to be shorter still, along x and along y, as under the rounded rim of a punch.
+    #[serde(default)]
+    pub stretches: [Vec<Stretch>; 2],
+}
+
+/// A stretch of short edges along one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stretch {
+    /// Its middle, from the centre of its focus, mm.
+    pub offset_mm: f64,
+    /// Half its length, mm.
+    pub reach_mm: f64,
+    /// Longest edge along this axis, mm.
+    pub edge_mm: f64,
 }
 
 /// A box of something rigid inside the gel, its faces parallel to the axes. What lies outside the solid is ignored.
@@ -62,14 +77,23 @@ impl MeshSettings {
         scaled.edge_mm *= factor;
         for focus in &mut scaled.focuses {
             focus.edge_mm *= factor;
+            let stretches = focus.stretches.iter_mut().flatten();
+            stretches.for_each(|stretch| stretch.edge_mm *= factor);
         }
         scaled
     }
 
     pub(crate) fn smallest_edge_mm(&self) -> f64 {
-        self.focuses
+        let stretches = self
+            .focuses
             .iter()
-            .fold(self.edge_mm, |smallest_mm, focus| smallest_mm.min(focus.edge_mm))
+            .flat_map(|focus| focus.stretches.iter().flatten());
+        let edges_mm = self
+            .focuses
+            .iter()
+            .map(|focus| focus.edge_mm)
+            .chain(stretches.map(|stretch| stretch.edge_mm));
+        edges_mm.fold(self.edge_mm, f64::min)
     }
 
     pub(crate) fn check(&self) -> Result<(), MeshError> {
@@ -81,6 +105,11 @@ impl MeshSettings {
             within(&name("edge_mm"), focus.edge_mm, 1e-4, 1e4)?;
             within(&name("radius_mm"), focus.radius_mm, 0.0, 1e4)?;
             within(&name("center_mm"), focus.center_mm.abs().max_element(), 0.0, 1e4)?;
+            for stretch in focus.stretches.iter().flatten() {
+                within(&name("stretches.edge_mm"), stretch.edge_mm, 1e-4, 1e4)?;
+                within(&name("stretches.reach_mm"), stretch.reach_mm, 0.0, 1e4)?;
+                within(&name("stretches.offset_mm"), stretch.offset_mm, -1e4, 1e4)?;
+            }
             if focus.center_mm.is_nan() {
                 return within(&name("center_mm"), f64::NAN, 0.0, 1e4);
             }

@@ -81,6 +81,7 @@ fn focused(edge_mm: f64, center_mm: DVec3, radius_mm: f64, focus_edge_mm: f64) -
         center_mm,
         radius_mm,
         edge_mm: focus_edge_mm,
+        stretches: Default::default(),
     };
     MeshSettings {
         edge_mm,
@@ -440,6 +441,7 @@ fn any_settings() -> impl Strategy<Value = MeshSettings> {
                 center_mm: DVec3::new(x, y, z),
                 radius_mm,
                 edge_mm,
+                stretches: Default::default(),
             }
         });
     (0.8..2.0, 0.4..1.0, 1.1..1.5, prop::collection::vec(focus, 0..3)).prop_map(

@@ -8,9 +8,8 @@ use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
 use twintac_softbody::{Frame, Push, SolveError, State};
 
-use crate::gel::GelMesh;
 use crate::readout::PortReadout;
-use crate::{Gel, Honesty, SimulateError};
+use crate::{Gel, GelMesh, Honesty, SimulateError};
 
 /// Part of the gel's height that a force of unknown effect is first taken to press in.
 const GUESSED_DEPTH: f64 = 0.25;
@@ -50,31 +49,14 @@ pub struct Followed {
 }
 
 impl Gel {
-    /// Takes an indenter along a path. The mesh is fine wherever the path presses.
+    /// Meshes the gel for a path: fine wherever the path presses.
     ///
     /// # Errors
-    /// Those of [`Gel::mesh`], and a point outside the gel. A path that can't be followed to its end is no error.
-    pub fn follow(
-        &self,
-        shape: &Shape,
-        path: &PressPath,
-        advanced: &mut dyn FnMut(),
-    ) -> Result<Followed, SimulateError> {
-        let rough = self.rough_for(&path.indenter);
-        let first = path.frames()[0].pose;
+    /// Those of [`Gel::mesh`].
+    pub fn mesh_along(&self, shape: &Shape, path: &PressPath) -> Result<GelMesh, SimulateError> {
+        let frames = self.frames(shape, path)?;
+        let first = frames[0].pose;
         let touch_mm = self.touch(shape, &first)?.position_mm.z;
-        let zero_mm = match path.zero {
-            Zero::Touch => touch_mm,
-            Zero::Board => 0.0,
-        };
-        let frames_of = |path: &PressPath| {
-            let mut frames = path.frames();
-            for frame in &mut frames {
-                frame.pose.position_mm.z += zero_mm;
-            }
-            frames
-        };
-        let frames = frames_of(path);
         let depth_mm = |pose: &Pose| touch_mm - pose.position_mm.z;
         let is_pressed = |frame: &&PathFrame| depth_mm(&frame.pose) > 0.0 || frame.forces_n[1].is_some();
         let place = |frame: &PathFrame| frame.pose.position_mm.truncate();
@@ -94,24 +76,51 @@ impl Gel {
             .fold(1e-3, f64::max);
         if path.asks_for_force() {
             let guess_mm = deepest_mm.max(GUESSED_DEPTH * self.height_mm());
-            let gel = rough.coarse().mesh_along(shape, &first, guess_mm, ways_mm)?;
+            let gel = self.coarse().mesh_for(shape, &first, guess_mm, Some(ways_mm))?;
             let mut walk = Walk::new(&gel, path, self.height_mm());
             // Between waypoints forces and poses change evenly: the deepest place is at one.
             let waypoints = PressPath {
                 rate_hz: None,
                 ..path.clone()
             };
-            for frame in frames_of(&waypoints) {
+            for frame in self.frames(shape, &waypoints)? {
                 if walk.step(&frame).is_err() {
                     break;
                 }
                 deepest_mm = deepest_mm.max(walk.pose().map_or(0.0, |pose| depth_mm(&pose)));
             }
         }
+        self.mesh_for(shape, &first, deepest_mm, Some(ways_mm))
+    }
+
+    /// A path's frames in the gel's frame.
+    fn frames(&self, shape: &Shape, path: &PressPath) -> Result<Vec<PathFrame>, SimulateError> {
+        let mut frames = path.frames();
+        if path.zero == Zero::Touch {
+            let zero_mm = self.touch(shape, &frames[0].pose)?.position_mm.z;
+            for frame in &mut frames {
+                frame.pose.position_mm.z += zero_mm;
+            }
+        }
+        Ok(frames)
+    }
+
+    /// Takes an indenter along a path. The mesh is fine wherever the path presses.
+    ///
+    /// # Errors
+    /// Those of [`Gel::mesh`], and a point outside the gel. A path that can't be followed to its end is no error.
+    pub fn follow(
+        &self,
+        shape: &Shape,
+        path: &PressPath,
+        advanced: &mut dyn FnMut(),
+    ) -> Result<Followed, SimulateError> {
+        let rough = self.rough_for(&path.indenter);
+        let frames = rough.frames(shape, path)?;
+        let touch_mm = rough.touch(shape, &frames[0].pose)?.position_mm.z;
+        let depth_mm = |pose: &Pose| touch_mm - pose.position_mm.z;
         // Somebody waits for this one press.
-        let gel = rough
-            .mesh_along(shape, &first, deepest_mm, ways_mm)?
-            .on_two_threads();
+        let gel = rough.mesh_along(shape, path)?.on_two_threads();
         let mesh = gel.body.mesh();
         let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
         let mut ports: Vec<(String, &PortReadout)> = taxels.zip(&gel.ports).collect();

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
-use twintac_mesh::{Cuboid, Focus, MeshSettings, TetMesh};
+use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
 use twintac_softbody::{Frame, Material, SoftBody};
 
 use crate::readout::{PortReadout, StressCluster};
+use crate::rounding::Roundings;
 use crate::shell::Wall;
 use crate::touch::{contact_radius_mm, first_touch};
 use crate::{Honesty, SimulateError, SimulateSettings, Sweep, SweepFrame};
@@ -18,7 +19,22 @@ use crate::{Honesty, SimulateError, SimulateSettings, Sweep, SweepFrame};
 const CONTACT_DEPTH: f64 = 0.5;
 
 /// By how much edges grow at least when a mesh has too many nodes.
-const MIN_COARSENING: f64 = 1.05;
+const MIN_COARSENING: f64 = 1.01;
+
+/// Power of the excess of nodes by which edges grow: less than a third, as the number of nodes goes down in leaps.
+const COARSENING_POWER: f64 = 0.2;
+
+/// Edges along a path as part of those asked for, if there are nodes for it.
+const PATH_SCALE: f64 = 0.7;
+
+/// Nodes along a path with fine rims, as part of those that it may have without.
+const RIM_SHARE: f64 = 1.6;
+
+/// Nodes of a mesh that only tells how deep a force goes.
+const COARSE_NODES: usize = 1500;
+
+/// Shortest edge at a rim as part of the edge under the rest of the indenter.
+const SHARPEST: f64 = 0.3;
 
 /// A gel and how finely it is to be simulated. Shared by many presses.
 #[derive(Clone, Debug)]
@@ -128,7 +144,7 @@ impl Gel {
             rotation: place.rotation,
         };
         self.rough_for(&place.indenter)
-            .mesh_along(&place.shape, &above, place.depth_mm, &[])
+            .mesh_for(&place.shape, &above, place.depth_mm, None)
     }
 
     /// The same gel with the friction of an indenter of the sensor, if its description states one.
@@ -146,16 +162,17 @@ impl Gel {
         let mut gel = self.clone();
         gel.settings.edges_per_height = gel.settings.edges_per_height.min(4.0);
         gel.settings.edges_per_contact_radius = gel.settings.edges_per_contact_radius.min(4.0);
+        gel.settings.max_path_nodes = gel.settings.max_path_nodes.min(COARSE_NODES);
         gel
     }
 
-    /// Meshes the gel for an indenter that touches first below a pose, goes this deep, and moves on by these ways.
-    pub(crate) fn mesh_along(
+    /// Meshes the gel for an indenter that touches first below a pose and goes this deep; for a path, with the ways that it moves on by.
+    pub(crate) fn mesh_for(
         &self,
         shape: &Shape,
         above: &Pose,
         depth_mm: f64,
-        ways_mm: &[DVec2],
+        ways_mm: Option<&[DVec2]>,
     ) -> Result<GelMesh, SimulateError> {
         let sensor = &*self.sensor;
         let solid = &sensor.gel.solid;
@@ -172,34 +189,49 @@ impl Gel {
                 max_mm: i.max_mm,
             })
             .collect();
-        // Each of its tetrahedra will be cut into eight, with edges half as long.
-        let generate = |scale: f64| {
-            let scale = 2.0 * scale;
+        let generate = |scale: f64, stretches: &[Vec<Stretch>; 2]| {
             let settings = MeshSettings {
                 edge_mm: scale * coarse_mm,
                 focuses: std::iter::once(&DVec2::ZERO)
-                    .chain(ways_mm)
+                    .chain(ways_mm.unwrap_or_default())
                     .map(|way_mm| Focus {
                         center_mm: touched + way_mm.extend(0.0),
                         radius_mm,
                         edge_mm: scale * fine_mm,
+                        stretches: stretches.clone(),
                     })
                     .collect(),
                 ..MeshSettings::default()
             };
-            twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings)
+            // Each of its tetrahedra will be cut into eight, with edges half as long.
+            twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings.scaled(2.0))
         };
-        let mut scale = 1.0;
-        let mut mesh = generate(scale)?;
-        while mesh.n_nodes_refined() > self.settings.max_nodes {
-            let excess = mesh.n_nodes_refined() as f64 / self.settings.max_nodes as f64;
-            let coarser = scale * excess.cbrt().max(MIN_COARSENING);
-            if coarser * fine_mm > radius_mm || coarser * coarse_mm > self.height_mm() {
-                break;
+        let even = |scale: f64| generate(scale, &Default::default());
+        let scales = [1.0, (radius_mm / fine_mm).min(self.height_mm() / coarse_mm)];
+        let mesh = if ways_mm.is_none() {
+            coarsen(even, scales, self.settings.max_nodes)?.1
+        } else {
+            let most = self.settings.max_path_nodes;
+            let (scale, mesh) = coarsen(even, [PATH_SCALE, scales[1]], most)?;
+            let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
+            let edge_mm = scale * fine_mm;
+            let shortest_mm = SHARPEST * edge_mm;
+            let rims = |scale: f64| {
+                let per_radius = self.settings.edges_per_rounding / scale;
+                roundings.stretches(per_radius, [scale * shortest_mm, edge_mm])
+            };
+            if rims(1.0).iter().all(Vec::is_empty) {
+                mesh
+            } else {
+                let most = (RIM_SHARE * most as f64) as usize;
+                coarsen(
+                    |rim_scale| generate(scale, &rims(rim_scale)),
+                    [1.0, 1.0 / SHARPEST],
+                    most,
+                )?
+                .1
             }
-            scale = coarser;
-            mesh = generate(scale)?;
-        }
+        };
         GelMesh::new(
             sensor,
             &mesh,
@@ -234,6 +266,25 @@ impl Gel {
     pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Result<Sweep, SimulateError> {
         Ok(self.mesh(place)?.press(place, keyframes))
     }
+}
+
+/// The finest of ever coarser meshes that has few enough nodes, or else the coarsest, and its scale.
+fn coarsen(
+    generate: impl Fn(f64) -> Result<TetMesh, MeshError>,
+    [mut scale, largest]: [f64; 2],
+    max_nodes: usize,
+) -> Result<(f64, TetMesh), MeshError> {
+    let mut mesh = generate(scale)?;
+    while mesh.n_nodes_refined() > max_nodes {
+        let excess = mesh.n_nodes_refined() as f64 / max_nodes as f64;
+        let coarser = scale * excess.powf(COARSENING_POWER).max(MIN_COARSENING);
+        if coarser > largest {
+            break;
+        }
+        scale = coarser;
+        mesh = generate(scale)?;
+    }
+    Ok((scale, mesh))
 }
 
 impl GelMesh {

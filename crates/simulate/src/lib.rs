@@ -12,6 +12,7 @@ mod gel;
 mod lattice;
 mod pchip;
 mod readout;
+mod rounding;
 mod settings;
 mod shell;
 mod sweep;

@@ -11,8 +11,14 @@ pub struct SimulateSettings {
     pub edges_per_height: f64,
     /// Edges across the radius of the contact at full depth; never longer than away from the indenter. The pressure has half as many.
     pub edges_per_contact_radius: f64,
-    /// Nodes that a press may have: where the edges asked for make more, all are made longer.
+    /// Nodes that a table's press may have: where the edges asked for make more, all are made longer.
     pub max_nodes: usize,
+    /// Nodes that a path may have, for which somebody waits: edges are shorter than asked for where there are nodes for it, longer where there
+    /// are not. Rims then get two thirds more.
+    pub max_path_nodes: usize,
+    /// Edges along a path over the radius to which an indenter is rounded, where that makes them shorter than elsewhere: the force of a punch is
+    /// made at its rim. The pressure has half as many. Tables go without.
+    pub edges_per_rounding: f64,
     /// Mean distance of a sweep's frames over depth, mm. Shallow sweeps have [`MIN_SWEEP_FRAMES`](Self::MIN_SWEEP_FRAMES).
     pub sweep_step_mm: f64,
     /// The solver's own settings.
@@ -30,6 +36,8 @@ impl Default for SimulateSettings {
             edges_per_height: 8.0,
             edges_per_contact_radius: 7.0,
             max_nodes: 16_000,
+            max_path_nodes: 7_000,
+            edges_per_rounding: 2.0,
             sweep_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-4,

@@ -65,7 +65,7 @@ pub(crate) fn first_touch(
 
 /// Height of the indenter's underside above its origin at a place in the gel's plane, mm; `None` beside the indenter, and where it is
 /// above the ceiling.
-fn underside_mm(
+pub(crate) fn underside_mm(
     indenter: &dyn SignedDistance,
     pose: &Pose,
     place: DVec2,

@@ -8,12 +8,16 @@ use twintac_shape::{Pose, SignedDistance};
 
 use crate::contact::{BoundaryNode, Contact};
 use crate::element::{self, Elements, NODES, Response, Side};
-use crate::linear::coarse::CoarseSystem;
+use crate::linear::coarse::{CoarseSystem, Factors};
 use crate::linear::matrix::Pattern;
 use crate::linear::numbering::{Numbered, number};
+use crate::newton::rest_factors;
 use crate::relaxation::{Memory, Relaxation};
 use crate::state::State;
 use crate::{MPA_PER_KPA, Material, SoftBodyError, SolverSettings};
+
+/// Part of the shear modulus whose stress over the body's size makes the load that tolerances are at least relative to.
+const LEAST_LOAD: f64 = 1e-3;
 
 /// A soft body that rigid shapes press, bonded where its mesh says so. Shared by many presses; each has its own [`State`].
 pub struct SoftBody {
@@ -26,6 +30,8 @@ pub struct SoftBody {
     /// Forces from outside on nodes, N.
     pub(crate) loads_n: Vec<(u32, DVec3)>,
     pub(crate) on_two_threads: bool,
+    /// Factors that every press starts with; none if the body at rest has none.
+    pub(crate) rest_factors: Option<Factors>,
     /// Corners of the coarse tetrahedra, and of what is in each of the elements' slots.
     pub(crate) slot_corners: Vec<[u32; 4]>,
     /// The coarse nodes that each node lies midway between; the same twice for a coarse node. `[n_nodes]`
@@ -137,7 +143,7 @@ impl SoftBody {
             .filter(|boundary| boundary.stiffness > 0.0)
             .collect();
         let size_mm = mesh.volume_mm3().cbrt();
-        Ok(Self {
+        let mut body = Self {
             mesh,
             material,
             settings,
@@ -157,7 +163,10 @@ impl SoftBody {
             volume_sources,
             node_stiffness,
             size_mm,
-        })
+            rest_factors: None,
+        };
+        body.rest_factors = rest_factors(&body);
+        Ok(body)
     }
 
     /// Adds a rigid shape that stands still, best one without hollow corners: walls that meet are added one by one. States made before do not
@@ -281,6 +290,13 @@ impl SoftBody {
     /// Shear modulus times volume, N mm.
     pub(crate) fn energy_scale_n_mm(&self) -> f64 {
         MPA_PER_KPA * self.material.model.shear_modulus_kpa() * self.size_mm.powi(3)
+    }
+
+    /// Load that tolerances are at least relative to, N: that of a light touch. Where next to nothing presses, next to nothing matters.
+    pub(crate) fn least_load_n(&self) -> f64 {
+        let stress_kpa = LEAST_LOAD * self.material.model.shear_modulus_kpa();
+        self.negligible_load_n()
+            .max(MPA_PER_KPA * stress_kpa * self.size_mm * self.size_mm)
     }
 
     /// Loads below this count as none, N: far below what matters, above what round-off makes of a large bulk modulus.

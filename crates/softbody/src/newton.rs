@@ -10,11 +10,12 @@ use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody};
 use crate::element::{CoarseSink, CoarseTangent, Forces, Response, Volumes};
 use crate::linear::block::{Block, Vector};
-use crate::linear::coarse::Factors;
+use crate::linear::coarse::{Factors, Tangent};
 use crate::linear::cycle::{Cycle, TwoLevel};
 use crate::linear::krylov::{ConjugateGradients, Outcome};
 use crate::linear::matrix::Matrix;
 use crate::parallel::join_halves;
+use crate::relaxation::Relaxation;
 use crate::state::Cost;
 use crate::wide::LANES;
 
@@ -117,8 +118,10 @@ pub(crate) struct Buffers {
     matrix: Matrix,
     /// Whether it led well when it was used last: then it is good enough for more, in this step and the next.
     has_matrix: bool,
-    factors: Factors,
-    has_factors: bool,
+    /// None before the first, or after a direction that led nowhere.
+    factors: Option<Factors>,
+    /// Where they are made; memory of presses that make some of their own.
+    tangent: Option<Box<Tangent>>,
     cycle: Cycle,
     gradients: ConjugateGradients,
     /// `[n_slots]`
@@ -152,8 +155,8 @@ impl Workspace {
             Box::new(Buffers {
                 matrix: body.pattern.matrix(),
                 has_matrix: false,
-                factors: body.coarse.factors(),
-                has_factors: false,
+                factors: body.rest_factors.clone(),
+                tangent: None,
                 cycle: Cycle::new(&body.pattern),
                 gradients: ConjugateGradients::new(&body.pattern),
                 coarse_tangents: vec![CoarseTangent::default(); body.elements.n_slots()],
@@ -173,6 +176,28 @@ impl Workspace {
     }
 }
 
+/// Factors of a body at rest, which all its presses start with.
+pub(crate) fn rest_factors(body: &SoftBody) -> Option<Factors> {
+    let mut state = body.rest();
+    let still = Relaxation::new(&body.material().prony, 0.0);
+    let step = Step {
+        response: Response {
+            material: body.material(),
+            relaxation: &still,
+            memory: &state.memory,
+        },
+        shapes: &[],
+    };
+    let x = Unknowns {
+        displacements_mm: &mut state.displacements_mm,
+        pressures_mpa: &mut state.pressures_mpa,
+        contacts: &mut state.contacts,
+    };
+    let buffers = state.workspace.buffers(body);
+    buffers.factorise(body, &step, &x).ok()?;
+    buffers.factors.take()
+}
+
 impl Buffers {
     /// Finds the equilibrium of a step, starting from the unknowns given. `iterations` counts up.
     pub(crate) fn solve(
@@ -187,7 +212,7 @@ impl Buffers {
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut has_failed = false;
         for iteration in 0..=settings.max_iterations {
-            let residual = now.unbalanced_n / now.load_n.max(body.negligible_load_n());
+            let residual = now.unbalanced_n / now.load_n.max(body.least_load_n());
             // A start is taken for the answer only if it is much better than it has to be: errors must not pile up from step to step.
             let goal = if iteration == 0 { UNTOUCHED } else { 1.0 } * settings.tolerance;
             if residual <= goal {
@@ -227,7 +252,7 @@ impl Buffers {
                 Err(_) if !has_failed => {
                     has_failed = true;
                     self.has_matrix = false;
-                    self.has_factors = false;
+                    self.factors = None;
                     self.adapt_damping(0.0);
                     now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
                 }
@@ -237,7 +262,7 @@ impl Buffers {
         }
         self.has_matrix = false;
         Err(Failure::NotConverged {
-            residual: now.unbalanced_n / now.load_n.max(body.negligible_load_n()),
+            residual: now.unbalanced_n / now.load_n.max(body.least_load_n()),
         })
     }
 
@@ -325,11 +350,11 @@ impl Buffers {
         }
         self.add_contact(body, step, x);
         self.cost.assembly_s += started.elapsed().as_secs_f64();
-        if !self.has_factors {
+        let mut is_fresh = false;
+        if self.factors.is_none() {
             self.factorise(body, step, x)?;
         }
-        let mut is_fresh = false;
-        loop {
+        while let Some(factors) = &mut self.factors {
             for (residual, gradient) in self.gradients.vectors.residual.iter_mut().zip(&self.gradient_n) {
                 *residual = Vector::from_dvec3(-*gradient);
             }
@@ -337,7 +362,7 @@ impl Buffers {
                 pattern: &body.pattern,
                 matrix: &self.matrix,
                 coarse: &body.coarse,
-                factors: &mut self.factors,
+                factors,
                 ends: &body.ends,
                 cycle: &mut self.cycle,
             };
@@ -365,31 +390,30 @@ impl Buffers {
     /// Factorises the coarse tangent: the true one if it is convex, else ever stiffer.
     fn factorise(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
         let started = Instant::now();
-        self.has_factors = false;
+        self.factors = None;
         self.assemble_coarse(body, step, x);
+        let tangent = self
+            .tangent
+            .get_or_insert_with(|| Box::new(body.coarse.tangent()));
         for extra in [0.0, 0.02, 0.1, 0.5, 2.0, 10.0] {
             let slots = body.elements.slots.iter();
-            let tangents = slots.map(|&slot| &self.coarse_tangents[slot as usize]);
-            body.coarse.fill(&mut self.factors, tangents);
+            let of_elements = slots.map(|&slot| &self.coarse_tangents[slot as usize]);
+            body.coarse.fill(tangent, of_elements);
             for_each_touch(body, step, x, &mut |node, stiffness| {
                 body.coarse
-                    .add_between(&mut self.factors, body.ends[node], &stiffness.as_mat3());
+                    .add_between(tangent, body.ends[node], &stiffness.as_mat3());
             });
             let damping = self.damping + extra;
             if damping > 0.0 {
                 for (ends, stiffness) in body.ends.iter().zip(&body.node_stiffness) {
                     if ends[0] == ends[1] {
                         let own = Mat3::from_diagonal(Vec3::splat((damping * stiffness) as f32));
-                        body.coarse.add_to_node(&mut self.factors, ends[0], &own);
+                        body.coarse.add_to_node(tangent, ends[0], &own);
                     }
                 }
             }
-            if body
-                .coarse
-                .factorise(&mut self.factors)
-                .map_err(|_| Failure::Singular)?
-            {
-                self.has_factors = true;
+            self.factors = body.coarse.factorise(tangent).map_err(|_| Failure::Singular)?;
+            if self.factors.is_some() {
                 self.cost.factorisation_s += started.elapsed().as_secs_f64();
                 self.cost.factorisations += 1;
                 return Ok(());

@@ -44,12 +44,17 @@ pub(crate) struct CoarseSystem {
 /// other's columns.
 type TetBlocks = [(bool, u32); 10];
 
-/// Numbers of one press: the matrix, and the factors of it or of an earlier one.
+/// Factors to solve with. Clones share their numbers.
+#[derive(Clone)]
 pub(crate) struct Factors {
-    matrix: Vec<f32>,
-    factors: Vec<f32>,
     triangles: Triangles,
     unknowns: Vec<f32>,
+}
+
+/// A matrix to factorise, and memory to do it.
+pub(crate) struct Tangent {
+    matrix: Vec<f32>,
+    factors: Vec<f32>,
     scratch: MemBuffer,
 }
 
@@ -183,16 +188,14 @@ impl CoarseSystem {
         Ok(system)
     }
 
-    /// Memory for the numbers.
-    pub(crate) fn factors(&self) -> Factors {
+    /// Memory for a matrix.
+    pub(crate) fn tangent(&self) -> Tangent {
         let scratch = self
             .symbolic
             .factorize_numeric_ldlt_scratch::<f32>(Par::Seq, Spec::default());
-        Factors {
+        Tangent {
             matrix: self.base.clone(),
             factors: vec![0.0; self.symbolic.len_val()],
-            triangles: self.layout.triangles(),
-            unknowns: vec![0.0; self.lower.ncols()],
             scratch: MemBuffer::new(scratch),
         }
     }
@@ -213,9 +216,9 @@ impl CoarseSystem {
     }
 
     /// Fills the matrix with the tangents of the tetrahedra, in their order.
-    pub(crate) fn fill<'a>(&self, factors: &mut Factors, tangents: impl Iterator<Item = &'a CoarseTangent>) {
-        factors.matrix.copy_from_slice(&self.base);
-        let matrix = &mut factors.matrix;
+    pub(crate) fn fill<'a>(&self, tangent: &mut Tangent, tangents: impl Iterator<Item = &'a CoarseTangent>) {
+        tangent.matrix.copy_from_slice(&self.base);
+        let matrix = &mut tangent.matrix;
         for ((corners, blocks), tangent) in self.corners.iter().zip(&self.blocks).zip(tangents) {
             for a in 0..4 {
                 for b in 0..=a {
@@ -269,14 +272,14 @@ impl CoarseSystem {
     }
 
     /// Adds stiffness to what lies midway between two nodes, or to one that is both.
-    pub(crate) fn add_between(&self, factors: &mut Factors, [a, b]: [u32; 2], stiffness: &Mat3) {
+    pub(crate) fn add_between(&self, tangent: &mut Tangent, [a, b]: [u32; 2], stiffness: &Mat3) {
         if a == b {
-            self.add_to_node(factors, a, stiffness);
+            self.add_to_node(tangent, a, stiffness);
             return;
         }
         let quarter = *stiffness * 0.25;
-        self.add_to_node(factors, a, &quarter);
-        self.add_to_node(factors, b, &quarter);
+        self.add_to_node(tangent, a, &quarter);
+        self.add_to_node(tangent, b, &quarter);
         let later = |row: u32, column: u32| {
             self.later[column as usize]
                 .iter()
@@ -287,31 +290,29 @@ impl CoarseSystem {
             for j in 0..self.n_displacements(column) {
                 let start = self.start(column, j, offset);
                 for i in 0..self.n_displacements(row) {
-                    factors.matrix[start + i] += quarter.col(j)[i];
+                    tangent.matrix[start + i] += quarter.col(j)[i];
                 }
             }
         }
     }
 
     /// Adds stiffness to one node.
-    pub(crate) fn add_to_node(&self, factors: &mut Factors, node: u32, stiffness: &Mat3) {
+    pub(crate) fn add_to_node(&self, tangent: &mut Tangent, node: u32, stiffness: &Mat3) {
         for j in 0..self.n_displacements(node) {
             let start = self.diagonals[node as usize][j] as usize;
             for i in j..3 {
-                factors.matrix[start + i] += stiffness.col(j)[i];
+                tangent.matrix[start + i] += stiffness.col(j)[i];
             }
         }
     }
 
-    /// Factorises the matrix; true if the energy is convex here.
-    pub(crate) fn factorise(&self, factors: &mut Factors) -> Result<bool, Singular> {
-        let Factors {
+    /// Factorises the matrix; none if the energy is not convex here.
+    pub(crate) fn factorise(&self, tangent: &mut Tangent) -> Result<Option<Factors>, Singular> {
+        let Tangent {
             matrix,
             factors,
-            triangles,
             scratch,
-            ..
-        } = factors;
+        } = tangent;
         self.symbolic
             .factorize_numeric_ldlt(
                 factors,
@@ -340,8 +341,11 @@ impl CoarseSystem {
                 n_negative += usize::from(pivot < 0.0);
             }
         }
-        triangles.take(&self.layout, factors);
-        Ok(n_negative == self.free.len())
+        let is_convex = n_negative == self.free.len();
+        Ok(is_convex.then(|| Factors {
+            triangles: self.layout.triangles(factors),
+            unknowns: vec![0.0; self.lower.ncols()],
+        }))
     }
 
     /// Replaces forces on the nodes by the displacements that the factors give for them; zero at bonded nodes.

@@ -2,6 +2,7 @@
 //! and in two halves that do not touch each other, with what lies between.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::NullaryFnOnce;
@@ -37,16 +38,21 @@ struct Supernode {
     first_entry: usize,
 }
 
-/// The numbers.
+/// The numbers, shared by all that solve with them, and memory to do it.
+#[derive(Clone)]
 pub(crate) struct Triangles {
+    numbers: Arc<Numbers>,
+    /// Memory of each half: a supernode's rows, and what it adds between the halves.
+    local: [Vec<f32>; 2],
+    between: [Vec<f32>; 2],
+}
+
+struct Numbers {
     entries: Vec<i16>,
     /// What an entry of a column is to be multiplied by. `[n_columns]`
     scales: Vec<f32>,
     /// Inverse of `D`. `[n_columns]`
     inverse: Vec<f32>,
-    /// Memory of each half: a supernode's rows, and what it adds between the halves.
-    local: [Vec<f32>; 2],
-    between: [Vec<f32>; 2],
 }
 
 impl Supernode {
@@ -112,36 +118,37 @@ impl Layout {
         }
     }
 
-    pub(crate) fn triangles(&self) -> Triangles {
+    /// Of factors: of each supernode a matrix by columns, `D` on its diagonal.
+    pub(crate) fn triangles(&self, factors: &[f32]) -> Triangles {
         let local = || vec![0.0; self.most_rows + 2 * LANES];
         let between = || vec![0.0; self.n_columns - self.starts[1]];
         Triangles {
-            entries: vec![0; self.n_entries],
-            scales: vec![0.0; self.n_columns],
-            inverse: vec![0.0; self.n_columns],
+            numbers: Arc::new(self.numbers(factors)),
             local: [local(), local()],
             between: [between(), between()],
         }
     }
-}
 
-impl Triangles {
-    /// Takes over the factors: of each supernode a matrix by columns, `D` on its diagonal.
-    pub(crate) fn take(&mut self, layout: &Layout, factors: &[f32]) {
+    fn numbers(&self, factors: &[f32]) -> Numbers {
+        let mut numbers = Numbers {
+            entries: vec![0; self.n_entries],
+            scales: vec![0.0; self.n_columns],
+            inverse: vec![0.0; self.n_columns],
+        };
         let mut from = factors;
-        for node in &layout.supernodes {
+        for node in &self.supernodes {
             let n_local = node.n_local();
             let (own, rest) = from.split_at(node.columns.len() * n_local);
             from = rest;
-            let mut to = &mut self.entries[node.first_entry..];
+            let mut to = &mut numbers.entries[node.first_entry..];
             for (index, column) in node.columns.clone().enumerate() {
                 let values = &own[index * n_local + index..(index + 1) * n_local];
                 let below = &values[1..];
                 let largest = below
                     .iter()
                     .fold(f32::MIN_POSITIVE, |most, value| most.max(value.abs()));
-                self.inverse[column] = 1.0 / values[0];
-                self.scales[column] = largest / LARGEST;
+                numbers.inverse[column] = 1.0 / values[0];
+                numbers.scales[column] = largest / LARGEST;
                 let (entries, rest) = to.split_at_mut(Supernode::padded(below.len()));
                 for (entry, value) in entries.iter_mut().zip(below) {
                     *entry = (value / largest * LARGEST).round() as i16;
@@ -149,23 +156,19 @@ impl Triangles {
                 to = rest;
             }
         }
+        numbers
     }
+}
 
+impl Triangles {
     /// `x ← (L D Lᵀ)⁻¹ x`
     pub(crate) fn solve(&mut self, layout: &Layout, x: &mut [f32]) {
         let Self {
-            entries,
-            scales,
-            inverse,
+            numbers,
             local: [first_local, second_local],
             between: [first_between, second_between],
         } = self;
-        let numbers = Numbers {
-            layout,
-            entries,
-            scales,
-            inverse,
-        };
+        let numbers = &**numbers;
         let [second_start, between_start] = layout.starts;
         let (halves, middle) = x.split_at_mut(between_start);
         let (first, second) = halves.split_at_mut(second_start);
@@ -173,6 +176,7 @@ impl Triangles {
         let run =
             |down, nodes: &Range<usize>, start, x: &mut [f32], between: &mut [f32], local: &mut [f32]| {
                 pulp::Arch::new().dispatch(Solve {
+                    layout,
                     numbers,
                     down,
                     nodes: nodes.clone(),
@@ -220,17 +224,10 @@ impl Triangles {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Numbers<'a> {
-    layout: &'a Layout,
-    entries: &'a [i16],
-    scales: &'a [f32],
-    inverse: &'a [f32],
-}
-
 /// A solve with the supernodes of one part, whose columns begin at `start`: with `L`, or with `D Lᵀ`.
 struct Solve<'a> {
-    numbers: Numbers<'a>,
+    layout: &'a Layout,
+    numbers: &'a Numbers,
     down: bool,
     nodes: Range<usize>,
     start: usize,
@@ -244,7 +241,7 @@ impl NullaryFnOnce for Solve<'_> {
 
     #[inline(always)]
     fn call(mut self) {
-        let layout = self.numbers.layout;
+        let layout = self.layout;
         if self.down {
             for node in &layout.supernodes[self.nodes.clone()] {
                 self.down(node);
@@ -260,12 +257,8 @@ impl NullaryFnOnce for Solve<'_> {
 impl Solve<'_> {
     #[inline(always)]
     fn down(&mut self, node: &Supernode) {
-        let Numbers {
-            layout,
-            entries,
-            scales,
-            ..
-        } = self.numbers;
+        let layout = self.layout;
+        let Numbers { entries, scales, .. } = self.numbers;
         let (n_columns, n_local) = (node.columns.len(), node.n_local());
         let own = &mut self.x[node.columns.start - self.start..][..n_columns];
         let local = &mut *self.local;
@@ -303,8 +296,8 @@ impl Solve<'_> {
 
     #[inline(always)]
     fn up(&mut self, node: &Supernode) {
+        let layout = self.layout;
         let Numbers {
-            layout,
             entries,
             scales,
             inverse,

@@ -7,10 +7,10 @@ mod derivatives;
 mod half_space;
 mod hertz;
 mod locking;
-mod outcome;
+pub(crate) mod outcome;
 mod page;
 mod patch_test;
-mod plots;
+pub(crate) mod plots;
 mod random_press;
 mod robustness;
 mod rubbers;
@@ -22,6 +22,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 
+use crate::calculix;
 use outcome::Outcome;
 
 /// A rung.
@@ -96,6 +97,12 @@ const RUNGS: &[Rung] = &[
         run: balance::run,
     },
     Rung {
+        number: 8,
+        name: "calculix",
+        title: "Force and pressure at the taxels are those of CalculiX",
+        run: calculix::run,
+    },
+    Rung {
         number: 9,
         name: "convergence",
         title: "Force and pressure at the taxels converge with the mesh",
@@ -120,6 +127,9 @@ pub(crate) struct Options {
     /// Coarser meshes and fewer presses: about five minutes
     #[arg(long)]
     quick: bool,
+    /// Run CalculiX (Debian package calculix-ccx; up to an hour a case) on the cases of rung 8 whose names start so
+    #[arg(long, value_name = "CASE")]
+    ccx: Option<String>,
     /// Where the pages go
     #[arg(long, default_value = "docs/verification")]
     folder: PathBuf,
@@ -128,6 +138,9 @@ pub(crate) struct Options {
 /// Climbs the ladder; whether every rung holds.
 pub(crate) fn run(options: &Options) -> Result<bool> {
     let rungs = chosen(&options.rungs)?;
+    if let Some(prefix) = &options.ccx {
+        calculix::compute_references(prefix)?;
+    }
     let effort = if options.quick {
         Effort::Quick
     } else {

@@ -1,0 +1,149 @@
+//! Our answer beside CalculiX's.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, bail, ensure};
+use twintac_simulate::{Gel, SimulateSettings};
+
+use super::case::Case;
+use super::reference::Reference;
+
+/// Part of the largest pressure at a taxel above which errors are relative to the taxel's own pressure.
+const MEANINGFUL: f64 = 0.05;
+
+/// A press as two codes see it.
+pub(super) struct Compared {
+    /// Name of the case.
+    pub(super) case: String,
+    /// Nodes of our mesh.
+    pub(super) n_nodes: usize,
+    /// Depth by depth.
+    pub(super) frames: Vec<ComparedFrame>,
+}
+
+/// The gel at one depth; pairs are of our value and CalculiX's.
+pub(super) struct ComparedFrame {
+    pub(super) depth_mm: f64,
+    pub(super) force_n: [f64; 2],
+    /// At the taxels.
+    pub(super) pressure_kpa: BTreeMap<String, [f64; 2]>,
+    /// At the points along the board.
+    pub(super) line_kpa: Vec<[f64; 2]>,
+}
+
+/// Presses the gel as `twintac simulate --sensor F --path F` does, with the settings as they come.
+pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
+    let sensor = case.sensor()?;
+    let shape = &sensor
+        .indenters
+        .first()
+        .context("the sensor has an indenter")?
+        .shape;
+    let followed =
+        Gel::new(sensor.clone(), SimulateSettings::default()).follow(shape, &case.path()?, &mut || ())?;
+    if let Some(failure) = followed.failure {
+        bail!("{}: {failure}", case.name);
+    }
+    ensure!(
+        reference.frames.iter().map(|frame| frame.depth_mm).eq(case
+            .depths_mm
+            .iter()
+            .copied()
+            .take(reference.frames.len())),
+        "{}: CalculiX went to other depths; run it again",
+        case.name
+    );
+    // The first frame only touches.
+    let frames = followed.frames[1..]
+        .iter()
+        .zip(&reference.frames)
+        .map(|(ours, theirs)| {
+            let pair = |name: &str, theirs: f64| {
+                Ok([*ours.pressure_kpa.get(name).context("a pressure lacks")?, theirs])
+            };
+            let line = theirs.line_kpa.iter().enumerate();
+            Ok(ComparedFrame {
+                depth_mm: theirs.depth_mm,
+                force_n: [-ours.force_n.z, theirs.force_n],
+                pressure_kpa: theirs
+                    .pressure_kpa
+                    .iter()
+                    .map(|(name, &kpa)| Ok((name.clone(), pair(name, kpa)?)))
+                    .collect::<Result<_>>()?,
+                line_kpa: line
+                    .map(|(index, &kpa)| pair(&format!("line{index:02}"), kpa))
+                    .collect::<Result<_>>()?,
+            })
+        });
+    Ok(Compared {
+        case: case.name.clone(),
+        n_nodes: followed.n_nodes,
+        frames: frames.collect::<Result<_>>()?,
+    })
+}
+
+impl ComparedFrame {
+    /// Relative error of the force, %.
+    pub(super) fn force_error_percent(&self) -> f64 {
+        percent(self.force_n, self.force_n[1])
+    }
+
+    /// Error at a taxel, %.
+    pub(super) fn pressure_error_percent(&self, taxel: &str) -> f64 {
+        let largest_kpa = self
+            .pressure_kpa
+            .values()
+            .fold(0.0, |largest: f64, pair| largest.max(pair[1].abs()));
+        self.pressure_kpa
+            .get(taxel)
+            .map_or(f64::NAN, |&pair| pressure_percent(pair, largest_kpa))
+    }
+
+    /// Root mean square difference along the board, % of the largest pressure there.
+    pub(super) fn roughness_percent(&self) -> f64 {
+        let squares: f64 = self
+            .line_kpa
+            .iter()
+            .map(|[ours, theirs]| (ours - theirs).powi(2))
+            .sum();
+        let largest_kpa = self
+            .line_kpa
+            .iter()
+            .fold(0.0, |largest: f64, pair| largest.max(pair[1].abs()));
+        100.0 * (squares / self.line_kpa.len() as f64).sqrt() / largest_kpa
+    }
+}
+
+/// Difference of two pressures, %: relative to the second one where that is meaningful, else to the largest of all taxels.
+pub(super) fn pressure_percent(pair: [f64; 2], largest_kpa: f64) -> f64 {
+    let is_meaningful = pair[1].abs() > MEANINGFUL * largest_kpa;
+    percent(pair, if is_meaningful { pair[1].abs() } else { largest_kpa })
+}
+
+/// Difference of two values as part of a whole, %.
+pub(super) fn percent([ours, theirs]: [f64; 2], whole: f64) -> f64 {
+    100.0 * (ours - theirs) / whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_pressures_count_as_part_of_the_largest() {
+        let pressures = [("near", [10.5, 10.0]), ("far", [0.3, 0.1])];
+        let frame = ComparedFrame {
+            depth_mm: 1.0,
+            force_n: [0.98, 1.0],
+            pressure_kpa: pressures
+                .into_iter()
+                .map(|(name, pair)| (name.to_owned(), pair))
+                .collect(),
+            line_kpa: vec![[10.0, 10.0], [1.0, 0.0]],
+        };
+        assert!((frame.force_error_percent() + 2.0).abs() < 1e-9);
+        assert!((frame.pressure_error_percent("near") - 5.0).abs() < 1e-9);
+        assert!((frame.pressure_error_percent("far") - 2.0).abs() < 1e-9);
+        assert!((frame.roughness_percent() - 10.0 / 2_f64.sqrt()).abs() < 1e-9);
+    }
+}
