@@ -12,6 +12,7 @@ use crate::element::{self, Forces, Response};
 use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::parallel::on_two_threads;
 use crate::relaxation::Relaxation;
+use crate::sensitivity;
 use crate::state::{Frame, Motion, State};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
@@ -171,9 +172,11 @@ impl SoftBody {
             contacts,
             workspace,
             last,
+            sensitivities,
             ..
         } = &mut *state;
         let buffers = workspace.buffers(self);
+        buffers.keeps_passed = !sensitivities.is_empty();
         let step = Step {
             response: Response {
                 material: self.material(),
@@ -200,7 +203,13 @@ impl SoftBody {
                 drive.hold(self, part[1], x.displacements_mm);
             }
         }
-        match buffers.solve(self, &step, &mut x, iterations) {
+        let solved = buffers
+            .solve(self, &step, &mut x, iterations)
+            .and_then(|equilibrium| {
+                sensitivity::follow(self, buffers, &step, &mut x, &old.contacts, sensitivities)?;
+                Ok(equilibrium)
+            });
+        match solved {
             Ok(equilibrium) => {
                 element::remember(
                     &self.elements,

@@ -15,6 +15,7 @@ mod load;
 mod newton;
 mod parallel;
 mod relaxation;
+mod sensitivity;
 mod settings;
 mod state;
 
@@ -22,6 +23,7 @@ pub use body::SoftBody;
 pub use element::Element;
 pub use error::{SoftBodyError, SolveError};
 pub use newton::DerivativeErrors;
+pub use sensitivity::Direction;
 pub use settings::SolverSettings;
 pub use state::{Cost, Frame, State};
 pub use twintac_material::{Material, Model, PronyTerm};

@@ -6,6 +6,7 @@ use twintac_shape::Pose;
 use crate::contact::Contact;
 use crate::newton::Workspace;
 use crate::relaxation::Memory;
+use crate::sensitivity::Sensitivity;
 
 /// Where a soft body is: what one press changes. Made by [`crate::SoftBody::rest`].
 #[derive(Clone)]
@@ -18,6 +19,8 @@ pub struct State {
     pub(crate) gel_from_indenter: Option<Pose>,
     /// Last accepted motion, to start the next from.
     pub(crate) last: Option<Motion>,
+    /// Rates of all of the above along each direction asked for.
+    pub(crate) sensitivities: Vec<Sensitivity>,
     pub(crate) workspace: Workspace,
 }
 
