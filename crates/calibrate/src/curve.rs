@@ -5,12 +5,6 @@ use twintac_shape::Shape;
 
 use crate::CalibrateError;
 
-/// Part of the depth's range by which a polygon through its turning points may be off.
-const STRAIGHT: f64 = 0.005;
-
-/// Part of a curve's duration that counts as soon after a turning point.
-const SOON: f64 = 0.01;
-
 /// What a signal measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
@@ -18,6 +12,17 @@ pub enum Quantity {
     Force,
     /// Reading of a taxel above its baseline, kPa: the pressure at its port times a gain that is its own. By index.
     Taxel(usize),
+}
+
+impl Quantity {
+    /// The taxel that it belongs to, if any.
+    #[must_use]
+    pub fn taxel(self) -> Option<usize> {
+        match self {
+            Self::Force => None,
+            Self::Taxel(taxel) => Some(taxel),
+        }
+    }
 }
 
 /// One quantity over a press.
@@ -86,97 +91,5 @@ impl Curve {
             return refuse("never touches the gel: no depth is above 0 mm".into());
         }
         Ok(())
-    }
-
-    /// Indices of samples to simulate: all, or about as many as asked for: the turning points of the depth, and others spread evenly along
-    /// depth and the logarithm of the time since the last turning point, as relaxation goes. Between them forces are straight in time.
-    pub(crate) fn keyframes(&self, most: usize) -> Vec<usize> {
-        let n = self.time_s.len();
-        if n <= most {
-            return (0..n).collect();
-        }
-        let [low, high] = self
-            .depth_mm
-            .iter()
-            .fold([f64::MAX, f64::MIN], |[low, high], depth_mm| {
-                [low.min(*depth_mm), high.max(*depth_mm)]
-            });
-        let range_mm = (high - low).max(f64::MIN_POSITIVE);
-        let soon_s = SOON * (self.time_s[n - 1] - self.time_s[0]);
-        let mut chosen = self.corners(STRAIGHT * range_mm);
-        chosen.sort_unstable();
-        let mut corners = chosen.iter().copied().peekable();
-        let mut corner_s = self.time_s[0];
-        let mut along = vec![0.0];
-        for row in 1..n {
-            let since_s = |row: usize| self.time_s[row] - corner_s + soon_s;
-            let step = (since_s(row) / since_s(row - 1)).ln()
-                + (self.depth_mm[row] - self.depth_mm[row - 1]).abs() / range_mm;
-            along.push(along[row - 1] + step);
-            while corners.next_if(|&corner| corner <= row).is_some() {
-                corner_s = self.time_s[row];
-            }
-        }
-        let total = along[n - 1];
-        chosen.extend((0..most).map(|i| {
-            let wanted = total * i as f64 / (most - 1) as f64;
-            along.partition_point(|at| *at < wanted).min(n - 1)
-        }));
-        chosen.sort_unstable();
-        chosen.dedup();
-        chosen
-    }
-
-    /// Samples that a polygon through the depths needs to stay this close to them (Ramer, 1972; Douglas and Peucker, 1973).
-    fn corners(&self, within_mm: f64) -> Vec<usize> {
-        let n = self.time_s.len();
-        let mut found = vec![0, n - 1];
-        let mut pending = vec![(0, n - 1)];
-        while let Some((from, to)) = pending.pop() {
-            let line = |row: usize| {
-                let part = (self.time_s[row] - self.time_s[from]) / (self.time_s[to] - self.time_s[from]);
-                self.depth_mm[from] + part * (self.depth_mm[to] - self.depth_mm[from])
-            };
-            let off = |row: &usize| (self.depth_mm[*row] - line(*row)).abs();
-            let worst = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
-            if let Some(worst) = worst.filter(|worst| off(worst) > within_mm) {
-                found.push(worst);
-                pending.extend([(from, worst), (worst, to)]);
-            }
-        }
-        found
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_stand_at_turning_points_and_close_behind_them() {
-        let time_s: Vec<f64> = (0..=2000).map(|i| 0.01 * f64::from(i)).collect();
-        let curve = Curve {
-            name: "press".into(),
-            shape: Shape::Sphere { radius_mm: 1.0 },
-            x_mm: 0.0,
-            y_mm: 0.0,
-            rotation: DQuat::IDENTITY,
-            depth_mm: time_s.iter().map(|t| t.min(2.0).min(20.0 - t)).collect(),
-            time_s,
-            signals: Vec::new(),
-        };
-        let frames = curve.keyframes(60);
-        assert!((55..=64).contains(&frames.len()), "{}", frames.len());
-        for corner in [0, 200, 1800, 2000] {
-            assert!(frames.contains(&corner), "{corner} is not in {frames:?}");
-        }
-        let gap = |from: usize| {
-            frames
-                .windows(2)
-                .find(|pair| pair[0] >= from)
-                .map_or(0, |pair| pair[1] - pair[0])
-        };
-        assert!(gap(200) <= 10 && gap(1000) > 50, "{frames:?}");
-        assert_eq!(curve.keyframes(5000).len(), 2001);
     }
 }

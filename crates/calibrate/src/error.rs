@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// A parameter that does not exist.
-    #[error("there is no parameter `{name}`; there are {known}")]
+    #[error("there is no parameter `{name}`; with the material as it is described there are {known}")]
     Parameter {
         /// What was asked for.
         name: String,

@@ -4,10 +4,11 @@ use serde::Serialize;
 use twintac_simulate::Gel;
 use twintac_softbody::Material;
 
-use crate::curve::{Curve, Quantity};
+use crate::curve::Curve;
 use crate::least_squares::{minimize, normal_equations};
 use crate::problem::{Evaluation, Problem};
 use crate::statistics::{HARD_TO_TELL, covariance, neighbour_correlation, student_quantile};
+use crate::unknown::poissons_ratio;
 use crate::{CalibrateError, FitSettings, Parameter};
 
 /// Correlation of neighbouring residuals above which they are not noise.
@@ -21,8 +22,8 @@ const CORRELATED: f64 = 0.98;
 pub struct FittedUnknown {
     /// Name and owner, with its unit: `shear_modulus_kpa`, `depth_offset_mm of press 1`.
     pub name: String,
-    /// The parameter's name alone.
-    pub parameter: String,
+    /// What it is, without its owner.
+    pub parameter: Parameter,
     /// Value that the fit started from.
     pub start: f64,
     /// Value found.
@@ -74,7 +75,7 @@ pub struct Fit {
     pub material: Material,
     /// Poisson's ratio of the material at small strain.
     pub poissons_ratio: f64,
-    /// The unknowns, in the order of [`Parameter`].
+    /// The unknowns, in the order asked for; gains of taxels last.
     pub unknowns: Vec<FittedUnknown>,
     /// Correlations of all pairs of unknowns that the data tell.
     pub correlations: Vec<Correlation>,
@@ -92,9 +93,6 @@ pub struct Fit {
     pub warnings: Vec<String>,
     /// How the curves are met.
     pub signals: Vec<FittedSignal>,
-    /// Derivatives of the residuals in the coordinates that are searched. `[n_samples][n_unknowns]`
-    #[serde(skip)]
-    pub jacobian: Vec<Vec<f64>>,
 }
 
 /// Fits what is free to the curves. The gel is meshed and solved with its own settings, and its material is where the fit starts.
@@ -138,7 +136,7 @@ fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool
         let (mut products, mut squares) = (0.0, 0.0);
         for (curve, model) in problem.curves.iter().zip(&first.model) {
             for (signal, model) in curve.signals.iter().zip(model) {
-                if unknown.owner.map(Quantity::Taxel) == Some(signal.quantity) {
+                if unknown.owner == signal.quantity.taxel() {
                     let pairs = signal.values.iter().zip(model).filter(|(m, _)| m.is_finite());
                     for (measured, model) in pairs {
                         products += measured * model;
@@ -192,7 +190,7 @@ fn judge(
         };
         unknowns.push(FittedUnknown {
             name: unknown.name.clone(),
-            parameter: unknown.parameter.to_string(),
+            parameter: unknown.parameter.clone(),
             start: unknown.scale.value(start[index]),
             value: unknown.scale.value(x[index]),
             interval_95,
@@ -245,9 +243,8 @@ fn judge(
         ));
     }
     let material = problem.unknowns.material(x);
-    let (bulk, shear) = (material.bulk_modulus_kpa, material.isochoric.shear_modulus_kpa());
     Fit {
-        poissons_ratio: (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear),
+        poissons_ratio: poissons_ratio(&material),
         material,
         unknowns,
         correlations,
@@ -258,7 +255,6 @@ fn judge(
         converged,
         warnings,
         signals,
-        jacobian: evaluation.jacobian.clone(),
     }
 }
 
@@ -271,10 +267,7 @@ fn signals(problem: &Problem, evaluation: &Evaluation) -> Vec<FittedSignal> {
             let square = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64;
             found.push(FittedSignal {
                 curve: curve.name.clone(),
-                taxel: match signal.quantity {
-                    Quantity::Force => None,
-                    Quantity::Taxel(taxel) => Some(taxel),
-                },
+                taxel: signal.quantity.taxel(),
                 deviation_percent: 100.0 * square.sqrt() / problem.scales[index][which],
                 neighbour_correlation: neighbour_correlation(&residuals),
                 time_s: curve.time_s.clone(),

@@ -5,10 +5,11 @@
 //! ([`twintac_softbody::Direction`]): exact, and without a step to choose. A [`Fit`] says how well each unknown is known, and which ones the
 //! data do not tell.
 
-mod coverage;
+mod constants;
 mod curve;
 mod error;
 mod fit;
+mod frames;
 mod least_squares;
 mod matrix;
 mod parameter;
@@ -17,11 +18,9 @@ mod scale;
 mod statistics;
 mod unknown;
 
-pub use coverage::coverage_95;
 pub use curve::{Curve, Quantity, Signal};
 pub use error::CalibrateError;
 pub use fit::{Correlation, Fit, FittedSignal, FittedUnknown, fit};
 pub use parameter::Parameter;
 pub use problem::FitSettings;
-pub use statistics::{normal_quantile, student_quantile};
-pub use twintac_softbody::{Isochoric, Material, PronyTerm};
+pub use twintac_softbody::{Material, Model, PronyTerm};

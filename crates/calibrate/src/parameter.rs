@@ -1,31 +1,17 @@
 //! What can be free in a fit.
 
 use std::fmt;
-use std::str::FromStr;
 
-use crate::CalibrateError;
+use serde::{Serialize, Serializer};
 
 /// Something that a fit can leave open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// Shear modulus of a neo-Hookean gel, kPa.
-    ShearModulus,
-    /// `C10` of a Mooney–Rivlin or Yeoh gel, kPa.
-    C10,
-    /// `C01` of a Mooney–Rivlin gel, kPa.
-    C01,
-    /// `C20` of a Yeoh gel, kPa.
-    C20,
-    /// `C30` of a Yeoh gel, kPa.
-    C30,
-    /// Bulk modulus, kPa. If neither it nor Poisson's ratio is free, the ratio stays as described.
-    BulkModulus,
+    /// A constant of the material, by the name that files have for it: `shear_modulus_kpa`, `terms[0].alpha`, `prony[0].time_s`. If neither the
+    /// bulk modulus nor Poisson's ratio is free, the ratio stays as described.
+    Constant(String),
     /// Poisson's ratio at small strain.
     PoissonsRatio,
-    /// Weight of a Prony term, by index.
-    PronyWeight(usize),
-    /// Time of a Prony term, by index, s.
-    PronyTime(usize),
     /// By how much the indenter is deeper than a curve says, mm; each curve has its own.
     DepthOffset,
     /// Measured over true force, the same for all curves.
@@ -36,13 +22,8 @@ pub enum Parameter {
     Gain,
 }
 
-const KNOWN: [(&str, Parameter); 11] = [
-    ("shear_modulus_kpa", Parameter::ShearModulus),
-    ("c10_kpa", Parameter::C10),
-    ("c01_kpa", Parameter::C01),
-    ("c20_kpa", Parameter::C20),
-    ("c30_kpa", Parameter::C30),
-    ("bulk_modulus_kpa", Parameter::BulkModulus),
+/// All that are not constants of a material.
+const KNOWN: [(&str, Parameter); 5] = [
     ("poissons_ratio", Parameter::PoissonsRatio),
     ("depth_offset_mm", Parameter::DepthOffset),
     ("force_scale", Parameter::ForceScale),
@@ -50,57 +31,52 @@ const KNOWN: [(&str, Parameter); 11] = [
     ("gain", Parameter::Gain),
 ];
 
-impl fmt::Display for Parameter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::PronyWeight(term) => write!(f, "prony[{term}].weight"),
-            Self::PronyTime(term) => write!(f, "prony[{term}].time_s"),
-            _ => {
-                let known = KNOWN.iter().find(|(_, parameter)| parameter == self);
-                f.write_str(known.map_or("", |(name, _)| name))
-            }
-        }
+impl Parameter {
+    /// The parameter of a name; what is no other is taken for a constant of the material.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        let known = KNOWN.into_iter().find(|(known, _)| *known == name);
+        known.map_or_else(|| Self::Constant(name.to_owned()), |(_, parameter)| parameter)
+    }
+
+    /// Whether the material depends on it.
+    #[must_use]
+    pub fn is_of_material(&self) -> bool {
+        matches!(self, Self::Constant(_) | Self::PoissonsRatio)
+    }
+
+    /// Names of all that are not constants of a material.
+    pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+        KNOWN.into_iter().map(|(name, _)| name)
     }
 }
 
-impl FromStr for Parameter {
-    type Err = CalibrateError;
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Self::Constant(name) = self {
+            return f.write_str(name);
+        }
+        let known = KNOWN.iter().find(|(_, parameter)| parameter == self);
+        f.write_str(known.map_or("", |(name, _)| name))
+    }
+}
 
-    fn from_str(name: &str) -> Result<Self, CalibrateError> {
-        if let Some((_, parameter)) = KNOWN.iter().find(|(known, _)| *known == name) {
-            return Ok(*parameter);
-        }
-        let of_term = |field: &str| -> Option<usize> {
-            let term = name.strip_prefix("prony[")?.strip_suffix(field)?;
-            term.strip_suffix("].")?.parse().ok()
-        };
-        if let Some(term) = of_term("weight") {
-            return Ok(Self::PronyWeight(term));
-        }
-        if let Some(term) = of_term("time_s") {
-            return Ok(Self::PronyTime(term));
-        }
-        let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
-        Err(CalibrateError::Parameter {
-            name: name.to_owned(),
-            known: format!("{}, prony[0].weight, prony[0].time_s", names.join(", ")),
-        })
+impl Serialize for Parameter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
     use super::*;
 
     #[test]
     fn names_are_read_as_they_are_written() {
-        let terms = [Parameter::PronyWeight(0), Parameter::PronyTime(12)];
-        for parameter in KNOWN.iter().map(|(_, parameter)| *parameter).chain(terms) {
-            assert_eq!(parameter.to_string().parse::<Parameter>().unwrap(), parameter);
+        for name in Parameter::names().chain(["c10_kpa", "prony[0].time_s"]) {
+            assert_eq!(Parameter::named(name).to_string(), name);
         }
-        for wrong in ["stiffness", "prony[x].weight", "prony[0]", "prony[0].", ""] {
-            assert!(wrong.parse::<Parameter>().is_err(), "{wrong}");
-        }
+        assert!(Parameter::named("c10_kpa").is_of_material());
+        assert!(!Parameter::named("gain").is_of_material());
     }
 }

@@ -5,6 +5,7 @@ use twintac_simulate::{Gel, Keyframe, PressPlace, RatedFrame, SimulateError};
 use twintac_softbody::Direction;
 
 use crate::curve::{Curve, Quantity};
+use crate::frames::Frames;
 use crate::unknown::Unknowns;
 use crate::{CalibrateError, Parameter};
 
@@ -14,7 +15,7 @@ const ABOVE_MM: f64 = -0.05;
 /// How hard a fit tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSettings {
-    /// Frames simulated of each curve, about: samples between them are straight lines in time.
+    /// Frames simulated of each curve, about: samples between them are interpolated.
     pub most_frames: usize,
     /// Steps of the fit at most.
     pub max_iterations: u32,
@@ -34,8 +35,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) gel: &'a Gel,
     pub(crate) curves: &'a [Curve],
     pub(crate) unknowns: Unknowns,
-    /// Samples that are simulated, by curve.
-    keyframes: Vec<Vec<usize>>,
+    /// What is simulated of each curve.
+    frames: Vec<Frames>,
     /// What residuals are counted in, by curve and signal: the largest force of a curve, N, or the largest reading of all, kPa.
     pub(crate) scales: Vec<Vec<f64>>,
 }
@@ -99,9 +100,9 @@ impl<'a> Problem<'a> {
         Ok(Self {
             gel,
             curves,
-            keyframes: curves
+            frames: curves
                 .iter()
-                .map(|curve| curve.keyframes(settings.most_frames))
+                .map(|curve| Frames::new(curve, settings.most_frames))
                 .collect(),
             unknowns,
             scales,
@@ -143,8 +144,9 @@ impl<'a> Problem<'a> {
             depth_mm: curve.depth_mm.iter().copied().fold(0.0, f64::max),
             enough_force_n: None,
         };
-        let deeper_mm = self.unknowns.value(Parameter::DepthOffset, Some(index), x, 0.0);
-        let keyframes: Vec<Keyframe> = self.keyframes[index]
+        let deeper_mm = self.unknowns.value(&Parameter::DepthOffset, Some(index), x, 0.0);
+        let keyframes: Vec<Keyframe> = self.frames[index]
+            .rows
             .iter()
             .map(|&row| Keyframe {
                 time_s: curve.time_s[row],
@@ -175,44 +177,38 @@ impl<'a> Problem<'a> {
         frames: &[RatedFrame],
         evaluation: &mut Evaluation,
     ) -> Vec<f64> {
-        let Curve { time_s, signals, .. } = &self.curves[curve];
         let signal_scale = self.scales[curve][signal];
-        let signal = &signals[signal];
+        let signal = &self.curves[curve].signals[signal];
         let unknowns = &self.unknowns;
         let (of_scale, owner, offset) = match signal.quantity {
             Quantity::Force => (
                 Parameter::ForceScale,
                 None,
-                unknowns.value(Parameter::ForceOffset, Some(curve), x, 0.0),
+                unknowns.value(&Parameter::ForceOffset, Some(curve), x, 0.0),
             ),
             Quantity::Taxel(taxel) => (Parameter::Gain, Some(taxel), 0.0),
         };
-        let scale = unknowns.value(of_scale, owner, x, 1.0);
-        let value = |frame: &RatedFrame| match signal.quantity {
-            Quantity::Force => frame.force_n,
-            Quantity::Taxel(taxel) => frame.port_pressure_kpa[taxel],
+        let scale = unknowns.value(&of_scale, owner, x, 1.0);
+        let value = |frame: usize| match signal.quantity {
+            Quantity::Force => frames[frame].force_n,
+            Quantity::Taxel(taxel) => frames[frame].port_pressure_kpa[taxel],
         };
-        let rate = |frame: &RatedFrame, direction: usize| match signal.quantity {
-            Quantity::Force => frame.force_rates_n[direction],
-            Quantity::Taxel(taxel) => frame.port_pressure_rates_kpa[direction][taxel],
+        let rate = |frame: usize, direction: usize| match signal.quantity {
+            Quantity::Force => frames[frame].force_rates_n[direction],
+            Quantity::Taxel(taxel) => frames[frame].port_pressure_rates_kpa[direction][taxel],
         };
-        let mut model = Vec::with_capacity(time_s.len());
-        for (time_s, measured) in time_s.iter().zip(&signal.values) {
-            let after = frames
-                .partition_point(|frame| frame.time_s < *time_s)
-                .clamp(1, frames.len() - 1);
-            let (before, after) = (&frames[after - 1], &frames[after]);
-            let part = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
-            let between = |from: f64, to: f64| from + part * (to - from);
-            let bare = between(value(before), value(after));
+        let interpolation = &self.frames[curve];
+        let mut model = Vec::with_capacity(signal.values.len());
+        for (sample, measured) in signal.values.iter().enumerate() {
+            let bare = interpolation.sample(sample, value);
             model.push(scale * bare + offset);
             if !measured.is_finite() {
                 continue;
             }
             let mut row = vec![0.0; unknowns.all.len()];
             for (direction, &unknown) in pressed.iter().enumerate() {
-                row[unknown] =
-                    scale * between(rate(before, direction), rate(after, direction)) / signal_scale;
+                let bare_rate = interpolation.sample(sample, |frame| rate(frame, direction));
+                row[unknown] = scale * bare_rate / signal_scale;
             }
             for (entry, (unknown, x)) in row.iter_mut().zip(unknowns.all.iter().zip(x)) {
                 if unknown.parameter == of_scale && unknown.owner == owner {

@@ -7,6 +7,8 @@ pub(crate) enum Scale {
     Linear,
     /// `exp x`: values above zero.
     Log,
+    /// `-exp x`: values below zero.
+    NegativeLog,
     /// `1/(1 + exp -x)`: values between 0 and 1.
     Logit,
 }
@@ -16,6 +18,7 @@ impl Scale {
         match self {
             Self::Linear => x,
             Self::Log => x.exp(),
+            Self::NegativeLog => -x.exp(),
             Self::Logit => 1.0 / (1.0 + (-x).exp()),
         }
     }
@@ -24,6 +27,7 @@ impl Scale {
         match self {
             Self::Linear => value,
             Self::Log => value.ln(),
+            Self::NegativeLog => (-value).ln(),
             Self::Logit => (value / (1.0 - value)).ln(),
         }
     }
@@ -32,7 +36,7 @@ impl Scale {
     pub(crate) fn rate(self, x: f64) -> f64 {
         match self {
             Self::Linear => 1.0,
-            Self::Log => x.exp(),
+            Self::Log | Self::NegativeLog => self.value(x),
             Self::Logit => self.value(x) * (1.0 - self.value(x)),
         }
     }
@@ -44,8 +48,9 @@ mod tests {
 
     #[test]
     fn scales_lead_back_and_their_rates_are_differences() {
-        for scale in [Scale::Linear, Scale::Log, Scale::Logit] {
-            for value in [0.1, 0.3, 0.49] {
+        for scale in [Scale::Linear, Scale::Log, Scale::NegativeLog, Scale::Logit] {
+            for size in [0.1, 0.3, 0.49] {
+                let value = if scale == Scale::NegativeLog { -size } else { size };
                 let x = scale.coordinate(value);
                 assert!((scale.value(x) - value).abs() < 1e-12);
                 let difference = (scale.value(x + 1e-5) - scale.value(x - 1e-5)) / 2e-5;

@@ -73,8 +73,7 @@ pub(crate) fn covariance(normal: &Square, variance: f64) -> Covariance {
 }
 
 /// Value that a standard normal variable stays below with this probability, by Newton's method.
-#[must_use]
-pub fn normal_quantile(probability: f64) -> f64 {
+fn normal_quantile(probability: f64) -> f64 {
     let mut x = 0.0_f64;
     for _ in 0..100 {
         let density = (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
@@ -100,8 +99,7 @@ fn normal_cumulative(x: f64) -> f64 {
 }
 
 /// The same for Student's distribution (Abramowitz and Stegun, 1964, 26.7.5): within 0.2 % for 5 degrees of freedom or more at 97.5 %.
-#[must_use]
-pub fn student_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
+pub(crate) fn student_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
     let x = normal_quantile(probability);
     let n = degrees_of_freedom;
     let first = (x.powi(3) + x) / 4.0;

@@ -1,11 +1,15 @@
 //! Unknowns: where each is sought, and what it does to the material.
 
 use glam::DVec3;
-use twintac_softbody::{Direction, Isochoric, Material};
+use twintac_softbody::{Direction, Material};
 
+use crate::constants;
 use crate::curve::{Curve, Quantity};
 use crate::scale::Scale;
 use crate::{CalibrateError, Parameter};
+
+/// Part of an unknown's reach over which materials are compared.
+const DIFFERENCE: f64 = 1e-4;
 
 /// One number that a fit seeks.
 #[derive(Clone, Debug)]
@@ -37,8 +41,9 @@ fn bulk_over_shear(ratio: f64) -> f64 {
     2.0 * (1.0 + ratio) / (3.0 * (1.0 - 2.0 * ratio))
 }
 
-fn ratio_of(material: &Material) -> f64 {
-    let (bulk, shear) = (material.bulk_modulus_kpa, material.isochoric.shear_modulus_kpa());
+/// Poisson's ratio at small strain.
+pub(crate) fn poissons_ratio(material: &Material) -> f64 {
+    let (bulk, shear) = (material.bulk_modulus_kpa, material.model.shear_modulus_kpa());
     (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
 }
 
@@ -49,193 +54,82 @@ impl Unknowns {
         free: &[Parameter],
         taxel_name: &dyn Fn(usize) -> String,
     ) -> Result<Self, CalibrateError> {
-        let refuse = |parameter: Parameter, reason: &str| {
+        let refuse = |parameter: &Parameter, reason: &str| {
             Err(CalibrateError::NotFree {
                 name: parameter.to_string(),
                 reason: reason.to_owned(),
             })
         };
-        let quantities = || {
-            curves
-                .iter()
-                .flat_map(|curve| &curve.signals)
-                .map(|signal| signal.quantity)
-        };
-        let has_force = quantities().any(|quantity| quantity == Quantity::Force);
+        let signals = curves.iter().flat_map(|curve| &curve.signals);
+        let mut taxels: Vec<usize> = signals
+            .clone()
+            .filter_map(|signal| signal.quantity.taxel())
+            .collect();
+        taxels.sort_unstable();
+        taxels.dedup();
         let mut free = free.to_vec();
-        if quantities().any(|quantity| quantity != Quantity::Force) {
+        if !taxels.is_empty() && !free.contains(&Parameter::Gain) {
             free.push(Parameter::Gain);
         }
-        free.sort_unstable();
-        free.dedup();
-        if free.contains(&Parameter::BulkModulus) && free.contains(&Parameter::PoissonsRatio) {
-            return refuse(
-                Parameter::BulkModulus,
-                "Poisson's ratio is free already, and says the same",
-            );
+        if let Some(twice) = (1..free.len()).find(|&index| free[..index].contains(&free[index])) {
+            return refuse(&free[twice], "it was asked for twice");
+        }
+        let bulk = Parameter::named("bulk_modulus_kpa");
+        let keeps_ratio = !free.contains(&bulk);
+        if !keeps_ratio && free.contains(&Parameter::PoissonsRatio) {
+            return refuse(&bulk, "Poisson's ratio is free already, and says the same");
+        }
+        if !signals.clone().any(|signal| signal.quantity == Quantity::Force) {
+            if free.contains(&Parameter::ForceScale) || free.contains(&Parameter::ForceOffset) {
+                return refuse(&Parameter::ForceScale, "no force was measured");
+            }
+            let mut moduli = constants::names(material);
+            moduli.retain(|name| name.ends_with("_kpa") && name != "bulk_modulus_kpa");
+            let moduli: Vec<Parameter> = moduli.into_iter().map(Parameter::Constant).collect();
+            if moduli.iter().all(|modulus| free.contains(modulus)) {
+                let reason =
+                    "readings with a gain of their own per taxel tell no stiffness, only ratios of constants";
+                return refuse(&moduli[0], reason);
+            }
         }
         let mut unknowns = Self {
             all: Vec::new(),
             material: material.clone(),
-            keeps_ratio: !free.contains(&Parameter::BulkModulus),
+            keeps_ratio,
         };
-        for parameter in free {
+        for parameter in &free {
             let owners: Vec<Option<usize>> = match parameter {
                 Parameter::DepthOffset | Parameter::ForceOffset => (0..curves.len()).map(Some).collect(),
-                Parameter::Gain => {
-                    let mut taxels: Vec<usize> = quantities()
-                        .filter_map(|quantity| match quantity {
-                            Quantity::Force => None,
-                            Quantity::Taxel(taxel) => Some(taxel),
-                        })
-                        .collect();
-                    taxels.sort_unstable();
-                    taxels.dedup();
-                    taxels.into_iter().map(Some).collect()
-                }
-                Parameter::ForceScale if !has_force => {
-                    return refuse(parameter, "no force was measured");
-                }
-                Parameter::ShearModulus | Parameter::C10 if !has_force => {
-                    let reason = "readings with a gain of their own per taxel tell no stiffness, only ratios of constants";
-                    return refuse(parameter, reason);
-                }
+                Parameter::Gain => taxels.iter().copied().map(Some).collect(),
                 _ => vec![None],
             };
             for owner in owners {
-                let curve = owner
-                    .filter(|_| parameter != Parameter::Gain)
-                    .map(|curve| curves[curve].name.as_str());
-                let name = match (curve, owner) {
-                    (Some(curve), _) if curves.len() > 1 => format!("{parameter} of {curve}"),
-                    (None, Some(taxel)) => format!("gain of {}", taxel_name(taxel)),
+                let name = match (parameter, owner) {
+                    (Parameter::Gain, Some(taxel)) => format!("gain of {}", taxel_name(taxel)),
+                    (_, Some(curve)) if curves.len() > 1 => format!("{parameter} of {}", curves[curve].name),
                     _ => parameter.to_string(),
                 };
-                match unknowns.unknown(parameter, owner, name) {
-                    Ok(unknown) => unknowns.all.push(unknown),
-                    Err(reason) => return refuse(parameter, &reason),
-                }
+                unknowns.all.push(unknown(material, parameter, owner, name)?);
             }
         }
         Ok(unknowns)
     }
 
-    fn unknown(&self, parameter: Parameter, owner: Option<usize>, name: String) -> Result<Unknown, String> {
-        let material = &self.material;
-        let term = |index: usize| {
-            let n = material.prony.len();
-            material.prony.get(index).ok_or_else(|| {
-                format!("the material has {n} Prony terms; describe as many as are sought, with rough values")
-            })
-        };
-        let foreign = || {
-            format!(
-                "the material's model has no such constant; it has {}",
-                constants(material)
-            )
-        };
-        let positive = |value: f64, name: &str| {
-            if value > 0.0 {
-                Ok((Scale::Log, value))
-            } else {
-                Err(format!(
-                    "the sensor's {name} is {value}; describe a rough value above 0 to start from"
-                ))
-            }
-        };
-        let (scale, value) = match (parameter, material.isochoric) {
-            (Parameter::ShearModulus, Isochoric::NeoHookean { shear_modulus_kpa }) => {
-                positive(shear_modulus_kpa, "shear modulus")?
-            }
-            (Parameter::C10, Isochoric::MooneyRivlin { c10_kpa, .. } | Isochoric::Yeoh { c10_kpa, .. }) => {
-                positive(c10_kpa, "C10")?
-            }
-            (Parameter::C01, Isochoric::MooneyRivlin { c01_kpa, .. }) => positive(c01_kpa, "C01")?,
-            (Parameter::C20, Isochoric::Yeoh { c20_kpa, .. }) => (Scale::Linear, c20_kpa),
-            (Parameter::C30, Isochoric::Yeoh { c30_kpa, .. }) => (Scale::Linear, c30_kpa),
-            (
-                Parameter::ShearModulus | Parameter::C10 | Parameter::C01 | Parameter::C20 | Parameter::C30,
-                _,
-            ) => return Err(foreign()),
-            (Parameter::BulkModulus, _) => (Scale::Log, material.bulk_modulus_kpa),
-            (Parameter::PoissonsRatio, _) => (Scale::Linear, ratio_of(material)),
-            (Parameter::PronyWeight(index), _) => (Scale::Logit, term(index)?.weight),
-            (Parameter::PronyTime(index), _) => (Scale::Log, term(index)?.time_s),
-            (Parameter::DepthOffset | Parameter::ForceOffset, _) => (Scale::Linear, 0.0),
-            (Parameter::ForceScale | Parameter::Gain, _) => (Scale::Log, 1.0),
-        };
-        let start = scale.coordinate(value);
-        let shear_kpa = material.isochoric.shear_modulus_kpa();
-        let (bounds, reach) = match (parameter, scale) {
-            // Forces are about straight in the ratio, on any scale that opens up towards 1/2 they are not.
-            (Parameter::PoissonsRatio, _) => ([0.05, 0.4999], 0.05),
-            (Parameter::DepthOffset, _) => ([-1.0, 1.0], 0.1),
-            (Parameter::C20 | Parameter::C30, _) => ([-10.0 * shear_kpa, 10.0 * shear_kpa], 0.2 * shear_kpa),
-            (Parameter::Gain, _) => ([f64::NEG_INFINITY, f64::INFINITY], 10.0),
-            (_, Scale::Linear) => ([f64::NEG_INFINITY, f64::INFINITY], f64::INFINITY),
-            (_, Scale::Logit) => ([-7.0, 3.0], 1.0),
-            _ => ([start - 1e3_f64.ln(), start + 1e3_f64.ln()], 0.7),
-        };
-        Ok(Unknown {
-            parameter,
-            owner,
-            name,
-            scale,
-            start: start.clamp(bounds[0], bounds[1]),
-            bounds,
-            reach,
-        })
-    }
-
     /// The material at these coordinates.
     pub(crate) fn material(&self, x: &[f64]) -> Material {
-        let mut material = self.material.clone();
-        let mut over_shear = self.material.bulk_modulus_kpa / self.material.isochoric.shear_modulus_kpa();
+        let mut over_shear = self.material.bulk_modulus_kpa / self.material.model.shear_modulus_kpa();
+        let mut changed = Vec::new();
         for (unknown, x) in self.all.iter().zip(x) {
             let value = unknown.scale.value(*x);
-            match (unknown.parameter, &mut material.isochoric) {
-                (
-                    Parameter::ShearModulus,
-                    Isochoric::NeoHookean {
-                        shear_modulus_kpa: constant,
-                    },
-                )
-                | (
-                    Parameter::C10,
-                    Isochoric::MooneyRivlin {
-                        c10_kpa: constant, ..
-                    }
-                    | Isochoric::Yeoh {
-                        c10_kpa: constant, ..
-                    },
-                )
-                | (
-                    Parameter::C01,
-                    Isochoric::MooneyRivlin {
-                        c01_kpa: constant, ..
-                    },
-                )
-                | (
-                    Parameter::C20,
-                    Isochoric::Yeoh {
-                        c20_kpa: constant, ..
-                    },
-                )
-                | (
-                    Parameter::C30,
-                    Isochoric::Yeoh {
-                        c30_kpa: constant, ..
-                    },
-                ) => *constant = value,
-                (Parameter::BulkModulus, _) => material.bulk_modulus_kpa = value,
-                (Parameter::PoissonsRatio, _) => over_shear = bulk_over_shear(value),
-                (Parameter::PronyWeight(term), _) => material.prony[term].weight = value,
-                (Parameter::PronyTime(term), _) => material.prony[term].time_s = value,
-                _ => {}
+            match &unknown.parameter {
+                Parameter::Constant(name) => changed.push((name.as_str(), value)),
+                Parameter::PoissonsRatio => over_shear = bulk_over_shear(value),
+                _ => (),
             }
         }
+        let mut material = constants::with(&self.material, changed);
         if self.keeps_ratio {
-            material.bulk_modulus_kpa = over_shear * material.isochoric.shear_modulus_kpa();
+            material.bulk_modulus_kpa = over_shear * material.model.shear_modulus_kpa();
         }
         material
     }
@@ -243,78 +137,98 @@ impl Unknowns {
     /// How a coordinate changes the presses of a curve; none where it does not.
     pub(crate) fn direction(&self, index: usize, curve: usize, x: &[f64]) -> Option<Direction> {
         let unknown = &self.all[index];
-        let material = self.material(x);
-        let mut direction = Direction::zero(&material);
-        let rate = unknown.scale.rate(x[index]);
-        match (unknown.parameter, &mut direction.material.isochoric) {
-            (
-                Parameter::ShearModulus,
-                Isochoric::NeoHookean {
-                    shear_modulus_kpa: constant,
-                },
-            )
-            | (
-                Parameter::C10,
-                Isochoric::MooneyRivlin {
-                    c10_kpa: constant, ..
-                }
-                | Isochoric::Yeoh {
-                    c10_kpa: constant, ..
-                },
-            )
-            | (
-                Parameter::C01,
-                Isochoric::MooneyRivlin {
-                    c01_kpa: constant, ..
-                },
-            )
-            | (
-                Parameter::C20,
-                Isochoric::Yeoh {
-                    c20_kpa: constant, ..
-                },
-            )
-            | (
-                Parameter::C30,
-                Isochoric::Yeoh {
-                    c30_kpa: constant, ..
-                },
-            ) => *constant = rate,
-            (Parameter::BulkModulus, _) => direction.material.bulk_modulus_kpa = rate,
-            (Parameter::PoissonsRatio, _) => {
-                // d/dν of 2 (1 + ν)/(3 (1 - 2 ν)) is 2/(1 - 2 ν)².
-                let below = 1.0 - 2.0 * unknown.scale.value(x[index]);
-                direction.material.bulk_modulus_kpa =
-                    rate * material.isochoric.shear_modulus_kpa() * 2.0 / below.powi(2);
-            }
-            (Parameter::PronyWeight(term), _) => direction.material.prony[term].weight = rate,
-            (Parameter::PronyTime(term), _) => direction.material.prony[term].time_s = rate,
-            (Parameter::DepthOffset, _) if unknown.owner == Some(curve) => {
-                direction.indenter_mm = DVec3::NEG_Z * rate;
-            }
+        let (step, indenter_mm) = match unknown.parameter {
+            Parameter::Constant(_) | Parameter::PoissonsRatio => (DIFFERENCE * unknown.reach, DVec3::ZERO),
+            Parameter::DepthOffset if unknown.owner == Some(curve) => (DIFFERENCE, DVec3::NEG_Z),
             _ => return None,
-        }
-        if self.keeps_ratio {
-            let shear_rate = direction.material.isochoric.shear_modulus_kpa();
-            direction.material.bulk_modulus_kpa +=
-                material.bulk_modulus_kpa / material.isochoric.shear_modulus_kpa() * shear_rate;
-        }
-        Some(direction)
+        };
+        let materials = [-step, step].map(|by| {
+            let mut x = x.to_vec();
+            x[index] += by;
+            self.material(&x)
+        });
+        Some(Direction {
+            materials,
+            step,
+            indenter_mm,
+        })
     }
 
     /// The value of a parameter that belongs to a curve or a taxel, or its usual value.
-    pub(crate) fn value(&self, parameter: Parameter, owner: Option<usize>, x: &[f64], usual: f64) -> f64 {
+    pub(crate) fn value(&self, parameter: &Parameter, owner: Option<usize>, x: &[f64], usual: f64) -> f64 {
         let mut all = self.all.iter().zip(x);
-        let found = all.find(|(unknown, _)| unknown.parameter == parameter && unknown.owner == owner);
+        let found = all.find(|(unknown, _)| unknown.parameter == *parameter && unknown.owner == owner);
         found.map_or(usual, |(unknown, x)| unknown.scale.value(*x))
     }
 }
 
-fn constants(material: &Material) -> &'static str {
-    match material.isochoric {
-        Isochoric::NeoHookean { .. } => "shear_modulus_kpa",
-        Isochoric::MooneyRivlin { .. } => "c10_kpa and c01_kpa",
-        Isochoric::Yeoh { .. } => "c10_kpa, c20_kpa and c30_kpa",
+/// Where a parameter is sought.
+fn unknown(
+    material: &Material,
+    parameter: &Parameter,
+    owner: Option<usize>,
+    name: String,
+) -> Result<Unknown, CalibrateError> {
+    const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+    let (scale, value, bounds, reach) = match parameter {
+        Parameter::Constant(constant) => {
+            let (scale, value) = constant_scale(material, constant)?;
+            let x = scale.coordinate(value);
+            match scale {
+                Scale::Linear => {
+                    let usual = if constant.ends_with("_kpa") {
+                        material.model.shear_modulus_kpa()
+                    } else {
+                        1.0
+                    };
+                    let size = value.abs().max(usual);
+                    (scale, value, [x - 10.0 * size, x + 10.0 * size], 0.2 * size)
+                }
+                Scale::Logit => (scale, value, [-7.0, 3.0], 1.0),
+                _ => (scale, value, [x - 1e3_f64.ln(), x + 1e3_f64.ln()], 0.7),
+            }
+        }
+        // Forces are about straight in the ratio, on any scale that opens up towards 1/2 they are not.
+        Parameter::PoissonsRatio => (Scale::Linear, poissons_ratio(material), [0.05, 0.4999], 0.05),
+        Parameter::DepthOffset => (Scale::Linear, 0.0, [-1.0, 1.0], 0.1),
+        Parameter::ForceOffset => (Scale::Linear, 0.0, ENDLESS, f64::INFINITY),
+        Parameter::ForceScale => (Scale::Log, 1.0, [-1e3_f64.ln(), 1e3_f64.ln()], 0.7),
+        Parameter::Gain => (Scale::Log, 1.0, ENDLESS, 10.0),
+    };
+    Ok(Unknown {
+        parameter: parameter.clone(),
+        owner,
+        name,
+        scale,
+        start: scale.coordinate(value).clamp(bounds[0], bounds[1]),
+        bounds,
+        reach,
+    })
+}
+
+/// The scale of a constant, and where it starts. What makes no material with the other sign keeps the one that it has.
+fn constant_scale(material: &Material, name: &str) -> Result<(Scale, f64), CalibrateError> {
+    let Some(value) = constants::get(material, name) else {
+        let mut known = constants::names(material);
+        known.extend(Parameter::names().map(String::from));
+        return Err(CalibrateError::Parameter {
+            name: name.to_owned(),
+            known: known.join(", "),
+        });
+    };
+    if name.starts_with("prony") && name.ends_with("weight") {
+        return Ok((Scale::Logit, value));
+    }
+    let makes_material = |value: f64| constants::with(material, [(name, value)]).check().is_ok();
+    let size = if value == 0.0 { f64::MIN_POSITIVE } else { value };
+    match (makes_material(-size), value) {
+        (true, _) => Ok((Scale::Linear, value)),
+        (false, 0.0) => Err(CalibrateError::NotFree {
+            name: name.to_owned(),
+            reason: "it is described as 0; describe a rough value above 0 to start from".into(),
+        }),
+        (false, value) if value < 0.0 => Ok((Scale::NegativeLog, value)),
+        (false, _) => Ok((Scale::Log, value)),
     }
 }
 
@@ -323,21 +237,31 @@ mod tests {
     #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
     use super::*;
 
-    #[test]
-    fn directions_are_differences_of_materials() {
+    fn scale_of(json: &str, name: &str) -> Scale {
+        let model = serde_json::from_str(json).unwrap();
         let material = Material {
-            prony: vec![twintac_softbody::PronyTerm {
-                weight: 0.2,
-                time_s: 3.0,
-            }],
-            ..Material::neo_hookean(60.0, 0.47)
+            model,
+            bulk_modulus_kpa: 800.0,
+            prony: Vec::new(),
         };
-        let free = [
-            Parameter::ShearModulus,
-            Parameter::PoissonsRatio,
-            Parameter::PronyWeight(0),
-            Parameter::PronyTime(0),
-        ];
+        constant_scale(&material, name).unwrap().0
+    }
+
+    #[test]
+    fn what_must_keep_its_sign_does() {
+        let yeoh = r#"{"model": "yeoh", "c10_kpa": 8.0, "c20_kpa": 0.0, "c30_kpa": 0.1}"#;
+        assert_eq!(scale_of(yeoh, "c10_kpa"), Scale::Log);
+        assert_eq!(scale_of(yeoh, "c20_kpa"), Scale::Linear);
+        assert_eq!(scale_of(yeoh, "bulk_modulus_kpa"), Scale::Log);
+        let ogden = r#"{"model": "ogden", "terms": [{"mu_kpa": -8.0, "alpha": -3.0}]}"#;
+        assert_eq!(scale_of(ogden, "terms[0].mu_kpa"), Scale::NegativeLog);
+        assert_eq!(scale_of(ogden, "terms[0].alpha"), Scale::NegativeLog);
+    }
+
+    #[test]
+    fn materials_are_where_coordinates_say() {
+        let material = Material::neo_hookean(60.0, 0.47);
+        let free = ["shear_modulus_kpa", "poissons_ratio"].map(Parameter::named);
         let curve = Curve {
             name: "a".into(),
             shape: twintac_shape::Shape::Sphere { radius_mm: 3.0 },
@@ -352,44 +276,13 @@ mod tests {
             }],
         };
         let unknowns = Unknowns::new(&material, &[curve], &free, &|taxel| taxel.to_string()).unwrap();
-        let x: Vec<f64> = unknowns.all.iter().map(|unknown| unknown.start).collect();
-        for index in 0..x.len() {
-            let moved = |by: f64| {
-                let mut x = x.clone();
-                x[index] += by;
-                unknowns.material(&x)
-            };
-            let (after, before) = (moved(1e-5), moved(-1e-5));
-            let direction = unknowns.direction(index, 0, &x).unwrap().material;
-            let pairs = [
-                (
-                    after.bulk_modulus_kpa,
-                    before.bulk_modulus_kpa,
-                    direction.bulk_modulus_kpa,
-                ),
-                (
-                    after.prony[0].weight,
-                    before.prony[0].weight,
-                    direction.prony[0].weight,
-                ),
-                (
-                    after.prony[0].time_s,
-                    before.prony[0].time_s,
-                    direction.prony[0].time_s,
-                ),
-                (
-                    after.isochoric.shear_modulus_kpa(),
-                    before.isochoric.shear_modulus_kpa(),
-                    direction.isochoric.shear_modulus_kpa(),
-                ),
-            ];
-            for (after, before, rate) in pairs {
-                let difference = (after - before) / 2e-5;
-                assert!(
-                    (difference - rate).abs() <= 1e-6 * rate.abs().max(1e-3),
-                    "{index}: {difference} {rate}"
-                );
-            }
-        }
+        let found = unknowns.material(&[30.0_f64.ln(), 0.4]);
+        assert!((found.model.shear_modulus_kpa() - 30.0).abs() < 1e-12);
+        assert!((poissons_ratio(&found) - 0.4).abs() < 1e-12);
+        let direction = unknowns.direction(0, 0, &[30.0_f64.ln(), 0.4]).unwrap();
+        let [before, after] = direction
+            .materials
+            .map(|material| material.model.shear_modulus_kpa());
+        assert!(((after - before) / (2.0 * direction.step) - 30.0).abs() < 1e-6);
     }
 }

@@ -184,8 +184,8 @@ pub(crate) struct Calibrate {
     /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
     pub(crate) curves: Option<PathBuf>,
-    /// What is free: shear_modulus_kpa, c10_kpa, c01_kpa, c20_kpa, c30_kpa, bulk_modulus_kpa or poissons_ratio, prony[0].weight,
-    /// prony[0].time_s, depth_offset_mm, force_scale, force_offset_n.
+    /// What is free: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
+    /// bulk_modulus_kpa), poissons_ratio, depth_offset_mm, force_scale, force_offset_n.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
     pub(crate) free: Vec<String>,
     /// Frames to simulate of each curve, about.

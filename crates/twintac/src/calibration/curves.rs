@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use glam::DQuat;
 use serde::Deserialize;
 use twintac_calibrate::{Curve, Quantity, Signal};
-use twintac_recording::{Control, Import, Press, Recording};
+use twintac_recording::{Control, Import, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
@@ -39,6 +39,9 @@ struct CsvCurve {
     #[serde(default)]
     y_mm: f64,
 }
+
+/// A curve, and where it comes from.
+pub(crate) type Measured = (Curve, Provenance);
 
 /// With what and where a curve was measured.
 #[derive(Clone, Debug)]
@@ -77,7 +80,7 @@ enum Signals {
 }
 
 /// The curves that a file names; paths in it are relative to it.
-pub(crate) fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result<Vec<Curve>> {
+pub(crate) fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result<Vec<Measured>> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let file = twintac_config::read::<CurvesFile>(path)?.value;
     let mut curves = Vec::new();
@@ -104,8 +107,8 @@ pub(crate) fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) ->
     Ok(curves)
 }
 
-/// One curve from a CSV file.
-pub(crate) fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Curve> {
+/// One curve from a CSV file, which is taken to be measured on hardware.
+pub(crate) fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured> {
     let at = || path.display().to_string();
     let mut reader = csv::Reader::from_path(path).with_context(|| format!("reading {}", at()))?;
     let headers = reader.headers().with_context(at)?.clone();
@@ -167,10 +170,10 @@ pub(crate) fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<C
             signal.values.push(number(*column)?);
         }
     }
-    Ok(curve)
+    Ok((curve, Provenance::Real))
 }
 
-fn of_recording(recorded: &Recorded, path: &Path, import: Option<&Path>, gel: &Gel) -> Result<Vec<Curve>> {
+fn of_recording(recorded: &Recorded, path: &Path, import: Option<&Path>, gel: &Gel) -> Result<Vec<Measured>> {
     let sensor = gel.sensor();
     let is_parquet = path.extension().is_some_and(|extension| extension == "parquet");
     let recording = if is_parquet {
@@ -214,7 +217,10 @@ fn of_recording(recorded: &Recorded, path: &Path, import: Option<&Path>, gel: &G
         .collect::<Result<_>>()?;
     named
         .into_iter()
-        .map(|press| of_press(press, recorded.signals, &chosen, gel).with_context(|| press.name.clone()))
+        .map(|press| {
+            let curve = of_press(press, recorded.signals, &chosen, gel);
+            Ok((curve.with_context(|| press.name.clone())?, recording.provenance))
+        })
         .collect()
 }
 
@@ -318,15 +324,17 @@ mod tests {
         let curves = read(&recorded(&[name], Signals::Readings)).unwrap();
         // At x = 6.03 mm, beside S2; 4 mm of travel of which 2.08 mm lead to the gel.
         assert_eq!(curves.len(), 1);
+        let (curve, provenance) = &curves[0];
+        assert_eq!(*provenance, Provenance::Real);
         assert!(
-            curves[0]
+            curve
                 .signals
                 .iter()
                 .any(|signal| signal.quantity == Quantity::Taxel(2))
         );
-        let deepest_mm = curves[0].depth_mm.iter().copied().fold(0.0, f64::max);
+        let deepest_mm = curve.depth_mm.iter().copied().fold(0.0, f64::max);
         assert!((deepest_mm - 1.92).abs() < 0.02, "{deepest_mm}");
-        assert!(curves[0].depth_mm.iter().all(|depth_mm| *depth_mm > -0.3));
+        assert!(curve.depth_mm.iter().all(|depth_mm| *depth_mm > -0.3));
         let no_force = read(&recorded(&[name], Signals::Force)).unwrap_err();
         assert!(format!("{no_force:#}").contains("no force was recorded"));
         let no_press = read(&recorded(&["nothing"], Signals::Readings)).unwrap_err();

@@ -8,8 +8,8 @@ use twintac_sensor::Sensor;
 /// Signals that get panels of their own; more would not be read.
 const MOST_SHOWN: usize = 6;
 
-/// The plot of a fit: a panel of each signal, and one of its residuals below.
-pub(crate) fn scene(fit: &Fit, sensor: &Sensor) -> Scene {
+/// The plot of a fit to curves of some kinds of provenance: a panel of each signal, and one of its residuals below.
+pub(crate) fn scene(fit: &Fit, sensor: &Sensor, kinds: &str) -> Scene {
     let rises = |signal: &FittedSignal| signal.depth_mm.windows(2).all(|pair| pair[1] > pair[0]);
     let over_depth = fit.material.prony.is_empty() && fit.signals.iter().all(rises);
     let mut panels = Vec::new();
@@ -57,7 +57,7 @@ pub(crate) fn scene(fit: &Fit, sensor: &Sensor) -> Scene {
         });
     }
     Panels {
-        title: format!("Calibration of {}", sensor.name),
+        title: format!("Calibration of {}, {kinds} curves", sensor.name),
         x_label: if over_depth { "depth (mm)" } else { "time (s)" }.into(),
         panels,
         panel_height_px: 110.0,

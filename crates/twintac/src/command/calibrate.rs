@@ -6,11 +6,12 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use serde::Serialize;
 use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, fit};
+use twintac_recording::Provenance;
 use twintac_report::{png, svg};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;
-use crate::calibration::{CsvPlace, material_block, of_csv, of_file, scene};
+use crate::calibration::{CsvPlace, Measured, material_file, of_csv, of_file, scene};
 use crate::progress;
 use crate::run::RunSettings;
 use crate::sensor_file::read_sensor;
@@ -23,7 +24,9 @@ const PNG_SCALE: f64 = 2.0;
 #[derive(Serialize)]
 struct Answer<'a> {
     sensor: &'a str,
-    free: Vec<String>,
+    /// Of the curves, without repetition.
+    provenance: Vec<Provenance>,
+    free: Vec<&'a str>,
     settings: &'a SimulateSettings,
     most_frames: usize,
     #[serde(flatten)]
@@ -33,14 +36,16 @@ struct Answer<'a> {
 /// Fits, and prints or writes what came of it.
 pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     let described = read_sensor(&arguments.sensor)?;
-    let free = arguments
-        .free
-        .iter()
-        .map(|name| name.trim().parse::<Parameter>())
-        .collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<&str> = arguments.free.iter().map(|name| name.trim()).collect();
+    let free: Vec<Parameter> = names.iter().map(|name| Parameter::named(name)).collect();
     let settings = RunSettings::read(arguments.settings.as_deref())?.simulate;
     let gel = Gel::new(Arc::clone(&described.sensor), settings.clone());
-    let curves = curves(arguments, &gel, described.import())?;
+    let (curves, mut provenance): (Vec<Curve>, Vec<Provenance>) =
+        measured(arguments, &gel, described.import())?.into_iter().unzip();
+    provenance.sort_unstable();
+    provenance.dedup();
+    let kinds: Vec<String> = provenance.iter().map(ToString::to_string).collect();
+    let kinds = kinds.join(" and ");
     let fit_settings = FitSettings {
         most_frames: arguments.frames,
         ..FitSettings::default()
@@ -58,29 +63,34 @@ pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     bar.finish_and_clear();
     let answer = Answer {
         sensor: &gel.sensor().name,
-        free: free.iter().map(ToString::to_string).collect(),
+        provenance,
+        free: names,
         settings: &settings,
         most_frames: arguments.frames,
         fit: &found,
     };
-    let block = material_block(&found);
+    let n = curves.len();
+    let material = material_file(
+        &found,
+        &format!("{n} {kinds} curve{}", if n == 1 { "" } else { "s" }),
+    )?;
     if let Some(folder) = &arguments.out {
-        let plot = scene(&found, gel.sensor());
+        let plot = scene(&found, gel.sensor(), &kinds);
         let picture = png(&plot, PNG_SCALE)?;
         write_file(&folder.join("calibration.svg"), svg(&plot).as_bytes())?;
         write_file(&folder.join("calibration.png"), &picture)?;
-        write_file(&folder.join("material.toml"), block.as_bytes())?;
+        write_file(&folder.join("material.toml"), material.as_bytes())?;
         write_json(&folder.join("calibration.json"), &answer)?;
     }
-    tell(&found)?;
+    tell(&found, &kinds)?;
     if arguments.json {
         super::print(&serde_json::to_string_pretty(&answer)?)
     } else {
-        super::print(block.trim_end())
+        super::print(material.trim_end())
     }
 }
 
-fn curves(arguments: &Calibrate, gel: &Gel, import: Option<std::path::PathBuf>) -> Result<Vec<Curve>> {
+fn measured(arguments: &Calibrate, gel: &Gel, import: Option<std::path::PathBuf>) -> Result<Vec<Measured>> {
     if let Some(path) = &arguments.curves {
         return of_file(path, gel, import);
     }
@@ -100,7 +110,7 @@ fn curves(arguments: &Calibrate, gel: &Gel, import: Option<std::path::PathBuf>) 
 }
 
 /// The unknowns with their intervals, and what to doubt, for people.
-fn tell(fit: &Fit) -> Result<()> {
+fn tell(fit: &Fit, kinds: &str) -> Result<()> {
     let mut out = std::io::stderr().lock();
     writeln!(
         out,
@@ -117,7 +127,7 @@ fn tell(fit: &Fit) -> Result<()> {
     }
     writeln!(
         out,
-        "{} samples, {} steps, residuals of {:.2} % of the largest value, condition {:.1}",
+        "{} {kinds} samples, {} steps, residuals of {:.2} % of the largest value, condition {:.1}",
         fit.n_samples, fit.iterations, fit.noise_percent, fit.condition
     )?;
     for warning in &fit.warnings {

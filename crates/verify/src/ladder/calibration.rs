@@ -1,44 +1,41 @@
-//! Known materials, found again in noisy curves: how well a calibration does, and whether its confidence intervals mean what they say.
+//! Known materials, found again in noisy forces.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
 use glam::DQuat;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::Serialize;
-use twintac_calibrate::{
-    Curve, Fit, FitSettings, Isochoric, Material, Parameter, PronyTerm, Quantity, Signal, coverage_95, fit,
-};
-use twintac_report::plot::{Panel, Panels, Series};
-use twintac_report::{Ink, svg};
+use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, Quantity, Signal, fit};
+use twintac_material::{Material, Ogden, OgdenTerm, PronyTerm, Yeoh};
+use twintac_report::plot::{Panel, Panels};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
-use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};
+use twintac_simulate::{Gel, Keyframe, Pchip, PressPlace, SimulateSettings};
 
-/// Noise of the force over its largest value.
+use super::Effort;
+use super::outcome::{Figure, Outcome, Plot};
+use super::plots;
+
+/// Largest error, and largest half width of a 95 % interval, %.
+const LIMIT: f64 = 2.0;
+
+/// Noise of each sample of the force over the largest force of its press.
 const NOISE: f64 = 0.01;
 
-/// Samples of a curve.
-const SAMPLES: usize = 1000;
+/// Samples of the force per second.
+const RATE_HZ: f64 = 1000.0;
 
-/// Depth of the presses, mm.
-const DEPTH_MM: f64 = 4.0;
-
-/// How long it takes to go down, and up again, s.
-const DOWN_S: f64 = 2.0;
-
-/// How long relaxing gels are held, s.
-const HOLD_S: f64 = 16.0;
-
-/// Repetitions of the noise for the coverage of the confidence intervals.
-const REPETITIONS: u32 = 10_000;
+/// Frames that the fit simulates of a press, about; and those that the measurement is made of, of each leg.
+const FRAMES: usize = 60;
+const LEG_FRAMES: u32 = 120;
 
 /// Seed of all noise.
-const SEED: u64 = 20;
+const SEED: u64 = 1;
+
+/// Windows that residuals are averaged over for the plot.
+const WINDOWS: usize = 100;
 
 const BLOCK: &str = r#"
 name = "block"
@@ -74,62 +71,93 @@ struct Case {
     start: Material,
     /// Names of what is free, and true values.
     free: Vec<(&'static str, f64)>,
+    presses: Vec<Press>,
 }
 
-/// What came of a case.
-#[derive(Serialize)]
-struct Found {
-    case: &'static str,
-    unknowns: Vec<FoundUnknown>,
-    condition: f64,
-    iterations: u32,
-    noise_percent: f64,
-    warnings: Vec<String>,
-    #[serde(skip)]
-    fit: Fit,
+/// A motion in legs of constant speed: how long each takes, s, and how deep it ends, mm.
+struct Press {
+    shape: Shape,
+    legs: &'static [[f64; 2]],
 }
 
-#[derive(Serialize)]
-struct FoundUnknown {
-    name: &'static str,
-    truth: f64,
-    start: f64,
-    found: f64,
-    error_percent: f64,
-    interval_95: [f64; 2],
-    holds_truth: bool,
-    /// Part of the repetitions of the noise in which the linearised model's interval holds the truth.
-    coverage: f64,
-}
+const BALL: Shape = Shape::Sphere { radius_mm: 6.0 };
 
-/// Fits all cases; prints a table or JSON, and writes `calibration.json`, `calibration.md` and `calibration.svg` to a folder if one is given.
-pub(crate) fn run(as_json: bool, out: Option<&Path>) -> Result<()> {
-    let mut all = Vec::new();
-    for case in cases() {
-        all.push(find(&case)?);
-    }
-    let json = serde_json::to_string_pretty(&all)?;
-    if let Some(folder) = out {
-        std::fs::create_dir_all(folder).with_context(|| format!("creating {}", folder.display()))?;
-        for (name, text) in [
-            ("calibration.json", format!("{json}\n")),
-            ("calibration.md", page(&all)?),
-            ("calibration.svg", svg(&plot(&all))),
-        ] {
-            let path = folder.join(name);
-            let temporary = folder.join(format!("{name}.tmp"));
-            std::fs::write(&temporary, text).with_context(|| format!("writing {}", temporary.display()))?;
-            std::fs::rename(&temporary, &path)
-                .with_context(|| format!("renaming {}", temporary.display()))?;
+/// Wide beside the block's height, so that gel below it has nowhere to go.
+const WIDE_BALL: Shape = Shape::Sphere { radius_mm: 40.0 };
+
+pub(super) fn run(effort: Effort) -> Result<Outcome> {
+    let mut cases = cases();
+    cases.truncate(effort.choose(2, cases.len()));
+    let mut done = format!(
+        "A bonded block of gel, 30 × 20 × 8 mm, is pressed by balls as a bench would press it. The force is sampled {RATE_HZ} times a second, each \
+         sample with noise of {} % of the largest force of its press (seed {SEED}). The fit starts from another material and simulates about \
+         {FRAMES} frames of a press, the measurement {LEG_FRAMES} of each of its legs. Half widths are those of the 95 % intervals that the \
+         fit reports.\n\n\
+         | material | unknown | true | start | found | 95 % interval |\n|---|---|---:|---:|---:|---|\n",
+        100.0 * NOISE
+    );
+    let mut figures = Vec::new();
+    let mut panels = Vec::new();
+    for case in cases {
+        let found = find(&case)?;
+        for (unknown, (name, truth)) in found.unknowns.iter().zip(&case.free) {
+            let [low, high] = unknown.interval_95;
+            let _ = writeln!(
+                done,
+                "| {} | `{name}` | {truth:.5} | {:.5} | {:.5} | {low:.5} to {high:.5} |",
+                case.name, unknown.start, unknown.value
+            );
+            let of = |what: &str| format!("{}, {name}: {what}", case.name);
+            let error = 100.0 * (unknown.value / truth - 1.0);
+            let half_width = 50.0 * (high - low) / truth.abs();
+            figures.push(Figure::at_most(LIMIT, of("error"), error, "%"));
+            figures.push(Figure::at_most(LIMIT, of("half width"), half_width, "%"));
+            figures.push(Figure::told(of("error over half width"), error / half_width, ""));
         }
+        let of = |what: &str| format!("{}: {what}", case.name);
+        figures.push(Figure::told(of("samples"), found.n_samples as f64, ""));
+        figures.push(Figure::told(of("residuals"), found.noise_percent, "%"));
+        figures.push(Figure::told(of("condition"), found.condition, ""));
+        let residuals = found.signals.iter().enumerate();
+        panels.push(Panel {
+            y_label: "residual (% of force)".into(),
+            name: format!("{}", panels.len() + 1),
+            series: residuals
+                .map(|(index, signal)| {
+                    let largest = signal.measured.iter().copied().fold(0.0, f64::max);
+                    let size = signal.measured.len().div_ceil(WINDOWS);
+                    let pairs: Vec<f64> = signal
+                        .fitted
+                        .iter()
+                        .zip(&signal.measured)
+                        .map(|(a, b)| a - b)
+                        .collect();
+                    let windows = pairs.chunks(size).enumerate();
+                    let mean =
+                        |window: &[f64]| 100.0 * window.iter().sum::<f64>() / (largest * window.len() as f64);
+                    let points = windows.map(|(at, window)| [at as f64, mean(window)]).collect();
+                    plots::line(format!("press {}", index + 1), index, points)
+                })
+                .collect(),
+            ..Panel::default()
+        });
     }
-    let mut stdout = std::io::stdout().lock();
-    if as_json {
-        writeln!(stdout, "{json}")?;
-    } else {
-        write!(stdout, "{}", table(&all)?)?;
-    }
-    Ok(())
+    Ok(Outcome {
+        done: done.trim_end().to_owned(),
+        figures,
+        plots: vec![Plot {
+            name: "residuals",
+            caption: "Each line has the means over hundredths of a press; 1, 2 … are the materials in the order of the table.".into(),
+            scene: Panels {
+                title: "Fitted less measured force".into(),
+                x_label: "part of the press (%)".into(),
+                panels,
+                panel_height_px: 80.0,
+                logarithmic: false,
+            }
+            .scene(),
+        }],
+    })
 }
 
 fn cases() -> Vec<Case> {
@@ -141,42 +169,72 @@ fn cases() -> Vec<Case> {
         ..Material::neo_hookean(2.0 * (1.0 + ratio) * shear_kpa, ratio)
     };
     let yeoh = |c10_kpa: f64, c20_kpa: f64| Material {
-        isochoric: Isochoric::Yeoh {
+        model: Yeoh {
             c10_kpa,
             c20_kpa,
             c30_kpa: 0.0,
-        },
+        }
+        .into(),
         bulk_modulus_kpa: 30.0 * c10_kpa,
         prony: Vec::new(),
     };
+    let ogden = |mu_kpa: f64, alpha: f64| Material {
+        model: Ogden {
+            terms: vec![OgdenTerm { mu_kpa, alpha }],
+        }
+        .into(),
+        bulk_modulus_kpa: 300.0,
+        prony: Vec::new(),
+    };
+    let ball = |legs| Press { shape: BALL, legs };
     let shear = ("shear_modulus_kpa", 20.0);
     vec![
         Case {
             name: "neo-Hookean, and where the surface is",
             truth: neo_hookean(20.0, 0.47, &[]),
             start: neo_hookean(35.0, 0.47, &[]),
-            free: vec![shear, ("depth_offset_mm", 0.05)],
+            free: vec![shear, ("depth_offset_mm", 0.1)],
+            presses: vec![ball(&[[30.0, 4.0], [30.0, 0.0]])],
         },
         Case {
             name: "neo-Hookean, and its bulk modulus",
             truth: neo_hookean(20.0, 0.45, &[]),
             start: neo_hookean(35.0, 0.40, &[]),
             free: vec![shear, ("bulk_modulus_kpa", 20.0 * 2.9 / 0.3)],
+            presses: vec![
+                ball(&[[15.0, 4.0], [15.0, 0.0]]),
+                Press {
+                    shape: WIDE_BALL,
+                    legs: &[[15.0, 2.0], [15.0, 0.0]],
+                },
+            ],
         },
         Case {
             name: "Yeoh",
             truth: yeoh(10.0, 6.0),
             start: yeoh(16.0, 0.0),
             free: vec![("c10_kpa", 10.0), ("c20_kpa", 6.0)],
+            presses: vec![ball(&[[10.0, 4.0], [10.0, 0.0]])],
         },
         Case {
-            name: "neo-Hookean with one Prony term",
+            name: "Ogden",
+            truth: ogden(9.0, 5.0),
+            start: ogden(14.0, 3.0),
+            free: vec![("terms[0].mu_kpa", 9.0), ("terms[0].alpha", 5.0)],
+            presses: vec![ball(&[[10.0, 4.0], [10.0, 0.0]])],
+        },
+        Case {
+            name: "one Prony term",
             truth: neo_hookean(20.0, 0.47, &[[0.3, 1.5]]),
             start: neo_hookean(30.0, 0.47, &[[0.1, 4.0]]),
             free: vec![shear, ("prony[0].weight", 0.3), ("prony[0].time_s", 1.5)],
+            presses: vec![
+                ball(&[[0.2, 3.0], [15.0, 3.0], [0.2, 0.0]]),
+                ball(&[[10.0, 4.0], [10.0, 0.0]]),
+            ],
         },
         Case {
-            name: "neo-Hookean with two Prony terms",
+            name: "two Prony terms",
             truth: neo_hookean(20.0, 0.47, &[[0.25, 0.4], [0.2, 5.0]]),
             start: neo_hookean(25.0, 0.47, &[[0.1, 0.2], [0.1, 10.0]]),
             free: vec![
@@ -186,6 +244,11 @@ fn cases() -> Vec<Case> {
                 ("prony[1].weight", 0.2),
                 ("prony[1].time_s", 5.0),
             ],
+            presses: vec![
+                ball(&[[0.1, 3.0], [40.0, 3.0], [0.1, 0.0]]),
+                ball(&[[2.0, 4.0], [2.0, 0.0], [1.0, 0.0], [2.0, 4.0], [2.0, 0.0]]),
+                ball(&[[20.0, 4.0], [20.0, 0.0]]),
+            ],
         },
     ]
 }
@@ -193,7 +256,7 @@ fn cases() -> Vec<Case> {
 fn gel(material: &Material) -> Result<Gel> {
     let none = |path: &str| Err(std::io::Error::other(format!("{path} is not read here")));
     let mut settings = SimulateSettings {
-        max_nodes: 2000,
+        max_nodes: 1500,
         ..SimulateSettings::default()
     };
     settings.solver.tolerance = 1e-6;
@@ -201,217 +264,102 @@ fn gel(material: &Material) -> Result<Gel> {
     Ok(Gel::new(Arc::new(sensor), settings).with_material(material.clone()))
 }
 
-/// A curve as a bench would measure it.
-fn measure(case: &Case, random: &mut ChaCha8Rng) -> Result<Curve> {
-    let hold_s = if case.truth.prony.is_empty() { 0.0 } else { HOLD_S };
-    let end_s = 2.0 * DOWN_S + hold_s;
-    let time_s: Vec<f64> = (0..SAMPLES)
-        .map(|sample| end_s * sample as f64 / (SAMPLES - 1) as f64)
-        .collect();
-    let true_mm = |time_s: f64| DEPTH_MM * (time_s / DOWN_S).min((end_s - time_s) / DOWN_S).clamp(0.0, 1.0);
-    let shape = Shape::Sphere { radius_mm: 6.0 };
+/// A curve as a bench would measure it that takes the surface to be lower than it is.
+fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut ChaCha8Rng) -> Result<Curve> {
     let place = PressPlace {
         indenter: "ball".into(),
-        shape: shape.clone(),
+        shape: press.shape.clone(),
         x_mm: 1.0,
         y_mm: 0.5,
         rotation: DQuat::IDENTITY,
-        depth_mm: DEPTH_MM,
+        depth_mm: press
+            .legs
+            .iter()
+            .map(|[_, depth_mm]| *depth_mm)
+            .fold(0.0, f64::max),
         enough_force_n: None,
     };
-    let keyframes: Vec<Keyframe> = time_s
-        .iter()
-        .map(|&time_s| Keyframe {
-            time_s,
-            depth_mm: true_mm(time_s),
-        })
-        .collect();
-    let sweep = gel(&case.truth)?.press(&place, &keyframes)?;
-    ensure!(sweep.failure.is_none(), "{}: {:?}", case.name, sweep.failure);
-    let largest_n = sweep.frames.iter().map(|frame| frame.force_n).fold(0.0, f64::max);
-    let offset_mm = case.free.iter().find(|(name, _)| *name == "depth_offset_mm");
-    let offset_mm = offset_mm.map_or(0.0, |(_, truth)| *truth);
-    Ok(Curve {
-        name: case.name.into(),
-        shape,
+    // Frames stand closer where a leg starts, as relaxation is fastest there.
+    let mut keyframes = vec![Keyframe {
+        time_s: 0.0,
+        depth_mm: 0.0,
+    }];
+    let mut ends = vec![0];
+    for &[duration_s, depth_mm] in press.legs {
+        let from = keyframes[keyframes.len() - 1];
+        for frame in 1..=LEG_FRAMES {
+            let part = f64::from(frame) / f64::from(LEG_FRAMES);
+            let part = if depth_mm == from.depth_mm {
+                part * part
+            } else {
+                part
+            };
+            keyframes.push(Keyframe {
+                time_s: from.time_s + part * duration_s,
+                depth_mm: from.depth_mm + part * (depth_mm - from.depth_mm),
+            });
+        }
+        ends.push(keyframes.len() - 1);
+    }
+    let sweep = gel.press(&place, &keyframes)?;
+    ensure!(sweep.failure.is_none(), "{:?}", sweep.failure);
+    let force_n: Vec<f64> = sweep.frames.iter().map(|frame| frame.force_n).collect();
+    let largest_n = force_n.iter().copied().fold(0.0, f64::max);
+    let mut curve = Curve {
+        name: "press".into(),
+        shape: press.shape.clone(),
         x_mm: place.x_mm,
         y_mm: place.y_mm,
         rotation: place.rotation,
-        depth_mm: time_s.iter().map(|&time_s| true_mm(time_s) - offset_mm).collect(),
-        time_s,
+        time_s: Vec::new(),
+        depth_mm: Vec::new(),
         signals: vec![Signal {
             quantity: Quantity::Force,
-            values: sweep
-                .frames
-                .iter()
-                .map(|frame| frame.force_n + NOISE * largest_n * normal(random))
-                .collect(),
+            values: Vec::new(),
         }],
-    })
+    };
+    for leg in ends.windows(2) {
+        let leg = leg[0]..leg[1] + 1;
+        let times_s: Vec<f64> = keyframes[leg.clone()].iter().map(|frame| frame.time_s).collect();
+        let [from, to] = [leg.start, leg.end - 1].map(|frame| keyframes[frame]);
+        let force = Pchip::new(times_s, force_n[leg].to_vec()).context("times of a leg do not increase")?;
+        for sample in 1..=((to.time_s - from.time_s) * RATE_HZ).round() as u32 {
+            let time_s = from.time_s + f64::from(sample) / RATE_HZ;
+            let part = (time_s - from.time_s) / (to.time_s - from.time_s);
+            curve.time_s.push(time_s);
+            curve
+                .depth_mm
+                .push(from.depth_mm + part * (to.depth_mm - from.depth_mm) - offset_mm);
+            curve.signals[0]
+                .values
+                .push(force.at(time_s) + NOISE * largest_n * normal(random));
+        }
+    }
+    Ok(curve)
 }
 
-fn find(case: &Case) -> Result<Found> {
+fn find(case: &Case) -> Result<Fit> {
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let curve = measure(case, &mut random)?;
-    let free = case
-        .free
+    let offset_mm = case.free.iter().find(|(name, _)| *name == "depth_offset_mm");
+    let offset_mm = offset_mm.map_or(0.0, |(_, truth)| *truth);
+    let truth = gel(&case.truth)?;
+    let curves = case
+        .presses
         .iter()
-        .map(|(name, _)| name.parse())
-        .collect::<Result<Vec<Parameter>, _>>()?;
+        .map(|press| measure(&truth, press, offset_mm, &mut random))
+        .collect::<Result<Vec<_>>>()?;
+    let free: Vec<Parameter> = case.free.iter().map(|(name, _)| Parameter::named(name)).collect();
     let settings = FitSettings {
-        most_frames: 80,
+        most_frames: FRAMES,
         ..FitSettings::default()
     };
-    let fit = fit(&gel(&case.start)?, &[curve], &free, settings, &mut |_| ())?;
+    let fit = fit(&gel(&case.start)?, &curves, &free, settings, &mut |_| ())?;
     ensure!(fit.converged, "{}: {:?}", case.name, fit.warnings);
-    let coverage = coverage_95(&fit.jacobian, REPETITIONS, &mut || normal(&mut random))
-        .with_context(|| format!("{}: the unknowns can't be told apart", case.name))?;
-    let mut unknowns = Vec::new();
-    for (unknown, coverage) in fit.unknowns.iter().zip(coverage) {
-        let (name, truth) = *case
-            .free
-            .iter()
-            .find(|(name, _)| *name == unknown.parameter)
-            .with_context(|| format!("{}: `{}` was not free", case.name, unknown.parameter))?;
-        let [low, high] = unknown.interval_95;
-        unknowns.push(FoundUnknown {
-            name,
-            truth,
-            start: unknown.start,
-            found: unknown.value,
-            error_percent: 100.0 * (unknown.value / truth - 1.0),
-            interval_95: unknown.interval_95,
-            holds_truth: low < truth && truth < high,
-            coverage,
-        });
-    }
-    Ok(Found {
-        case: case.name,
-        unknowns,
-        condition: fit.condition,
-        iterations: fit.iterations,
-        noise_percent: fit.noise_percent,
-        warnings: fit.warnings.clone(),
-        fit,
-    })
+    Ok(fit)
 }
 
 /// A number from the normal distribution (Box and Muller, 1958).
 fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (random.random(), random.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
-
-fn table(all: &[Found]) -> Result<String> {
-    let mut text = String::new();
-    writeln!(
-        text,
-        "| material | unknown | true | start | found | error | 95 % interval | holds truth | coverage |\n|---|---|---|---|---|---|---|---|---|"
-    )?;
-    for found in all {
-        for unknown in &found.unknowns {
-            let [low, high] = unknown.interval_95;
-            writeln!(
-                text,
-                "| {} | `{}` | {:.4} | {:.4} | {:.4} | {:+.2} % | {low:.4} to {high:.4} | {} | {:.1} % |",
-                found.case,
-                unknown.name,
-                unknown.truth,
-                unknown.start,
-                unknown.found,
-                unknown.error_percent,
-                if unknown.holds_truth { "yes" } else { "no" },
-                100.0 * unknown.coverage
-            )?;
-        }
-    }
-    Ok(text)
-}
-
-fn page(all: &[Found]) -> Result<String> {
-    let mut text = format!(
-        "# Calibration: known materials found again
-
-A block of gel, 30 × 20 × 8 mm, is pressed {DEPTH_MM} mm deep by a ball of 6 mm radius, down in {DOWN_S} s and up in as long; gels that relax are held
-for {HOLD_S} s. The force, {SAMPLES} samples, is given noise of {} % of its largest value (seed {SEED}). `twintac calibrate` then starts from another
-material. Derivatives are the solver's own, checked against differences of whole presses in `crates/softbody/tests/sensitivity.rs`.
-
-`coverage` is how often the 95 % interval of the linearised model holds the truth in {REPETITIONS} repetitions of the noise.
-
-{}",
-        100.0 * NOISE,
-        table(all)?
-    );
-    writeln!(
-        text,
-        "\n| material | steps | condition | residuals | warnings |\n|---|---|---|---|---|"
-    )?;
-    for found in all {
-        writeln!(
-            text,
-            "| {} | {} | {:.1} | {:.2} % | {} |",
-            found.case,
-            found.iterations,
-            found.condition,
-            found.noise_percent,
-            if found.warnings.is_empty() {
-                "none".to_owned()
-            } else {
-                found.warnings.join("; ")
-            }
-        )?;
-    }
-    text.push_str("\n![Measured and fitted forces, and residuals](calibration.svg)\n");
-    text.push_str(
-        "\nMade by `cargo run --release -p twintac-verify -- calibration --out docs/verification`.\n",
-    );
-    Ok(text)
-}
-
-fn plot(all: &[Found]) -> twintac_report::Scene {
-    let mut panels = Vec::new();
-    for (index, found) in all.iter().enumerate() {
-        let signal = &found.fit.signals[0];
-        let points = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-            (0..signal.time_s.len())
-                .map(|row| [signal.time_s[row], value(row)])
-                .collect()
-        };
-        let series = |name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64| Series {
-            name: name.into(),
-            points,
-            ink,
-            width_px,
-            dashed: false,
-        };
-        let number = format!("case {}", index + 1);
-        panels.push(Panel {
-            name: number.clone(),
-            y_label: "force (N)".into(),
-            series: vec![
-                series("measured", points(&|row| signal.measured[row]), Ink::Sensor, 3.0),
-                series("fitted", points(&|row| signal.fitted[row]), Ink::Twin, 1.25),
-            ],
-            y_range: None,
-        });
-        panels.push(Panel {
-            name: number,
-            y_label: "residual (N)".into(),
-            series: vec![series(
-                "fitted less measured",
-                points(&|row| signal.fitted[row] - signal.measured[row]),
-                Ink::Series(0),
-                1.0,
-            )],
-            y_range: None,
-        });
-    }
-    Panels {
-        title: "Known materials found again, in the table's order".into(),
-        x_label: "time (s)".into(),
-        panels,
-        panel_height_px: 80.0,
-        logarithmic: false,
-    }
-    .scene()
 }
