@@ -19,7 +19,7 @@ use crate::newton::{Buffers, Failure, Step, Unknowns};
 use crate::relaxation::{Memory, Relaxation};
 use crate::state::State;
 use crate::{Material, SoftBodyError};
-use tangent::Tangent;
+use tangent::{Solution, Tangent};
 
 /// Farthest that a node moves in a difference of contact forces, mm.
 const DIFFERENCE_MM: f64 = 1e-6;
@@ -224,13 +224,20 @@ impl Sensitivity {
         }
         // At rest a parameter unbalances nothing but round-off.
         let enough_n = ACCURACY * scale_n.max(body.negligible_load_n());
-        let (rates_mm, rates_mpa) = tangent.solve(buffers, unbalanced_n, enough_n)?;
+        let Solution {
+            rates_mm,
+            rates_mpa,
+            left_n,
+        } = tangent.solve(buffers, unbalanced_n, enough_n)?;
         let stiffening =
             self.direction.rate(Material::volume_modulus_kpa) / body.material().volume_modulus_kpa();
         self.pressures_mpa = moved(&rates_mpa, x.pressures_mpa, stiffening);
-        self.indenter_force_n = self
-            .contact_forces_n(body, step, x, 0, &rates_mm)
-            .into_iter()
+        // As in a frame, what is left unbalanced at a node in touch is the contact's own error.
+        let pushes = self.contact_forces_n(body, step, x, 0, &rates_mm);
+        let touches = body.boundary.iter().zip(&x.contacts[0].touches).zip(pushes);
+        self.indenter_force_n = touches
+            .filter(|((_, touch), _)| touch.force_n > 0.0)
+            .map(|((boundary, _), push)| push - left_n[boundary.node as usize])
             .sum();
         for (shape, (gaps_mm, contact)) in self.gaps_mm.iter_mut().zip(x.contacts.iter()).enumerate() {
             let shape_mm = if shape == 0 {

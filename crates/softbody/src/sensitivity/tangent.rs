@@ -19,6 +19,13 @@ struct Rates {
     pressures_mpa: Vec<f64>,
 }
 
+/// Rates of displacements and pressures, and what they leave unbalanced.
+pub(super) struct Solution {
+    pub(super) rates_mm: Vec<DVec3>,
+    pub(super) rates_mpa: Vec<f64>,
+    pub(super) left_n: Vec<DVec3>,
+}
+
 /// The tangent at an equilibrium.
 pub(super) struct Tangent<'a, 'b> {
     pub(super) body: &'a SoftBody,
@@ -90,7 +97,7 @@ impl<'a, 'b> Tangent<'a, 'b> {
         buffers: &mut Buffers,
         mut forces_n: Vec<DVec3>,
         enough_n: f64,
-    ) -> Result<(Vec<DVec3>, Vec<f64>), Failure> {
+    ) -> Result<Solution, Failure> {
         let n_free = self.body.pattern.halves.free;
         let mut rates_mm = vec![DVec3::ZERO; forces_n.len()];
         let mut rates_mpa = vec![0.0; self.pressures_mpa.len()];
@@ -98,7 +105,11 @@ impl<'a, 'b> Tangent<'a, 'b> {
         for _ in 0..MAX_ROUNDS {
             let left_n = dot(&forces_n[..n_free], &forces_n[..n_free]).sqrt();
             if left_n <= enough_n {
-                return Ok((rates_mm, rates_mpa));
+                return Ok(Solution {
+                    rates_mm,
+                    rates_mpa,
+                    left_n: forces_n,
+                });
             }
             for (gradient, force) in buffers.gradient_n.iter_mut().zip(&forces_n) {
                 *gradient = -*force;

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, ensure};
 use glam::DQuat;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, Quantity, Signal, fit};
 use twintac_material::{Material, Ogden, OgdenTerm, PronyTerm, Yeoh};
 use twintac_report::plot::{Panel, Panels};
@@ -95,16 +96,16 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         "A bonded block of gel, 30 × 20 × 8 mm, is pressed by balls as a bench would press it. The force is sampled {RATE_HZ} times a second, each \
          sample with noise of {} % of the largest force of its press (seed {SEED}). The fit starts from another material and simulates about \
          {FRAMES} frames of a press, the measurement {LEG_FRAMES} of each of its legs. Half widths are those of the 95 % intervals that the \
-         fit reports: they are of noise alone, and \
-         with so many samples so narrow that what the mesh makes of a stiffness shows beside them: where the surface is sought, the fit \
-         meshes for another depth than the press had.\n\n\
+         fit reports, of the noise alone: with so many samples they are narrower than what other frames make of a constant, and another mesh \
+         where the surface is sought, since the fit meshes for the depth that the bench reports. Errors of several half widths are of that \
+         kind.\n\n\
          | material | unknown | true | start | found | 95 % interval |\n|---|---|---:|---:|---:|---|\n",
         100.0 * NOISE
     );
     let mut figures = Vec::new();
     let mut panels = Vec::new();
-    for case in cases {
-        let found = find(&case)?;
+    let found = cases.par_iter().map(find).collect::<Result<Vec<_>>>()?;
+    for (case, found) in cases.iter().zip(found) {
         for (unknown, (name, truth)) in found.unknowns.iter().zip(&case.free) {
             let [low, high] = unknown.interval_95;
             let _ = writeln!(
