@@ -21,8 +21,8 @@ use crate::state::State;
 use crate::{Material, SoftBodyError};
 use tangent::{Solution, Tangent};
 
-/// Farthest that a node moves in a difference of contact forces, mm.
-const DIFFERENCE_MM: f64 = 1e-6;
+/// Farthest that a node moves in a difference of forces, mm: very little of the depth over which a contact's force starts.
+const DIFFERENCE_MM: f64 = 1e-8;
 
 /// A rate is known when the 2-norm of what is left unbalanced is below this part of what the parameter unbalances.
 const ACCURACY: f64 = 1e-5;
