@@ -13,6 +13,14 @@ pub enum SimulateError {
     /// The indenter is not a possible shape.
     #[error("the indenter can't be built: {0}")]
     Shape(#[from] twintac_shape::ShapeError),
+    /// A frame of a press that must be had in full could not be reached.
+    #[error("the gel can't be pressed {depth_mm:.3} mm deep: {error}")]
+    Press {
+        /// Depth below first touch, mm.
+        depth_mm: f64,
+        /// Why.
+        error: twintac_softbody::SolveError,
+    },
     /// The indenter would come down beside the gel.
     #[error("the indenter at x = {x_mm:.2} mm, y = {y_mm:.2} mm does not touch the gel")]
     NoTouch {

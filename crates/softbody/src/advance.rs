@@ -12,7 +12,7 @@ use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::parallel::on_two_threads;
 use crate::relaxation::Relaxation;
 use crate::state::{Frame, State};
-use crate::{Blocker, SolveError};
+use crate::{Blocker, SolveError, sensitivity};
 
 /// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
 const CLEARANCE_MM: f64 = 0.01;
@@ -172,12 +172,14 @@ impl SoftBody {
             contacts,
             workspace,
             last,
+            sensitivities,
             ..
         } = &mut *state;
         let buffers = workspace.buffers(self);
         buffers.old.displacements_mm.clone_from(displacements_mm);
         buffers.old.pressures_mpa.clone_from(pressures_mpa);
         buffers.old.contacts.clone_from(contacts);
+        buffers.old.sensitivities.clone_from(sensitivities);
         contacts.iter_mut().for_each(Contact::carry);
         contacts[0].forget_distances();
         for (index, contact) in contacts.iter_mut().enumerate() {
@@ -194,7 +196,7 @@ impl SoftBody {
             }
         }
         drive.hold(self, part[1], displacements_mm);
-
+        buffers.keeps_passed = !sensitivities.is_empty();
         let step = Step {
             response: Response {
                 material: self.material(),
@@ -221,7 +223,13 @@ impl SoftBody {
                 drive.hold(self, part[1], x.displacements_mm);
             }
         }
-        match buffers.solve(self, &step, &mut x, iterations) {
+        let solved = buffers
+            .solve(self, &step, &mut x, iterations)
+            .and_then(|equilibrium| {
+                sensitivity::follow(self, buffers, &step, &mut x, sensitivities)?;
+                Ok(equilibrium)
+            });
+        match solved {
             Ok(equilibrium) => {
                 for (shape, contact) in shapes.iter().zip(x.contacts.iter_mut()) {
                     if let Some(friction) = &mut contact.friction {
@@ -252,6 +260,7 @@ impl SoftBody {
                 displacements_mm.clone_from(&buffers.old.displacements_mm);
                 pressures_mpa.clone_from(&buffers.old.pressures_mpa);
                 contacts.clone_from(&buffers.old.contacts);
+                sensitivities.clone_from(&buffers.old.sensitivities);
                 Err(failure)
             }
         }

@@ -217,6 +217,7 @@ impl SoftBody {
             gel_from_indenter: None,
             last: None,
             stiffness_n_per_mm: None,
+            sensitivities: Vec::new(),
             workspace: crate::newton::Workspace::default(),
         }
     }
@@ -226,12 +227,22 @@ impl SoftBody {
     pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
         let now = Relaxation::new(&self.material.prony, 0.0);
         let response = self.response(&now, state);
-        let shares = element::hydrostatic_shares(&self.elements, response, &state.displacements_mm);
+        self.nodal_pressure_kpa(response, &state.displacements_mm, &state.pressures_mpa)
+    }
+
+    /// The same, of the parts of a state.
+    pub(crate) fn nodal_pressure_kpa(
+        &self,
+        response: Response,
+        displacements_mm: &[DVec3],
+        pressures_mpa: &[f64],
+    ) -> Vec<f64> {
+        let shares = element::hydrostatic_shares(&self.elements, response, displacements_mm);
         // Averaged as the volume changes are that make the rest of the pressure.
-        let pressures_mpa = shares.map_or(state.pressures_mpa.clone(), |shares| {
+        let pressures_mpa = shares.map_or(pressures_mpa.to_vec(), |shares| {
             let shares = shares.as_flattened();
             let modulus_mpa = MPA_PER_KPA * self.material.volume_modulus_kpa();
-            let nodes = state.pressures_mpa.iter().zip(&self.volume_stiffness);
+            let nodes = pressures_mpa.iter().zip(&self.volume_stiffness);
             nodes
                 .zip(self.volume_starts.windows(2))
                 .map(|((pressure, stiffness), range)| {

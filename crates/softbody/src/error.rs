@@ -46,6 +46,9 @@ pub enum SoftBodyError {
         /// What was found.
         found: f64,
     },
+    /// A direction that the body's material can't be changed in.
+    #[error("a direction must have a step above 0, and as many Prony terms as the body's material")]
+    Direction,
     /// The analysis of the sparse system failed.
     #[error("the system of {n_unknowns} unknowns can't be analysed: {reason}")]
     Analysis {

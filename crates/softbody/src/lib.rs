@@ -16,6 +16,7 @@ mod newton;
 mod parallel;
 mod push;
 mod relaxation;
+mod sensitivity;
 mod settings;
 mod state;
 
@@ -24,6 +25,7 @@ pub use element::Element;
 pub use error::{Blocker, SoftBodyError, SolveError};
 pub use newton::DerivativeErrors;
 pub use push::Push;
+pub use sensitivity::Direction;
 pub use settings::SolverSettings;
 pub use state::{Cost, Frame, State};
 pub use twintac_material::{Material, Model, PronyTerm};

@@ -16,6 +16,7 @@ use crate::linear::krylov::{ConjugateGradients, Outcome};
 use crate::linear::matrix::Matrix;
 use crate::parallel::join_halves;
 use crate::relaxation::Relaxation;
+use crate::sensitivity::{Passed, Sensitivity};
 use crate::state::Cost;
 use crate::wide::LANES;
 
@@ -76,6 +77,7 @@ pub(crate) struct Beginning {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
     pub(crate) contacts: Vec<Contact>,
+    pub(crate) sensitivities: Vec<Sensitivity>,
 }
 
 /// Why a step failed.
@@ -95,7 +97,7 @@ pub(crate) struct Equilibrium {
 
 /// Energy and its slope at a set of displacements.
 #[derive(Clone, Copy, Debug, Default)]
-struct Evaluation {
+pub(crate) struct Evaluation {
     energy: f64,
     smallest_volume_ratio: f64,
     /// 2-norm of the gradient at free nodes, N.
@@ -117,7 +119,7 @@ impl Clone for Workspace {
 pub(crate) struct Buffers {
     matrix: Matrix,
     /// Whether it led well when it was used last: then it is good enough for more, in this step and the next.
-    has_matrix: bool,
+    pub(crate) has_matrix: bool,
     /// None before the first, or after a direction that led nowhere.
     factors: Option<Factors>,
     /// Where they are made; memory of presses that make some of their own.
@@ -135,7 +137,7 @@ pub(crate) struct Buffers {
     /// Gradient of the energy at each node, N; at bonded nodes the force of what holds them. `[n_nodes]`
     pub(crate) gradient_n: Vec<DVec3>,
     /// `[n_free]`
-    direction_mm: Vec<DVec3>,
+    pub(crate) direction_mm: Vec<DVec3>,
     /// Pressures that the tangent is taken at, MPa: an unknown of their own, as in a mixed formulation, that the linear systems take to
     /// equilibrium; those that the volumes have on the way there would bend the tangent.
     foreseen_mpa: Vec<f64>,
@@ -143,6 +145,9 @@ pub(crate) struct Buffers {
     start_mpa: Vec<f64>,
     /// Where the step began.
     pub(crate) old: Beginning,
+    /// Whether equilibria from which contacts were carried on are kept, and those of the last step.
+    pub(crate) keeps_passed: bool,
+    pub(crate) passed: Vec<Passed>,
     /// What has been spent since this was last taken.
     pub(crate) cost: Cost,
 }
@@ -170,6 +175,8 @@ impl Workspace {
                 start_mm: vec![DVec3::ZERO; n_nodes],
                 start_mpa: vec![0.0; body.volume_stiffness.len()],
                 old: Beginning::default(),
+                keeps_passed: false,
+                passed: Vec::new(),
                 cost: Cost::default(),
             })
         })
@@ -208,6 +215,7 @@ impl Buffers {
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
         self.damping = 0.0;
+        self.passed.clear();
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut has_failed = false;
@@ -220,6 +228,11 @@ impl Buffers {
                 if now.smallest_volume_ratio <= 0.0 {
                     return Err(Failure::Inverted);
                 }
+                let passed = self.keeps_passed.then(|| Passed {
+                    displacements_mm: x.displacements_mm.clone(),
+                    pressures_mpa: x.pressures_mpa.clone(),
+                    contacts: x.contacts.clone(),
+                });
                 let moved_n = follow_friction(x.contacts);
                 let has_pushed = push_out(body, x.contacts);
                 if !has_pushed && moved_n <= settings.tolerance * now.load_n {
@@ -229,11 +242,12 @@ impl Buffers {
                         smallest_volume_ratio: now.smallest_volume_ratio,
                     });
                 }
+                self.passed.extend(passed);
                 now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
                 continue;
             }
             *iterations += 1;
-            self.find_direction(body, step, x)?;
+            self.find_direction(body, step, x, FORCING)?;
             match self.search(body, step, x, &now) {
                 Ok((next, length)) => {
                     self.has_matrix = length == 1.0 && next.unbalanced_n <= SLOW * now.unbalanced_n;
@@ -266,13 +280,19 @@ impl Buffers {
         })
     }
 
+    /// Takes the true tangent at the unknowns, which are at equilibrium, for the directions to come.
+    pub(crate) fn stand_at(&mut self, x: &Unknowns) {
+        self.damping = 0.0;
+        self.foreseen_mpa.copy_from_slice(x.pressures_mpa);
+    }
+
     /// Whether no tetrahedron is inside out, or the material bears it.
     pub(crate) fn is_valid(&mut self, body: &SoftBody, x: &mut Unknowns) -> bool {
         is_admissible(body, body.elements.volumes(x.displacements_mm, &mut self.volumes))
     }
 
     /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material does not bear it.
-    fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
+    pub(crate) fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
         let started = Instant::now();
         let mut evaluation = Evaluation {
             smallest_volume_ratio: body.elements.volumes(x.displacements_mm, &mut self.volumes),
@@ -343,7 +363,13 @@ impl Buffers {
     }
 
     /// Newton's direction at the unknowns; where the energy is not convex, that of a stiffened, convex one.
-    fn find_direction(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) -> Result<(), Failure> {
+    pub(crate) fn find_direction(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &Unknowns,
+        forcing: f64,
+    ) -> Result<(), Failure> {
         let started = Instant::now();
         if !self.has_matrix {
             self.assemble(body, step, x);
@@ -372,7 +398,7 @@ impl Buffers {
                 MAX_STALE_ITERATIONS
             };
             let started = Instant::now();
-            let (outcome, n_iterations) = self.gradients.solve(&mut system, FORCING, max_iterations);
+            let (outcome, n_iterations) = self.gradients.solve(&mut system, forcing, max_iterations);
             self.cost.linear_solve_s += started.elapsed().as_secs_f64();
             self.cost.linear_iterations += n_iterations;
             if outcome == Outcome::Converged || is_fresh {

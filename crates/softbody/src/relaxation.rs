@@ -21,6 +21,7 @@ pub(crate) struct Relaxation {
     pub(crate) factor: f64,
     /// For each term: what is kept of `H`, and the weight of the new stress.
     terms: Vec<(f64, f64)>,
+    pub(crate) time_step_s: f64,
 }
 
 /// What a body remembers. Empty for an elastic material.
@@ -50,6 +51,7 @@ impl Relaxation {
         Self {
             factor: long_term + terms.iter().map(|(_, weight)| weight).sum::<f64>(),
             terms,
+            time_step_s,
         }
     }
 
@@ -87,6 +89,16 @@ impl Memory {
     #[inline(always)]
     pub(crate) fn point(&self, point: usize) -> PointMemory<'_> {
         PointMemory(&self.stresses[point * self.stride..][..self.stride])
+    }
+
+    /// So many times this one plus so many times another.
+    pub(crate) fn combined(&self, own: f64, other: &Self, times: f64) -> Self {
+        let mut sum = self.clone();
+        let entries = sum.stresses.as_flattened_mut().iter_mut();
+        for (entry, other) in entries.zip(other.stresses.as_flattened()) {
+            *entry = *entry * Wide::splat(own) + *other * Wide::splat(times);
+        }
+        sum
     }
 
     /// Takes eight points to the end of a step, where their instantaneous deviatoric stress is `S̃`, MPa.

@@ -6,6 +6,7 @@ use twintac_shape::Pose;
 use crate::contact::Contact;
 use crate::newton::Workspace;
 use crate::relaxation::Memory;
+use crate::sensitivity::Sensitivity;
 
 /// Where a soft body is: what one press changes. Made by [`crate::SoftBody::rest`].
 #[derive(Clone)]
@@ -20,6 +21,8 @@ pub struct State {
     pub(crate) last: Option<Motion>,
     /// How the force rose over the way where it was prescribed last, N/mm.
     pub(crate) stiffness_n_per_mm: Option<f64>,
+    /// Rates of all of the above along each direction asked for.
+    pub(crate) sensitivities: Vec<Sensitivity>,
     pub(crate) workspace: Workspace,
 }
 

@@ -32,6 +32,8 @@ pub(crate) enum Command {
     Mesh(Mesh),
     /// Press the simulated gel along a protocol.
     Simulate(Simulate),
+    /// Fit the gel's material to measured presses.
+    Calibrate(Calibrate),
     /// Record presses on the emulated bench.
     Record(Record),
     /// Read recordings of a real sensor.
@@ -160,6 +162,44 @@ pub(crate) struct Simulate {
     /// Seed of the protocol's random places.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Calibrate {
+    /// Sensor description (TOML); its material is where the fit starts.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Measured presses (CSV): columns time_s, depth_mm, and force_n or <taxel>_kpa.
+    #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "curves", requires = "indenter")]
+    pub(crate) csv: Vec<String>,
+    /// Name of the sensor's indenter that the CSV files were measured with.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) indenter: Option<String>,
+    /// Place of the press in the gel's plane, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub(crate) x_mm: f64,
+    /// Place of the press in the gel's plane, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub(crate) y_mm: f64,
+    /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
+    pub(crate) curves: Option<PathBuf>,
+    /// What is free: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
+    /// bulk_modulus_kpa), poissons_ratio, depth_offset_mm, force_scale, force_offset_n.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
+    pub(crate) free: Vec<String>,
+    /// Frames to simulate of each curve, about.
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    pub(crate) frames: usize,
+    /// Settings (TOML) that differ from the usual ones, in a table [simulate].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
+    /// Folder to write material.toml, calibration.json and the plot to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print everything as JSON instead of the material as TOML.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]

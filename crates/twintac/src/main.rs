@@ -3,6 +3,7 @@
 //! Exit codes: 0 when all was done, 2 when something was wrong with what was asked for or given; the error says what, where, and what to do.
 
 mod arguments;
+mod calibration;
 mod command;
 mod drawing;
 mod progress;

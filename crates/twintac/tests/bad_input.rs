@@ -185,3 +185,63 @@ fn a_model_with_a_flipped_byte() {
 fn a_sensor_that_is_not_there() {
     refused(&twintac(&["sensor", "show", "nowhere.toml"]), &["nowhere.toml"]);
 }
+
+#[test]
+fn a_curve_that_makes_no_sense() {
+    let folder = tempfile::tempdir().unwrap();
+    let curve = folder.path().join("press.csv");
+    let sensor = root().join("sensors/phystac.toml");
+    let out = folder.path().join("out");
+    let calibrate = |table: &str, free: &str| {
+        fs::write(&curve, table).unwrap();
+        let output = twintac(&[
+            "calibrate",
+            "--sensor",
+            text(&sensor),
+            "--csv",
+            text(&curve),
+            "--indenter",
+            "sphere-25",
+            "--free",
+            free,
+            "--out",
+            text(&out),
+        ]);
+        assert!(!out.exists());
+        output
+    };
+    let good = "time_s,depth_mm,force_n\n0,0,0\n1,0.5,0.1\n2,1.0,0.4\n";
+    let shear = "shear_modulus_kpa";
+    refused(
+        &calibrate("time_s,force_n\n0,0\n", shear),
+        &["press.csv", "`depth_mm`"],
+    );
+    refused(
+        &calibrate("time_s,depth_mm,force_n\n0,0,0\n1,0.5,x\n", shear),
+        &["press.csv:3", "`force_n`", "`x`", "finite number"],
+    );
+    refused(
+        &calibrate("time_s,depth_mm,force_n\n0,0,0\n0,0.5,0.1\n", shear),
+        &["press", "time of sample 2", "expected more"],
+    );
+    refused(
+        &calibrate("time_s,depth_mm,force_n\n0,0,0\n1,-0.5,0.1\n", shear),
+        &["press", "never touches"],
+    );
+    refused(
+        &calibrate(good, "stiffness"),
+        &["`stiffness`", "there are bulk_modulus_kpa"],
+    );
+    refused(
+        &calibrate(good, "c20_kpa"),
+        &["there is no parameter `c20_kpa`", "shear_modulus_kpa"],
+    );
+    refused(
+        &calibrate(good, "prony[0].weight"),
+        &["there is no parameter `prony[0].weight`"],
+    );
+    refused(
+        &calibrate(good, "shear_modulus_kpa,poissons_ratio,depth_offset_mm"),
+        &["3 usable samples", "3 unknowns"],
+    );
+}

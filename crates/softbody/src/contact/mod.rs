@@ -55,9 +55,9 @@ pub(crate) struct Touch {
     /// Force that pushes the node out, N, not below zero.
     pub(crate) force_n: f64,
     /// Depth that stands for the force carried over from before, mm.
-    carried_mm: f64,
+    pub(crate) carried_mm: f64,
     /// By how much this contact is stiffer than usual.
-    stiffening: f64,
+    pub(crate) stiffening: f64,
     /// Where the gap was measured last, in the shape's frame.
     measured_at_mm: DVec3,
     /// What was measured there; a signed distance changes no faster than its point moves.
@@ -114,6 +114,15 @@ impl RigidBody<'_> {
         let (energy, force_n, _) = penalty(touch.gap_mm - touch.carried_mm, stiffness * touch.stiffening);
         touch.force_n = force_n;
         energy
+    }
+
+    /// The force on a node at a place, with a carried depth, N.
+    pub(crate) fn push_n(&self, at_mm: DVec3, carried_mm: f64, stiffness: f64) -> DVec3 {
+        let distance = self
+            .shape
+            .signed_distance(self.gel_from_shape.inverse_transform_point(at_mm));
+        let (_, force_n, _) = penalty(distance.distance_mm - carried_mm, stiffness);
+        self.gel_from_shape.rotation * distance.gradient * force_n
     }
 
     /// Second derivative of a touching node's contact energy, N/mm: `k n⊗n - f ∇²g`, `k` the slope of the force.

@@ -66,7 +66,7 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool) -> Result<()> {
 }
 
 /// The shape of a sensor's indenter.
-pub(super) fn indenter<'a>(sensor: &'a Sensor, name: &str) -> Result<&'a Shape> {
+pub(crate) fn indenter<'a>(sensor: &'a Sensor, name: &str) -> Result<&'a Shape> {
     let known = sensor.indenters.iter();
     let names = || {
         known

@@ -1,5 +1,6 @@
 //! What each command does.
 
+mod calibrate;
 mod demo;
 mod files;
 mod follow;
@@ -13,6 +14,7 @@ use anyhow::Result;
 
 use crate::arguments::{Command, SensorCommand};
 
+pub(crate) use follow::indenter;
 pub(crate) use mesh::{mesh_of, write_mesh};
 
 /// Does what was asked for.
@@ -23,6 +25,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Sensor(SensorCommand::Show(arguments)) => sensor::show(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Record(arguments) => stages::record(&arguments),
         Command::Import(arguments) => reproduce::import(&arguments),
         Command::Align(arguments) => stages::align(&arguments),

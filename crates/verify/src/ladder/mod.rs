@@ -1,6 +1,7 @@
 //! The verification ladder: rungs from what must be exact to what is only likely, each with numbers and what they have to be.
 
 mod balance;
+mod calibration;
 mod closed_forms;
 mod convergence;
 mod derivatives;
@@ -113,6 +114,12 @@ const RUNGS: &[Rung] = &[
         name: "robustness",
         title: "Random presses converge, or end in a typed error",
         run: robustness::run,
+    },
+    Rung {
+        number: 11,
+        name: "calibration",
+        title: "Known materials are found again in noisy forces",
+        run: calibration::run,
     },
 ];
 

@@ -86,8 +86,8 @@ impl Outcome {
 impl std::fmt::Display for Limit {
     fn fmt(&self, out: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            Self::AtMost(limit) => write!(out, "≤ {limit}"),
-            Self::AtLeast(limit) => write!(out, "≥ {limit}"),
+            Self::AtMost(limit) => write!(out, "≤ {}", number(*limit)),
+            Self::AtLeast(limit) => write!(out, "≥ {}", number(*limit)),
             Self::None => Ok(()),
         }
     }

@@ -87,10 +87,11 @@ pub(crate) fn write_index(folder: &Path) -> Result<()> {
             };
             let _ = writeln!(
                 page,
-                "| {start} | {} | {} {} | {sign} {limit} | {} | {} |",
+                "| {start} | {} | {} {} | {sign} {} | {} | {} |",
                 figure["name"].as_str().unwrap_or_default(),
                 figure["value"].as_f64().map_or("–".into(), number),
                 figure["unit"].as_str().unwrap_or_default(),
+                number(limit),
                 if figure["holds"] == true { "yes" } else { "**no**" },
                 if record["quick"] == true { "quick" } else { "full" },
             );

@@ -1,0 +1,95 @@
+//! Measured presses.
+
+use glam::DQuat;
+use twintac_shape::Shape;
+
+use crate::CalibrateError;
+
+/// What a signal measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Force of the indenter on the gel along -z, N.
+    Force,
+    /// Reading of a taxel above its baseline, kPa: the pressure at its port times a gain that is its own. By index.
+    Taxel(usize),
+}
+
+impl Quantity {
+    /// The taxel that it belongs to, if any.
+    #[must_use]
+    pub fn taxel(self) -> Option<usize> {
+        match self {
+            Self::Force => None,
+            Self::Taxel(taxel) => Some(taxel),
+        }
+    }
+}
+
+/// One quantity over a press.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signal {
+    /// What was measured.
+    pub quantity: Quantity,
+    /// The numbers, in N or kPa; not a number where there is none that can be used. `[n_samples]`
+    pub values: Vec<f64>,
+}
+
+/// One press, as it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// A name of its own.
+    pub name: String,
+    /// Shape of the indenter.
+    pub shape: Shape,
+    /// Place of the indenter's origin in the gel's plane, mm.
+    pub x_mm: f64,
+    /// Place of the indenter's origin in the gel's plane, mm.
+    pub y_mm: f64,
+    /// Tilt and spin of the indenter.
+    pub rotation: DQuat,
+    /// Time, s, increasing; `[n_samples]`. Of no matter to an elastic gel, but to the order of the samples.
+    pub time_s: Vec<f64>,
+    /// Depth below first touch, mm, as far as the bench knows; negative above the gel. `[n_samples]`
+    pub depth_mm: Vec<f64>,
+    /// What was measured meanwhile.
+    pub signals: Vec<Signal>,
+}
+
+impl Curve {
+    pub(crate) fn check(&self) -> Result<(), CalibrateError> {
+        let refuse = |problem: String| {
+            Err(CalibrateError::Curve {
+                curve: self.name.clone(),
+                problem,
+            })
+        };
+        let n = self.time_s.len();
+        if n < 2 {
+            return refuse(format!("has {n} samples, expected 2 or more"));
+        }
+        let lengths = self.signals.iter().map(|signal| signal.values.len());
+        if let Some(other) = lengths.chain([self.depth_mm.len()]).find(|length| *length != n) {
+            return refuse(format!("has {n} times but {other} values beside them"));
+        }
+        if let Some(row) =
+            (0..n).find(|&row| !(self.time_s[row].is_finite() && self.depth_mm[row].is_finite()))
+        {
+            return refuse(format!(
+                "sample {} has a time or depth that is no number",
+                row + 1
+            ));
+        }
+        if let Some(row) = (1..n).find(|&row| self.time_s[row] <= self.time_s[row - 1]) {
+            return refuse(format!(
+                "the time of sample {} is {} s, expected more than the {} s before it",
+                row + 1,
+                self.time_s[row],
+                self.time_s[row - 1]
+            ));
+        }
+        if !self.depth_mm.iter().any(|depth_mm| *depth_mm > 0.0) {
+            return refuse("never touches the gel: no depth is above 0 mm".into());
+        }
+        Ok(())
+    }
+}

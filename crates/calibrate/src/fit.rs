@@ -1,0 +1,281 @@
+//! A fit and what it says.
+
+use serde::Serialize;
+use twintac_simulate::Gel;
+use twintac_softbody::Material;
+
+use crate::curve::Curve;
+use crate::least_squares::{minimize, normal_equations};
+use crate::problem::{Evaluation, Problem};
+use crate::statistics::{HARD_TO_TELL, covariance, neighbour_correlation, student_quantile};
+use crate::unknown::poissons_ratio;
+use crate::{CalibrateError, FitSettings, Parameter};
+
+/// Correlation of neighbouring residuals above which they are not noise.
+const NOT_NOISE: f64 = 0.5;
+
+/// Correlation of two unknowns that deserves a word.
+const CORRELATED: f64 = 0.98;
+
+/// An unknown as the fit found it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FittedUnknown {
+    /// Name and owner, with its unit: `shear_modulus_kpa`, `depth_offset_mm of press 1`.
+    pub name: String,
+    /// What it is, without its owner.
+    pub parameter: Parameter,
+    /// Value that the fit started from.
+    pub start: f64,
+    /// Value found.
+    pub value: f64,
+    /// Ends of the 95 % confidence interval; infinite where the data do not tell.
+    pub interval_95: [f64; 2],
+    /// Whether the data tell the value: its interval is finite, and it is not at a bound of the search.
+    pub identified: bool,
+}
+
+/// Correlation of two unknowns' errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Correlation {
+    /// Names of the two.
+    pub between: [String; 2],
+    /// From -1 to 1.
+    pub correlation: f64,
+}
+
+/// A measured signal, and what the fitted gel makes of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FittedSignal {
+    /// Name of the curve.
+    pub curve: String,
+    /// Index of the taxel; none for a force.
+    pub taxel: Option<usize>,
+    /// Root mean square of fitted less measured over the largest measured value, %.
+    pub deviation_percent: f64,
+    /// Correlation of neighbouring residuals: near 0 for noise, near 1 where the model is wrong.
+    pub neighbour_correlation: f64,
+    /// Time, s; `[n_samples]`.
+    #[serde(skip)]
+    pub time_s: Vec<f64>,
+    /// Depth as measured, mm; `[n_samples]`.
+    #[serde(skip)]
+    pub depth_mm: Vec<f64>,
+    /// Measured, N or kPa; `[n_samples]`.
+    #[serde(skip)]
+    pub measured: Vec<f64>,
+    /// Fitted, N or kPa; `[n_samples]`.
+    #[serde(skip)]
+    pub fitted: Vec<f64>,
+}
+
+/// What came of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fit {
+    /// The gel's material, with the values found.
+    pub material: Material,
+    /// Poisson's ratio of the material at small strain.
+    pub poissons_ratio: f64,
+    /// The unknowns, in the order asked for; gains of taxels last.
+    pub unknowns: Vec<FittedUnknown>,
+    /// Correlations of all pairs of unknowns that the data tell.
+    pub correlations: Vec<Correlation>,
+    /// Largest over smallest singular value of the Jacobian, its columns of unit length: above 30, some unknowns are hard to tell apart.
+    pub condition: f64,
+    /// Standard deviation of the residuals over the largest measured value of their curve (forces) or of all (readings), %.
+    pub noise_percent: f64,
+    /// Usable samples.
+    pub n_samples: usize,
+    /// Steps that the fit took, those that led nowhere included.
+    pub iterations: u32,
+    /// Whether no further step promised anything.
+    pub converged: bool,
+    /// What to doubt, in words.
+    pub warnings: Vec<String>,
+    /// How the curves are met.
+    pub signals: Vec<FittedSignal>,
+}
+
+/// Fits what is free to the curves. The gel is meshed and solved with its own settings, and its material is where the fit starts.
+/// `tell` hears the root mean square of the residuals, over the largest measured value, after each step.
+///
+/// Confidence intervals are those of the linearised model, `x ± t s √(JᵀJ)⁻¹ᵢᵢ` with Student's `t`, on the scale on which the unknown is
+/// sought (the logarithm for what is positive): right if the residuals are independent noise of one variance.
+///
+/// # Errors
+/// Curves that make no sense, parameters that can't be free, and a press that can't be simulated with the values to start from.
+pub fn fit(
+    gel: &Gel,
+    curves: &[Curve],
+    free: &[Parameter],
+    settings: FitSettings,
+    tell: &mut dyn FnMut(f64),
+) -> Result<Fit, CalibrateError> {
+    let problem = Problem::new(gel, curves, free, settings)?;
+    let mut start: Vec<f64> = problem.unknowns.all.iter().map(|unknown| unknown.start).collect();
+    let mut first = problem.evaluate(&start)?;
+    if guess_gains(&problem, &first, &mut start) {
+        first = problem.evaluate(&start)?;
+    }
+    let solution = minimize(&problem, start.clone(), first, settings.max_iterations, tell);
+    Ok(judge(
+        &problem,
+        &start,
+        &solution.x,
+        &solution.evaluation,
+        (solution.iterations, solution.converged),
+    ))
+}
+
+/// Starts each taxel's gain at what fits best on its own.
+fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool {
+    let mut any = false;
+    for (unknown, start) in problem.unknowns.all.iter().zip(start) {
+        if unknown.parameter != Parameter::Gain {
+            continue;
+        }
+        let (mut products, mut squares) = (0.0, 0.0);
+        for (curve, model) in problem.curves.iter().zip(&first.model) {
+            for (signal, model) in curve.signals.iter().zip(model) {
+                if unknown.owner == signal.quantity.taxel() {
+                    let pairs = signal.values.iter().zip(model).filter(|(m, _)| m.is_finite());
+                    for (measured, model) in pairs {
+                        products += measured * model;
+                        squares += model * model;
+                    }
+                }
+            }
+        }
+        if products > 0.0 && squares > 0.0 {
+            *start += (products / squares).ln();
+            any = true;
+        }
+    }
+    any
+}
+
+fn judge(
+    problem: &Problem,
+    start: &[f64],
+    x: &[f64],
+    evaluation: &Evaluation,
+    (iterations, converged): (u32, bool),
+) -> Fit {
+    let all = &problem.unknowns.all;
+    let n_samples = evaluation.residuals.len();
+    let freedom = (n_samples - all.len()) as f64;
+    let variance = evaluation.residuals.iter().map(|r| r * r).sum::<f64>() / freedom;
+    let (normal, _) = normal_equations(evaluation, all.len());
+    let known = covariance(&normal, variance);
+    let quantile = student_quantile(0.975, freedom);
+    let mut warnings = Vec::new();
+    if !converged {
+        warnings.push(format!("the fit had not settled after {iterations} steps"));
+    }
+    let mut unknowns = Vec::new();
+    for (index, unknown) in all.iter().enumerate() {
+        let half = quantile * known.covariance[index][index].sqrt();
+        let is_untold = known.untold.contains(&index);
+        let at_bound = x[index] <= unknown.bounds[0] || x[index] >= unknown.bounds[1];
+        if at_bound {
+            warnings.push(format!(
+                "{} stands at the end of the range that is searched, {:.4}: the data do not tell it",
+                unknown.name,
+                unknown.scale.value(x[index])
+            ));
+        }
+        let interval_95 = if is_untold {
+            [f64::NEG_INFINITY, f64::INFINITY]
+        } else {
+            [x[index] - half, x[index] + half].map(|end| unknown.scale.value(end))
+        };
+        unknowns.push(FittedUnknown {
+            name: unknown.name.clone(),
+            parameter: unknown.parameter.clone(),
+            start: unknown.scale.value(start[index]),
+            value: unknown.scale.value(x[index]),
+            interval_95,
+            identified: !is_untold && !at_bound,
+        });
+    }
+    let names = |indices: &[usize]| -> String {
+        let names: Vec<&str> = indices.iter().map(|&i| all[i].name.as_str()).collect();
+        names.join(", ")
+    };
+    if !known.untold.is_empty() {
+        warnings.push(format!(
+            "the data do not tell {}: fix some of them",
+            names(&known.untold)
+        ));
+    } else if known.condition > HARD_TO_TELL {
+        warnings.push(format!(
+            "{} are hard to tell apart: condition {:.0}, expected below {HARD_TO_TELL:.0}",
+            names(&known.worst),
+            known.condition
+        ));
+    }
+    let mut correlations = Vec::new();
+    for i in 0..all.len() {
+        for j in 0..i {
+            let scale = (known.covariance[i][i] * known.covariance[j][j]).sqrt();
+            if scale.is_finite() && scale > 0.0 {
+                let correlation = known.covariance[i][j] / scale;
+                if correlation.abs() > CORRELATED {
+                    warnings.push(format!(
+                        "{} and {} can hardly be told apart: correlation {correlation:.3}",
+                        all[j].name, all[i].name
+                    ));
+                }
+                correlations.push(Correlation {
+                    between: [all[j].name.clone(), all[i].name.clone()],
+                    correlation,
+                });
+            }
+        }
+    }
+    let signals = signals(problem, evaluation);
+    let worst = signals
+        .iter()
+        .map(|signal| signal.neighbour_correlation)
+        .fold(0.0, f64::max);
+    if worst > NOT_NOISE {
+        warnings.push(format!(
+            "residuals are no noise (correlation of neighbours up to {worst:.2}): the model is wrong somewhere, and intervals are too narrow"
+        ));
+    }
+    let material = problem.unknowns.material(x);
+    Fit {
+        poissons_ratio: poissons_ratio(&material),
+        material,
+        unknowns,
+        correlations,
+        condition: known.condition,
+        noise_percent: 100.0 * variance.sqrt(),
+        n_samples,
+        iterations,
+        converged,
+        warnings,
+        signals,
+    }
+}
+
+fn signals(problem: &Problem, evaluation: &Evaluation) -> Vec<FittedSignal> {
+    let mut found = Vec::new();
+    for (index, (curve, model)) in problem.curves.iter().zip(&evaluation.model).enumerate() {
+        for (which, (signal, model)) in curve.signals.iter().zip(model).enumerate() {
+            let pairs = signal.values.iter().zip(model).filter(|(m, _)| m.is_finite());
+            let residuals: Vec<f64> = pairs.map(|(measured, model)| model - measured).collect();
+            let square = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64;
+            found.push(FittedSignal {
+                curve: curve.name.clone(),
+                taxel: signal.quantity.taxel(),
+                deviation_percent: 100.0 * square.sqrt() / problem.scales[index][which],
+                neighbour_correlation: neighbour_correlation(&residuals),
+                time_s: curve.time_s.clone(),
+                depth_mm: curve.depth_mm.clone(),
+                measured: signal.values.clone(),
+                fitted: model.clone(),
+            });
+        }
+    }
+    found
+}
