@@ -169,7 +169,7 @@ fn rates_in_an_exponent_are_differences_of_presses() {
         }
         0.0
     };
-    compare(&material, &[("alpha", 1e-3, &alpha), ("depth", 0.0005, &shift)]);
+    compare(&material, &[("alpha", 1e-3, &alpha), ("depth", 0.0002, &shift)]);
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn rates_of_a_relaxing_press_are_differences_of_presses() {
             ("C20", 0.005, &stiffening),
             ("weight", 1e-4, &weight),
             ("time", 0.01, &time),
-            ("depth", 0.0005, &shift),
+            ("depth", 0.0002, &shift),
         ],
     );
 }
