@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use serde::Serialize;
 use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
-use twintac_softbody::{Frame, Push, SolveError, State};
+use twintac_softbody::{Cost, Frame, Push, SolveError, State};
 
 use crate::readout::PortReadout;
 use crate::{Gel, GelMesh, Honesty, SimulateError};
@@ -33,6 +33,8 @@ pub struct FollowedFrame {
     pub honesty: Honesty,
     /// Wall time of the frame, s. No part of what repeats.
     pub wall_time_s: f64,
+    /// What it was spent on.
+    pub cost: Cost,
 }
 
 /// What came of a path.
@@ -161,6 +163,7 @@ impl Gel {
                     .collect(),
                 honesty: Honesty::of(&frame),
                 wall_time_s: frame.wall_time_s,
+                cost: frame.cost,
             });
             advanced();
         }

@@ -1,6 +1,7 @@
 //! Where a soft body is, and what a step reports.
 
 use glam::DVec3;
+use serde::Serialize;
 use twintac_shape::Pose;
 
 use crate::contact::Contact;
@@ -81,7 +82,7 @@ pub struct Frame {
 }
 
 /// What a step's time was spent on.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Cost {
     /// Energy and forces of the elements, s.
     pub forces_s: f64,

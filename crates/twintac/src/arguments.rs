@@ -150,6 +150,9 @@ pub(crate) struct Simulate {
     /// Path of one indenter (TOML): prints force and pressures along it.
     #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with = "protocol")]
     pub(crate) path: Option<PathBuf>,
+    /// Say what a path's frames spend their time on.
+    #[arg(long, requires = "path")]
+    pub(crate) profile: bool,
     /// Print what comes of a path as JSON.
     #[arg(long, requires = "path")]
     pub(crate) json: bool,

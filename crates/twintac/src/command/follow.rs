@@ -9,7 +9,7 @@ use twintac_protocol::PressPath;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
-use twintac_simulate::{Followed, Gel};
+use twintac_simulate::{Followed, FollowedFrame, Gel};
 
 use crate::progress;
 
@@ -24,7 +24,7 @@ struct Answer<'a> {
 }
 
 /// Follows a path and prints what came of it.
-pub(super) fn run(gel: &Gel, path: &Path, as_json: bool) -> Result<()> {
+pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> Result<()> {
     let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
     let press = PressPath::parse(&path.display().to_string(), &text)?;
     let shape = indenter(gel.sensor(), &press.indenter)?;
@@ -54,6 +54,9 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool) -> Result<()> {
         writeln!(out)?;
     } else {
         write_table(&mut out, &followed)?;
+    }
+    if with_profile {
+        write_profile(&mut std::io::stderr().lock(), &followed)?;
     }
     match &followed.failure {
         Some(failure) => anyhow::bail!(
@@ -105,5 +108,40 @@ fn write_table(out: &mut dyn Write, followed: &Followed) -> Result<()> {
         }
         writeln!(out)?;
     }
+    Ok(())
+}
+
+/// What frames spend their time on, a line each.
+fn write_profile(out: &mut dyn Write, followed: &Followed) -> Result<()> {
+    let sum = |of: &dyn Fn(&FollowedFrame) -> f64| followed.frames.iter().map(of).sum::<f64>();
+    let total_s = sum(&|frame| frame.wall_time_s);
+    let parts = [
+        ("forces", sum(&|frame| frame.cost.forces_s)),
+        ("contact", sum(&|frame| frame.cost.contact_s)),
+        ("assembly", sum(&|frame| frame.cost.assembly_s)),
+        ("factors", sum(&|frame| frame.cost.factorisation_s)),
+        ("linear solve", sum(&|frame| frame.cost.linear_solve_s)),
+    ];
+    let rest_s = total_s - parts.iter().map(|(_, part_s)| part_s).sum::<f64>();
+    let n_frames = followed.frames.len().max(1) as f64;
+    let lines = parts.into_iter().chain([("the rest", rest_s), ("all", total_s)]);
+    for (name, part_s) in lines {
+        let share = 100.0 * part_s / total_s.max(f64::MIN_POSITIVE);
+        writeln!(
+            out,
+            "{name:<13} {:>8.3} ms a frame {share:>6.1} %",
+            1e3 * part_s / n_frames
+        )?;
+    }
+    let iterations = sum(&|frame| f64::from(frame.honesty.iterations));
+    let linear = sum(&|frame| f64::from(frame.cost.linear_iterations));
+    writeln!(
+        out,
+        "{} nodes, {} tetrahedra; {:.2} Newton iterations a frame, {:.2} of conjugate gradients",
+        followed.n_nodes,
+        followed.n_tets,
+        iterations / n_frames,
+        linear / n_frames
+    )?;
     Ok(())
 }

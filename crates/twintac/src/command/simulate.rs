@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
     let settings = RunSettings::read(arguments.settings.as_deref())?.simulate;
     let gel = Gel::new(Arc::clone(&sensor), settings.clone());
     if let Some(path) = &arguments.path {
-        return super::follow::run(&gel, path, arguments.json);
+        return super::follow::run(&gel, path, arguments.json, arguments.profile);
     }
     let (Some(protocol), Some(out)) = (&arguments.protocol, &arguments.out) else {
         anyhow::bail!("give --protocol and --out, or --path");
