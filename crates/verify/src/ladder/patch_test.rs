@@ -9,7 +9,7 @@ use twintac_softbody::{Element, Frame, Material, SoftBody, SolverSettings, State
 
 use super::Effort;
 use super::outcome::{Figure, Outcome};
-use super::rubbers::{BULK_KPA, rubbers};
+use super::rubbers::rubbers;
 
 /// Both elements.
 pub(crate) const ELEMENTS: [(&str, Element); 2] = [
@@ -69,8 +69,11 @@ pub(crate) fn linear(body: &SoftBody, gradient: DMat3, nodes: &[u32]) -> Vec<DVe
 
 pub(super) fn run(effort: Effort) -> Result<Outcome> {
     let mesh = irregular_block(effort.choose([4, 3, 4], [9, 7, 8]));
-    let gradient = DMat3::from_cols_array(&[1.1, 0.1, -0.05, 0.2, 0.9, 0.1, -0.1, 0.05, 1.02]);
-    let pressure_kpa = -BULK_KPA * (gradient.determinant() - 1.0);
+    let stretches = DVec3::new(1.15, 0.9, 1.05);
+    let turn = |axis: DVec3, angle: f64| DMat3::from_axis_angle(axis.normalize(), angle);
+    let gradient = turn(DVec3::new(1.0, 2.0, -0.5), 0.1)
+        * DMat3::from_diagonal(stretches)
+        * turn(DVec3::new(0.3, -1.0, 0.8), 0.2);
     let mut figures = Vec::new();
     let mut n_nodes = 0;
     for (element_name, element) in ELEMENTS {
@@ -85,6 +88,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
                 .zip(state.displacements_mm())
                 .map(|(expected, found)| expected.distance(*found))
                 .fold(0.0, f64::max);
+            let pressure_kpa = rubber.pressure_kpa(stretches);
             let pressure = body
                 .pressure_kpa(&state)
                 .iter()

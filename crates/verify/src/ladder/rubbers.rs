@@ -7,7 +7,7 @@ use twintac_material::{
 };
 
 /// Bulk modulus of all of them, kPa: 50 times the shear modulus.
-pub(crate) const BULK_KPA: f64 = 1200.0;
+const BULK_KPA: f64 = 1200.0;
 
 /// The shear modulus of those that have one constant, kPa.
 const SHEAR_KPA: f64 = 23.5;
@@ -128,6 +128,11 @@ impl Rubber {
             (45.0 * difference(1.0) - 9.0 * difference(2.0) + difference(3.0)) / (60.0 * STEP)
         };
         DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z))
+    }
+
+    /// Hydrostatic pressure, kPa: `-Σ λ_i ∂W/∂λ_i / 3J`.
+    pub(crate) fn pressure_kpa(&self, stretches: DVec3) -> f64 {
+        -self.principal_stress_kpa(stretches).dot(stretches) / (3.0 * stretches.element_product())
     }
 
     /// The stretches of a block pulled along x to `stretch` and, if `is_equibiaxial`, along y as well, while the other sides are free.
