@@ -102,7 +102,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         let n_nodes = all.iter().map(|press| press.n_nodes).sum::<usize>() / all.len();
         figures.push(Figure::at_least(
             99.5,
-            format!("{set}: {n_presses} presses, {n_nodes} nodes: converged"),
+            format!("{set}: {n_presses} presses, {n_nodes} nodes: converged or stopped"),
             converged,
             "%",
         ));
