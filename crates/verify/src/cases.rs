@@ -117,8 +117,10 @@ pub(crate) fn all() -> Result<Vec<Case>> {
 
 impl Case {
     fn gel(&self, tolerance: f64) -> Gel {
-        let mut settings = SimulateSettings::default();
-        settings.max_path_nodes = self.n_nodes[1];
+        let mut settings = SimulateSettings {
+            max_path_nodes: self.n_nodes[1],
+            ..SimulateSettings::default()
+        };
         settings.solver.tolerance = tolerance;
         settings.solver.max_iterations = 60;
         Gel::new(self.sensor.clone(), settings)
