@@ -36,7 +36,7 @@ impl Default for SimulateSettings {
             edges_per_height: 8.0,
             edges_per_contact_radius: 7.0,
             max_nodes: 16_000,
-            max_path_nodes: 7_000,
+            max_path_nodes: 20_000,
             edges_per_rounding: 2.0,
             sweep_step_mm: 0.3,
             solver: SolverSettings {

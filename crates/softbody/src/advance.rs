@@ -175,13 +175,17 @@ impl SoftBody {
             sensitivities,
             ..
         } = &mut *state;
+        contacts[0].forget_distances();
+        let at_mm = |node: u32| self.mesh().nodes_mm[node as usize] + displacements_mm[node as usize];
+        for (shape, contact) in shapes.iter().zip(contacts.iter_mut()) {
+            contact.look_inside(shape, &self.boundary, &at_mm);
+        }
         let buffers = workspace.buffers(self);
         buffers.old.displacements_mm.clone_from(displacements_mm);
         buffers.old.pressures_mpa.clone_from(pressures_mpa);
         buffers.old.contacts.clone_from(contacts);
         buffers.old.sensitivities.clone_from(sensitivities);
         contacts.iter_mut().for_each(Contact::carry);
-        contacts[0].forget_distances();
         for (index, contact) in contacts.iter_mut().enumerate() {
             if let Some(friction) = &mut contact.friction {
                 let start = match index {
@@ -233,8 +237,8 @@ impl SoftBody {
             Ok(equilibrium) => {
                 for (shape, contact) in shapes.iter().zip(x.contacts.iter_mut()) {
                     if let Some(friction) = &mut contact.friction {
-                        let at_mm = self.boundary_mm(x.displacements_mm);
-                        friction.settle(shape, &self.boundary, &contact.touches, at_mm);
+                        let nodes = self.boundary_mm(x.displacements_mm);
+                        friction.settle(shape, &contact.touches, nodes);
                     }
                 }
                 element::remember(
@@ -281,17 +285,18 @@ impl SoftBody {
         let mut forces = vec![DVec3::ZERO; state.contacts.len()];
         let gradient_n = std::mem::take(&mut state.workspace.buffers(self).gradient_n);
         for (shape, contact) in state.contacts.iter().enumerate() {
-            for (index, (boundary, touch)) in self.boundary.iter().zip(&contact.touches).enumerate() {
-                let mut force = contact.force_n(index);
-                // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
-                if shape == 0 && touch.force_n > 0.0 {
-                    force += gradient_n[boundary.node as usize];
-                }
+            for (point, force) in contact.forces_n(&self.boundary) {
                 forces[shape] += force;
                 if shape == 0 {
-                    torque += (at_mm(boundary.node as usize) - origin_mm).cross(force);
+                    torque += (self.point_mm(point, &state.displacements_mm) - origin_mm).cross(force);
                 }
             }
+        }
+        // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
+        for node in state.contacts[0].pressed_nodes(&self.boundary, self.pattern.halves.free) {
+            let missing = gradient_n[node as usize];
+            forces[0] += missing;
+            torque += (at_mm(node as usize) - origin_mm).cross(missing);
         }
         let held: DVec3 = gradient_n[self.pattern.halves.free..].iter().sum();
         state.workspace.buffers(self).gradient_n = gradient_n;
@@ -399,14 +404,12 @@ impl SoftBody {
         for _ in 0..MAX_RETREATS {
             let mut deepest_mm: f64 = 0.0;
             let mut normal = DVec3::ZERO;
-            for boundary in &self.boundary {
-                let node = boundary.node as usize;
-                let at_mm = mesh.nodes_mm[node] + state.displacements_mm[node];
+            for (point, at_mm) in self.boundary_mm(&state.displacements_mm) {
                 let gap_mm = indenter
                     .signed_distance(free.inverse_transform_point(at_mm))
                     .distance_mm;
                 if gap_mm < 0.0 {
-                    normal += normals[node];
+                    normal += point.value(&normals);
                     deepest_mm = deepest_mm.max(-gap_mm);
                 }
             }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use twintac_mesh::TetMesh;
 use twintac_shape::{Pose, SignedDistance};
 
-use crate::contact::{BoundaryNode, Contact};
+use crate::contact::{Boundary, BoundaryTriangle, Contact, ContactPoint};
 use crate::element::{self, Elements, NODES, Response, Side};
 use crate::linear::coarse::{CoarseSystem, Factors};
 use crate::linear::matrix::Pattern;
@@ -25,7 +25,7 @@ pub struct SoftBody {
     material: Material,
     pub(crate) settings: SolverSettings,
     pub(crate) elements: Elements,
-    pub(crate) boundary: Vec<BoundaryNode>,
+    pub(crate) boundary: Boundary,
     pub(crate) obstacles: Vec<(Arc<dyn SignedDistance>, Pose)>,
     /// Forces from outside on nodes, N.
     pub(crate) loads_n: Vec<(u32, DVec3)>,
@@ -128,20 +128,29 @@ impl SoftBody {
             .map(|sum| shear_mpa * sum)
             .collect();
         let areas_mm2 = mesh.node_areas_mm2();
-        let boundary = mesh
+        let stiffness_mpa = settings.contact_stiffness * shear_mpa;
+        let free = mesh
             .sets
             .free
             .iter()
-            .map(|&node| {
-                // μ/h per area, with h² the area that belongs to the node.
-                let edge_mm = areas_mm2[node as usize].sqrt();
-                BoundaryNode {
-                    node,
-                    stiffness: settings.contact_stiffness * shear_mpa * edge_mm,
-                }
-            })
-            .filter(|boundary| boundary.stiffness > 0.0)
-            .collect();
+            .filter(|&&node| areas_mm2[node as usize] > 0.0);
+        let mut place_of = vec![None; mesh.nodes_mm.len()];
+        let mut boundary_nodes = Vec::new();
+        for (place, &node) in (0..).zip(free) {
+            place_of[node as usize] = Some(place);
+            // μ/h per area, with h² the area that belongs to the node.
+            let edge_mm = areas_mm2[node as usize].sqrt();
+            boundary_nodes.push(ContactPoint::of_node(node, stiffness_mpa * edge_mm));
+        }
+        let mut triangles = Vec::new();
+        for nodes in mesh.boundary_triangles() {
+            let free: Vec<u32> = nodes.iter().filter_map(|&node| place_of[node as usize]).collect();
+            if !free.is_empty() {
+                let at_mm = nodes.map(|node| mesh.nodes_mm[node as usize]);
+                triangles.push(BoundaryTriangle::new(nodes, at_mm, free, stiffness_mpa));
+            }
+        }
+        let boundary = Boundary::new(boundary_nodes, triangles);
         let size_mm = mesh.volume_mm3().cbrt();
         let mut body = Self {
             mesh,
@@ -212,7 +221,7 @@ impl SoftBody {
             memory: Memory::new(self.elements.n_points(), &self.material.prony),
             contacts: std::iter::once(self.settings.friction)
                 .chain(self.obstacles.iter().map(|_| self.settings.obstacle_friction))
-                .map(|friction| Contact::new(self.boundary.len(), friction))
+                .map(|friction| Contact::new(self.boundary.nodes.len(), friction))
                 .collect(),
             gel_from_indenter: None,
             last: None,
@@ -283,12 +292,19 @@ impl SoftBody {
             .collect()
     }
 
-    /// Where each boundary node is, mm. `[n_boundary_nodes]`
-    pub(crate) fn boundary_mm(&self, displacements_mm: &[DVec3]) -> impl Iterator<Item = DVec3> {
-        self.boundary.iter().map(|boundary| {
-            let node = boundary.node as usize;
-            self.mesh.nodes_mm[node] + displacements_mm[node]
-        })
+    /// The nodes of the boundary, and where they are, mm.
+    pub(crate) fn boundary_mm(
+        &self,
+        displacements_mm: &[DVec3],
+    ) -> impl Iterator<Item = (&ContactPoint, DVec3)> {
+        let nodes = self.boundary.nodes.iter();
+        nodes.map(|point| (point, self.point_mm(point, displacements_mm)))
+    }
+
+    /// Where a point of the boundary is, mm.
+    #[inline]
+    pub(crate) fn point_mm(&self, point: &ContactPoint, displacements_mm: &[DVec3]) -> DVec3 {
+        point.value(&self.mesh.nodes_mm) + point.value(displacements_mm)
     }
 
     /// The pressures of each slot's corners, MPa.

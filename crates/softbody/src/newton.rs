@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use crate::body::SoftBody;
-use crate::contact::{Contact, RigidBody};
+use crate::contact::{Contact, ContactPoint, RigidBody};
 use crate::element::{CoarseSink, CoarseTangent, Forces, Response, Volumes};
 use crate::linear::block::{Block, Vector};
 use crate::linear::coarse::{Factors, Tangent};
@@ -331,17 +331,22 @@ impl Buffers {
 
         let started = Instant::now();
         for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
-            for (boundary, touch) in body.boundary.iter().zip(&mut contact.touches) {
-                let node = boundary.node as usize;
-                let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                evaluation.energy += shape.touch(touch, at_mm, boundary.stiffness);
-                self.gradient_n[node] -= touch.normal * touch.force_n;
-                evaluation.load_n += touch.force_n;
+            for (point, touch) in contact.each_mut(&body.boundary) {
+                let at_mm = body.point_mm(point, x.displacements_mm);
+                evaluation.energy += shape.touch(touch, point, at_mm);
+                if touch.force_n > 0.0 {
+                    for (node, part) in point.parts() {
+                        self.gradient_n[node as usize] -= touch.normal * (part * touch.force_n);
+                    }
+                    evaluation.load_n += touch.force_n;
+                }
             }
             if let Some(friction) = &mut contact.friction {
-                let at_mm = body.boundary_mm(x.displacements_mm);
-                evaluation.energy += friction.pull(shape, &body.boundary, at_mm, |boundary, force_n| {
-                    self.gradient_n[boundary.node as usize] -= force_n;
+                let nodes = body.boundary_mm(x.displacements_mm);
+                evaluation.energy += friction.pull(shape, nodes, |point, force_n| {
+                    for (node, part) in point.parts() {
+                        self.gradient_n[node as usize] -= force_n * part;
+                    }
                 });
             }
         }
@@ -425,9 +430,12 @@ impl Buffers {
             let slots = body.elements.slots.iter();
             let of_elements = slots.map(|&slot| &self.coarse_tangents[slot as usize]);
             body.coarse.fill(tangent, of_elements);
-            for_each_touch(body, step, x, &mut |node, stiffness| {
-                body.coarse
-                    .add_between(tangent, body.ends[node], &stiffness.as_mat3());
+            for_each_touch(body, step, x, &mut |point, stiffness| {
+                let ends = point.parts().flat_map(|(node, part)| {
+                    let ends = body.ends[node as usize];
+                    ends.map(|end| (end, 0.5 * part as f32))
+                });
+                body.coarse.add_at(tangent, ends, &stiffness.as_mat3());
             });
             let damping = self.damping + extra;
             if damping > 0.0 {
@@ -494,9 +502,10 @@ impl Buffers {
         for (extra, stiffness) in self.matrix.extra.iter_mut().zip(&body.node_stiffness) {
             *extra = Block::diagonal((self.damping * stiffness) as f32);
         }
-        let extra = &mut self.matrix.extra;
-        for_each_touch(body, step, x, &mut |node, stiffness| {
-            extra[node].add(&Block::from_mat3(&stiffness.as_mat3()));
+        self.matrix.take_back();
+        for_each_touch(body, step, x, &mut |point, stiffness| {
+            self.matrix
+                .add_at(&body.pattern, point.parts(), &stiffness.as_mat3());
         });
         self.matrix.complete(&body.pattern);
     }
@@ -582,19 +591,20 @@ fn is_admissible(body: &SoftBody, smallest_volume_ratio: f64) -> bool {
     smallest_volume_ratio > 0.0 || (body.material().bears_inversion() && !smallest_volume_ratio.is_nan())
 }
 
-fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(usize, &DMat3)) {
+fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMut(&ContactPoint, &DMat3)) {
     for (shape, contact) in step.shapes.iter().zip(x.contacts.iter()) {
-        for (index, (boundary, touch)) in body.boundary.iter().zip(&contact.touches).enumerate() {
-            let node = boundary.node as usize;
-            let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
+        for (point, touch) in contact.each(&body.boundary) {
             if touch.force_n > 0.0 {
-                let stiffness = shape.stiffness(touch, at_mm, boundary.stiffness, true);
-                add(node, &stiffness);
+                let at_mm = body.point_mm(point, x.displacements_mm);
+                add(point, &shape.stiffness(touch, point, at_mm));
             }
-            if let Some(friction) = &contact.friction
-                && let Some(stiffness) = friction.stiffness(index, shape, at_mm, boundary.stiffness)
-            {
-                add(node, &stiffness);
+        }
+        let Some(friction) = &contact.friction else {
+            continue;
+        };
+        for (index, (point, at_mm)) in body.boundary_mm(x.displacements_mm).enumerate() {
+            if let Some(stiffness) = friction.stiffness(index, shape, at_mm, point.stiffness) {
+                add(point, &stiffness);
             }
         }
     }
@@ -610,7 +620,7 @@ fn follow_friction(contacts: &mut [Contact]) -> f64 {
         .sum()
 }
 
-/// Carries the forces of those shapes over in which a node is too deep. True if there are any.
+/// Carries the forces of those shapes over in which a point is too deep. True if there are any.
 fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
     let mut any = false;
     for contact in contacts {

@@ -154,7 +154,7 @@ impl SoftBody {
             let pose = pose_at(offset_mm);
             let gap_mm = self
                 .boundary_mm(&state.displacements_mm)
-                .map(|at_mm| {
+                .map(|(_, at_mm)| {
                     indenter
                         .signed_distance(pose.inverse_transform_point(at_mm))
                         .distance_mm
@@ -171,9 +171,8 @@ impl SoftBody {
 
     /// Force of the indenter as it stands, N.
     fn indenter_force_n(&self, state: &State) -> DVec3 {
-        (0..self.boundary.len())
-            .map(|index| state.contacts[0].force_n(index))
-            .sum()
+        let forces = state.contacts[0].forces_n(&self.boundary);
+        forces.map(|(_, force_n)| force_n).sum()
     }
 }
 

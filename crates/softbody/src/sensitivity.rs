@@ -105,7 +105,7 @@ impl SoftBody {
             if !(direction.step.is_finite() && direction.step > 0.0) {
                 return Err(SoftBodyError::Direction);
             }
-            let of_touches = vec![vec![0.0; self.boundary.len()]; state.contacts.len()];
+            let of_touches = vec![vec![0.0; self.boundary.nodes.len()]; state.contacts.len()];
             state.sensitivities.push(Sensitivity {
                 direction: direction.clone(),
                 displacements_mm: vec![DVec3::ZERO; self.mesh().nodes_mm.len()],
@@ -229,8 +229,10 @@ impl Sensitivity {
         let mut pushed = still.clone();
         for shape in 0..step.shapes.len() {
             let forces = self.contact_forces_n(body, step, x, shape, &still);
-            for (boundary, force) in body.boundary.iter().zip(forces) {
-                pushed[boundary.node as usize] += force;
+            for ((point, _), force) in x.contacts[shape].each(&body.boundary).zip(forces) {
+                for (node, part) in point.parts() {
+                    pushed[node as usize] += force * part;
+                }
             }
         }
         scale_n += dot(&pushed, &pushed).sqrt();
@@ -249,20 +251,17 @@ impl Sensitivity {
         self.pressures_mpa = moved(&rates_mpa, x.pressures_mpa, stiffening);
         // As in a frame, what is left unbalanced at a node in touch is the contact's own error.
         let pushes = self.contact_forces_n(body, step, x, 0, &rates_mm);
-        let touches = body.boundary.iter().zip(&x.contacts[0].touches).zip(pushes);
-        self.indenter_force_n = touches
-            .filter(|((_, touch), _)| touch.force_n > 0.0)
-            .map(|((boundary, _), push)| push - left_n[boundary.node as usize])
-            .sum();
+        let pressed = x.contacts[0].pressed_nodes(&body.boundary, n_free);
+        let left: DVec3 = pressed.iter().map(|&node| left_n[node as usize]).sum();
+        self.indenter_force_n = pushes.into_iter().sum::<DVec3>() - left;
         for (shape, (gaps_mm, contact)) in self.gaps_mm.iter_mut().zip(x.contacts.iter()).enumerate() {
             let shape_mm = if shape == 0 {
                 self.direction.indenter_mm
             } else {
                 DVec3::ZERO
             };
-            let touches = body.boundary.iter().zip(&contact.touches);
-            for (gap, (boundary, touch)) in gaps_mm.iter_mut().zip(touches) {
-                *gap = touch.normal.dot(rates_mm[boundary.node as usize] - shape_mm);
+            for (gap, (point, touch)) in gaps_mm.iter_mut().zip(contact.each(&body.boundary)) {
+                *gap = touch.normal.dot(point.value(&rates_mm) - shape_mm);
             }
         }
         self.displacements_mm = rates_mm;
@@ -305,7 +304,7 @@ impl Sensitivity {
         sums
     }
 
-    /// Rates of the forces with which a shape pushes each boundary node, N, as the nodes move. `[n_boundary_nodes]`
+    /// Rates of the forces with which a shape pushes each point of the boundary, N, as the nodes move. `[n_points]`
     fn contact_forces_n(
         &self,
         body: &SoftBody,
@@ -322,16 +321,16 @@ impl Sensitivity {
             DVec3::ZERO
         };
         let rigid = &step.shapes[shape];
-        let carried = &self.carried_mm[shape];
-        let touches = body.boundary.iter().zip(&x.contacts[shape].touches).zip(carried);
+        // Places inside triangles carry nothing.
+        let carried = self.carried_mm[shape].iter().chain(std::iter::repeat(&0.0));
+        let touches = x.contacts[shape].each(&body.boundary).zip(carried);
         touches
-            .map(|((boundary, touch), carried_mm)| {
+            .map(|((point, touch), carried_mm)| {
                 if touch.force_n <= 0.0 {
                     return DVec3::ZERO;
                 }
-                let node = boundary.node as usize;
-                let at_mm = body.mesh().nodes_mm[node] + x.displacements_mm[node];
-                let way_mm = rates_mm[node] - shape_mm;
+                let at_mm = body.point_mm(point, x.displacements_mm);
+                let way_mm = point.value(rates_mm) - shape_mm;
                 let stiffened = touch.normal * touch.force_n * stiffening;
                 let largest = way_mm.length().max(carried_mm.abs());
                 if largest == 0.0 {
@@ -339,11 +338,8 @@ impl Sensitivity {
                 }
                 let length = DIFFERENCE_MM / largest;
                 let push = |times: f64| {
-                    rigid.push_n(
-                        at_mm + way_mm * times,
-                        touch.carried_mm + carried_mm * times,
-                        boundary.stiffness * touch.stiffening,
-                    )
+                    let carried_mm = touch.carried_mm + carried_mm * times;
+                    rigid.push_n(touch, point, at_mm + way_mm * times, carried_mm)
                 };
                 stiffened + (push(length) - push(-length)) * (0.5 / length)
             })

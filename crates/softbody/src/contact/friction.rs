@@ -1,4 +1,4 @@
-//! Coulomb friction of boundary nodes on a rigid shape.
+//! Coulomb friction of a boundary's nodes on a rigid shape.
 //!
 //! A node in touch hangs on a point of the shape by a spring along the surface that carries at most the coefficient times the normal force:
 //! it is elastic up to a slip of `μ f / k`, and drags its end along beyond. With the normal forces of the last iterate ("lagged", as Li et al.,
@@ -8,12 +8,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{BoundaryNode, RigidBody, Touch, outer};
+use super::{ContactPoint, RigidBody, Touch, outer};
 
 /// A node no farther from the shape than this stands on it, mm.
 const STANDING_MM: f64 = 0.001;
 
-/// Friction of all boundary nodes on one shape.
+/// Friction of a boundary's nodes on one shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Friction {
     coefficient: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Friction {
 /// How one node is held.
 #[derive(Clone, Copy, Debug, Default)]
 struct Grip {
-    /// The point of the shape that the node hangs on, in the shape's frame; none where the node was off the shape when the step began: it
+    /// The place on the shape that the node hangs on, in the shape's frame; none where the node was off the shape when the step began: it
     /// lands without friction, as how much of the step it spent in touch is not known.
     anchor_mm: Option<DVec3>,
     /// Outward normal of the shape, and the most that the spring carries, N: both of the last iterate.
@@ -44,8 +44,13 @@ impl Friction {
     }
 
     /// Begins a step: nodes that stand on the shape, where it is before the step, are held from now on.
-    pub(crate) fn begin(&mut self, shape: &RigidBody, touches: &[Touch], at_mm: impl Iterator<Item = DVec3>) {
-        for ((grip, touch), at_mm) in self.grips.iter_mut().zip(touches).zip(at_mm) {
+    pub(crate) fn begin<'a>(
+        &mut self,
+        shape: &RigidBody,
+        touches: &[Touch],
+        nodes: impl Iterator<Item = (&'a ContactPoint, DVec3)>,
+    ) {
+        for ((grip, touch), (_, at_mm)) in self.grips.iter_mut().zip(touches).zip(nodes) {
             if grip.anchor_mm.is_none() && touch.gap_mm <= STANDING_MM {
                 let local_mm = shape.gel_from_shape.inverse_transform_point(at_mm);
                 let distance_mm = shape.shape.signed_distance(local_mm).distance_mm;
@@ -67,30 +72,29 @@ impl Friction {
         change_n
     }
 
-    /// Updates the force on each node that is held, and hands it out with the node's place among boundary nodes; returns the energy, N mm.
-    pub(crate) fn pull(
+    /// Updates the force on each node that is held, and hands it out; returns the energy, N mm.
+    pub(crate) fn pull<'a>(
         &mut self,
         shape: &RigidBody,
-        boundary: &[BoundaryNode],
-        at_mm: impl Iterator<Item = DVec3>,
-        mut add: impl FnMut(&BoundaryNode, DVec3),
+        nodes: impl Iterator<Item = (&'a ContactPoint, DVec3)>,
+        mut add: impl FnMut(&ContactPoint, DVec3),
     ) -> f64 {
         let mut energy = 0.0;
-        for ((grip, boundary), at_mm) in self.grips.iter_mut().zip(boundary).zip(at_mm) {
+        for (grip, (point, at_mm)) in self.grips.iter_mut().zip(nodes) {
             grip.force_n = DVec3::ZERO;
             if grip.most_n > 0.0
                 && let Some(slip_mm) = grip.slip_mm(shape, at_mm)
             {
                 let length_mm = slip_mm.length();
-                let elastic_mm = grip.most_n / boundary.stiffness;
+                let elastic_mm = grip.most_n / point.stiffness;
                 if length_mm <= elastic_mm {
-                    energy += 0.5 * boundary.stiffness * length_mm * length_mm;
-                    grip.force_n = -slip_mm * boundary.stiffness;
+                    energy += 0.5 * point.stiffness * length_mm * length_mm;
+                    grip.force_n = -slip_mm * point.stiffness;
                 } else {
                     energy += grip.most_n * (length_mm - 0.5 * elastic_mm);
                     grip.force_n = -slip_mm * (grip.most_n / length_mm);
                 }
-                add(boundary, grip.force_n);
+                add(point, grip.force_n);
             }
         }
         energy
@@ -117,15 +121,13 @@ impl Friction {
     }
 
     /// Ends a step: what slipped has dragged its anchor along, and what has left the shape is free.
-    pub(crate) fn settle(
+    pub(crate) fn settle<'a>(
         &mut self,
         shape: &RigidBody,
-        boundary: &[BoundaryNode],
         touches: &[Touch],
-        at_mm: impl Iterator<Item = DVec3>,
+        nodes: impl Iterator<Item = (&'a ContactPoint, DVec3)>,
     ) {
-        let nodes = self.grips.iter_mut().zip(boundary).zip(touches).zip(at_mm);
-        for (((grip, boundary), touch), at_mm) in nodes {
+        for ((grip, touch), (point, at_mm)) in self.grips.iter_mut().zip(touches).zip(nodes) {
             if touch.force_n <= 0.0 {
                 *grip = Grip::default();
                 continue;
@@ -134,7 +136,7 @@ impl Friction {
             let held_mm = grip
                 .slip_mm(shape, at_mm)
                 .unwrap_or(DVec3::ZERO)
-                .clamp_length_max(grip.most_n / boundary.stiffness);
+                .clamp_length_max(grip.most_n / point.stiffness);
             grip.anchor_mm = Some(shape.gel_from_shape.inverse_transform_point(at_mm - held_mm));
         }
     }

@@ -271,26 +271,26 @@ impl CoarseSystem {
         }
     }
 
-    /// Adds stiffness to what lies midway between two nodes, or to one that is both.
-    pub(crate) fn add_between(&self, tangent: &mut Tangent, [a, b]: [u32; 2], stiffness: &Mat3) {
-        if a == b {
-            self.add_to_node(tangent, a, stiffness);
-            return;
-        }
-        let quarter = *stiffness * 0.25;
-        self.add_to_node(tangent, a, &quarter);
-        self.add_to_node(tangent, b, &quarter);
-        let later = |row: u32, column: u32| {
-            self.later[column as usize]
-                .iter()
-                .find(|(n, _)| *n == row)
-                .map(|(_, offset)| (row, column, *offset))
-        };
-        if let Some((row, column, offset)) = later(a, b).or_else(|| later(b, a)) {
-            for j in 0..self.n_displacements(column) {
-                let start = self.start(column, j, offset);
-                for i in 0..self.n_displacements(row) {
-                    tangent.matrix[start + i] += quarter.col(j)[i];
+    /// Adds the stiffness of a place that hangs on neighbouring nodes by so much of each; a node may come more than once.
+    pub(crate) fn add_at(
+        &self,
+        tangent: &mut Tangent,
+        parts: impl Iterator<Item = (u32, f32)> + Clone,
+        stiffness: &Mat3,
+    ) {
+        for (a, part) in parts.clone() {
+            for (b, other_part) in parts.clone() {
+                let stiffness = *stiffness * (part * other_part);
+                if a == b {
+                    self.add_to_node(tangent, a, &stiffness);
+                } else if let Some((_, offset)) = self.later[b as usize].iter().find(|(node, _)| *node == a) {
+                    // Of both orders only that which the lower triangle holds.
+                    for j in 0..self.n_displacements(b) {
+                        let start = self.start(b, j, *offset);
+                        for i in 0..self.n_displacements(a) {
+                            tangent.matrix[start + i] += stiffness.col(j)[i];
+                        }
+                    }
                 }
             }
         }

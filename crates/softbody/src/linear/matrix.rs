@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::Mat3;
+
 use super::block::{Block, Vector};
 use super::numbering::Halves;
 use crate::element::{Elements, NODES, NodeBlock, NodeSlopes, Sink, Table};
@@ -38,6 +40,8 @@ pub(crate) struct Matrix {
     pub(super) slopes: Vec<Vector>,
     /// Stiffness that is added to the diagonal: of contact, of damping. `[n_free]`
     pub(crate) extra: Vec<Block>,
+    /// Blocks to which contact has added, and what they were before.
+    covered: Vec<(u32, Block)>,
     /// The whole diagonal of `A`. `[n_free]`
     pub(super) own: Vec<Block>,
     /// Inverse of the diagonal of `H`. `[n_free]`
@@ -147,6 +151,7 @@ impl Pattern {
             blocks: vec![Block::default(); self.columns.len()],
             slopes: vec![Vector::ZERO; self.slope_columns.len()],
             extra: blocks(),
+            covered: Vec::new(),
             own: blocks(),
             inverse: blocks(),
         }
@@ -170,6 +175,7 @@ impl Pattern {
 impl Matrix {
     /// Empties the matrix, and returns what the two halves add to.
     pub(crate) fn halves<'a>(&'a mut self, pattern: &'a Pattern) -> [impl Sink + use<'a>; 2] {
+        self.covered.clear();
         self.diagonal.fill(Block::default());
         self.blocks.fill(Block::default());
         self.slopes.fill(Vector::ZERO);
@@ -218,6 +224,34 @@ impl Matrix {
     pub(crate) fn scale_slopes(&mut self, pattern: &Pattern) {
         for (slope, column) in self.slopes.iter_mut().zip(&pattern.slope_columns) {
             *slope = Vector::ZERO.plus_scaled(*slope, pattern.root_stiffness[*column as usize]);
+        }
+    }
+
+    /// Takes back what was added between nodes.
+    pub(crate) fn take_back(&mut self) {
+        for (place, block) in self.covered.drain(..).rev() {
+            self.blocks[place as usize] = block;
+        }
+    }
+
+    /// Adds the stiffness of a place that hangs on neighbouring nodes. Complete the matrix afterwards.
+    pub(crate) fn add_at(
+        &mut self,
+        pattern: &Pattern,
+        parts: impl Iterator<Item = (u32, f64)> + Clone,
+        stiffness: &Mat3,
+    ) {
+        let mut parts = parts.filter(|(node, _)| (*node as usize) < pattern.halves.free);
+        while let Some((node, part)) = parts.next() {
+            let part = part as f32;
+            self.extra[node as usize].add(&Block::from_mat3(&(*stiffness * (part * part))));
+            for (other, other_part) in parts.clone() {
+                let place = find(&pattern.rows, &pattern.columns, node.max(other), node.min(other));
+                let block = &mut self.blocks[place as usize];
+                self.covered.push((place, *block));
+                // Symmetric, whichever comes first.
+                block.add(&Block::from_mat3(&(*stiffness * (part * other_part as f32))));
+            }
         }
     }
 
