@@ -9,11 +9,12 @@ use std::process::{Command, ExitCode, ExitStatus};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench peers | verify [rung…] [--quick] [--json] [--ccx CASE]>
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, then test: what CI runs
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
+         scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
 

@@ -9,12 +9,13 @@ use twintac_shape::{Pose, SignedDistance};
 use crate::contact::{Boundary, BoundaryTriangle, Contact, ContactPoint};
 use crate::element::{self, Elements, NODES, Response, Side};
 use crate::linear::coarse::{CoarseSystem, Factors};
+use crate::linear::direct::DirectSystem;
 use crate::linear::matrix::Pattern;
 use crate::linear::numbering::{Numbered, number};
 use crate::newton::rest_factors;
 use crate::relaxation::{Memory, Relaxation};
 use crate::state::State;
-use crate::{MPA_PER_KPA, Material, SoftBodyError, SolverSettings};
+use crate::{LinearSolver, MPA_PER_KPA, Material, SoftBodyError, SolverSettings};
 
 /// Part of the shear modulus whose stress over the body's size makes the load that tolerances are at least relative to.
 const LEAST_LOAD: f64 = 1e-3;
@@ -40,6 +41,8 @@ pub struct SoftBody {
     pub(crate) volume_stiffness: Vec<f64>,
     pub(crate) pattern: Pattern,
     pub(crate) coarse: CoarseSystem,
+    /// None unless systems are solved by factors of the whole.
+    pub(crate) direct: Option<DirectSystem>,
     /// Where forces on each node come from: `slot NODES + node`. `[n_nodes + 1]`, and the places.
     pub(crate) force_starts: Vec<u32>,
     pub(crate) force_sources: Vec<u32>,
@@ -92,6 +95,10 @@ impl SoftBody {
         let volume_stiffness: Vec<f64> = volumes_mm3.iter().map(|volume| modulus_mpa / volume).collect();
         let pattern = Pattern::new(&elements, &parents, &coarse_tets, halves, &volume_stiffness);
         let coarse = CoarseSystem::new(&coarse_nodes_mm, &coarse_tets, &coarse_bonded, &volume_stiffness)?;
+
+        let direct = (settings.linear == LinearSolver::Direct)
+            .then(|| DirectSystem::new(&pattern))
+            .transpose()?;
 
         let sources = |n_rows: usize, each: &dyn Fn(usize) -> Vec<(u32, u32)>| {
             let mut rows = vec![Vec::new(); n_rows];
@@ -166,6 +173,7 @@ impl SoftBody {
             volume_stiffness,
             pattern,
             coarse,
+            direct,
             force_starts,
             force_sources,
             volume_starts,

@@ -26,7 +26,7 @@ pub use error::{Blocker, SoftBodyError, SolveError};
 pub use newton::DerivativeErrors;
 pub use push::Push;
 pub use sensitivity::Direction;
-pub use settings::SolverSettings;
+pub use settings::{LinearSolver, SolverSettings};
 pub use state::{Cost, Frame, State};
 pub use twintac_material::{Material, Model, PronyTerm};
 

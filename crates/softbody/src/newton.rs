@@ -12,6 +12,7 @@ use crate::element::{CoarseSink, CoarseTangent, Forces, Response, Volumes};
 use crate::linear::block::{Block, Vector};
 use crate::linear::coarse::{Factors, Tangent};
 use crate::linear::cycle::{Cycle, TwoLevel};
+use crate::linear::direct::DirectSystem;
 use crate::linear::krylov::{ConjugateGradients, Outcome};
 use crate::linear::matrix::Matrix;
 use crate::parallel::join_halves;
@@ -381,14 +382,21 @@ impl Buffers {
         }
         self.add_contact(body, step, x);
         self.cost.assembly_s += started.elapsed().as_secs_f64();
+        if let Some(direct) = &body.direct {
+            self.has_matrix = false;
+            if self.find_direction_directly(body, direct) {
+                return Ok(());
+            }
+        }
         let mut is_fresh = false;
         if self.factors.is_none() {
             self.factorise(body, step, x)?;
         }
-        while let Some(factors) = &mut self.factors {
-            for (residual, gradient) in self.gradients.vectors.residual.iter_mut().zip(&self.gradient_n) {
-                *residual = Vector::from_dvec3(-*gradient);
-            }
+        loop {
+            self.take_residual();
+            let Some(factors) = &mut self.factors else {
+                break;
+            };
             let mut system = TwoLevel {
                 pattern: &body.pattern,
                 matrix: &self.matrix,
@@ -412,10 +420,36 @@ impl Buffers {
             self.factorise(body, step, x)?;
             is_fresh = true;
         }
+        self.take_direction();
+        Ok(())
+    }
+
+    /// The same, by factors of the whole system; false where it is not convex.
+    fn find_direction_directly(&mut self, body: &SoftBody, direct: &DirectSystem) -> bool {
+        let started = Instant::now();
+        self.take_residual();
+        let matrix = &self.matrix;
+        let is_found = self
+            .gradients
+            .take(&body.pattern, |forces, displacements, volumes| {
+                direct.solve(matrix, forces, displacements, volumes)
+            });
+        self.take_direction();
+        self.cost.factorisation_s += started.elapsed().as_secs_f64();
+        self.cost.factorisations += 1;
+        is_found
+    }
+
+    fn take_residual(&mut self) {
+        for (residual, gradient) in self.gradients.vectors.residual.iter_mut().zip(&self.gradient_n) {
+            *residual = Vector::from_dvec3(-*gradient);
+        }
+    }
+
+    fn take_direction(&mut self) {
         for (direction, solution) in self.direction_mm.iter_mut().zip(&self.gradients.vectors.solution) {
             *direction = solution.to_dvec3();
         }
-        Ok(())
     }
 
     /// Factorises the coarse tangent: the true one if it is convex, else ever stiffer.

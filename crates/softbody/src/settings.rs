@@ -10,6 +10,8 @@ use crate::{Element, SoftBodyError};
 pub struct SolverSettings {
     /// How displacements vary between nodes. Default composite.
     pub element: Element,
+    /// How linear systems are solved. Default two-level.
+    pub linear: LinearSolver,
     /// A step has converged when the 2-norm of the unbalanced nodal forces is below this part of the load. Default 1e-6.
     pub tolerance: f64,
     /// Newton iterations before a sub-step is given up and halved. Default 100.
@@ -31,10 +33,22 @@ pub struct SolverSettings {
     pub obstacle_friction: f64,
 }
 
+/// How linear systems are solved. Answers agree within the tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LinearSolver {
+    /// Conjugate gradients, preconditioned on two levels, with factors that are kept for as long as they serve.
+    #[default]
+    TwoLevel,
+    /// Factors of the whole system in double precision, made anew for every direction: slow, to compare with.
+    Direct,
+}
+
 impl Default for SolverSettings {
     fn default() -> Self {
         Self {
             element: Element::default(),
+            linear: LinearSolver::default(),
             tolerance: 1e-6,
             max_iterations: 100,
             max_travel_mm: 0.5,

@@ -6,6 +6,7 @@ use std::io::Write;
 use anyhow::Result;
 use serde::Serialize;
 use twintac_simulate::Followed;
+use twintac_softbody::LinearSolver;
 
 use crate::cases::{self, Case};
 
@@ -22,6 +23,9 @@ const SMALLEST_PRESSURE: f64 = 0.05;
 /// A frame's time at 55 Hz, ms.
 const BUDGET_MS: f64 = 1000.0 / 55.0;
 
+/// Part of the way down over which other ways to solve are compared.
+const COMPARED: f64 = 0.25;
+
 /// What came of a case.
 #[derive(Serialize)]
 struct Timed {
@@ -37,6 +41,9 @@ struct Timed {
     worst_ms: f64,
     /// Part of the frames within the time that a frame lasts.
     in_time: f64,
+    /// Time of a frame with factors of the whole system made anew for every direction, on one thread, as part of ours: both in this run, on the way
+    /// down as far as [`COMPARED`] of it.
+    times_of_direct: f64,
     /// Largest error against the tight solution of the same mesh, %.
     force_error_percent: f64,
     pressure_error_percent: f64,
@@ -48,8 +55,8 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
     if !as_json {
         writeln!(
             out,
-            "{:50} {:>5} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8}",
-            "case", "nodes", "nu", "RTF", "mean ms", "worst", "in time", "force", "pressure"
+            "{:50} {:>5} {:>6} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+            "case", "nodes", "nu", "RTF", "mean ms", "worst", "in time", "force", "pressure", "direct"
         )?;
     }
     for case in cases::all()? {
@@ -59,7 +66,7 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
         } else {
             writeln!(
                 out,
-                "{:50} {:>5} {:>6} {:>5.2} {:>8.2} {:>8.2} {:>6.1} % {:>6.2} % {:>6.2} %",
+                "{:50} {:>5} {:>6} {:>5.2} {:>8.2} {:>8.2} {:>6.1} % {:>6.2} % {:>6.2} % {:>6.1} x",
                 timed.case,
                 timed.nodes,
                 timed.nu,
@@ -68,7 +75,8 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
                 timed.worst_ms,
                 100.0 * timed.in_time,
                 timed.force_error_percent,
-                timed.pressure_error_percent
+                timed.pressure_error_percent,
+                timed.times_of_direct
             )?;
         }
     }
@@ -77,6 +85,17 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
 
 fn time(case: &Case) -> Result<Timed> {
     let (fast, tight) = (case.follow(FAST, &mut || ())?, case.follow(TIGHT, &mut || ())?);
+    let start = case.shortened(COMPARED);
+    let [ours_s, direct_s] = [LinearSolver::TwoLevel, LinearSolver::Direct].map(|linear| {
+        let followed = start.follow_by(linear, FAST, &mut || ())?;
+        anyhow::Ok(
+            followed.frames[1..]
+                .iter()
+                .map(|frame| frame.wall_time_s)
+                .sum::<f64>(),
+        )
+    });
+    let times_of_direct = direct_s? / ours_s?;
     let times_ms: Vec<f64> = fast.frames.iter().map(|frame| 1e3 * frame.wall_time_s).collect();
     let total_s = times_ms.iter().sum::<f64>() / 1e3;
     let last = fast.frames.len() - 1;
@@ -95,6 +114,7 @@ fn time(case: &Case) -> Result<Timed> {
         force_n: forces(&fast),
         mean_ms: 1e3 * total_s / times_ms.len() as f64,
         worst_ms: times_ms.iter().copied().fold(0.0, f64::max),
+        times_of_direct,
         in_time: in_time as f64 / times_ms.len() as f64,
         force_error_percent: 100.0
             * largest_error(&fast, &tight, SMALLEST_FORCE, |followed, frame| {

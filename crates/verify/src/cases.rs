@@ -8,6 +8,7 @@ use twintac_protocol::{PressPath, Waypoint, Zero};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::{Followed, Gel, SimulateSettings};
+use twintac_softbody::LinearSolver;
 
 /// Frames in a second: the rate of the paper's sensor, Hz.
 const RATE_HZ: f64 = 55.0;
@@ -25,6 +26,8 @@ pub(crate) struct Case {
     pub(crate) n_nodes: [usize; 2],
     sensor: Arc<Sensor>,
     path: PressPath,
+    /// Edges over the gel's height and the contact's radius, where they decide the mesh.
+    edges: Option<f64>,
 }
 
 const BLOCK: &str = r#"
@@ -66,6 +69,17 @@ pub(crate) fn block(poissons_ratio: f64) -> Result<Case> {
         n_nodes: [4000, 7000],
         sensor: Arc::new(sensor),
         path: path(&poses),
+        edges: None,
+    })
+}
+
+/// A ball pressed 1 mm into a block as finely meshed as is asked for.
+pub(crate) fn block_of(edges_per_height: f64) -> Result<Case> {
+    Ok(Case {
+        n_nodes: [0, usize::MAX],
+        path: path(&[(0.0, [0.0, 0.0, 0.0], 0.0), (0.5, [0.0, 0.0, -1.0], 0.0)]),
+        edges: Some(edges_per_height),
+        ..block(0.49)?
     })
 }
 
@@ -110,17 +124,38 @@ pub(crate) fn all() -> Result<Vec<Case>> {
             n_nodes: [6570, 8030],
             sensor: Arc::new(sensor),
             path: path(poses),
+            edges: None,
         });
     }
     Ok(cases)
 }
 
 impl Case {
-    fn gel(&self, tolerance: f64) -> Gel {
+    /// The way down, as far as a part of it.
+    pub(crate) fn shortened(&self, part: f64) -> Self {
+        let mut path = self.path.clone();
+        path.poses.truncate(2);
+        if let [start, end] = &mut path.poses[..] {
+            end.time_s = start.time_s + part * (end.time_s - start.time_s);
+            end.position_mm = start.position_mm.lerp(end.position_mm, part);
+        }
+        Self {
+            sensor: self.sensor.clone(),
+            path,
+            ..*self
+        }
+    }
+
+    fn gel(&self, tolerance: f64, linear: LinearSolver) -> Gel {
         let mut settings = SimulateSettings {
             max_path_nodes: self.n_nodes[1],
             ..SimulateSettings::default()
         };
+        if let Some(edges) = self.edges {
+            settings.edges_per_height = edges;
+            settings.edges_per_contact_radius = edges;
+        }
+        settings.solver.linear = linear;
         settings.solver.tolerance = tolerance;
         settings.solver.max_iterations = 60;
         Gel::new(self.sensor.clone(), settings)
@@ -128,7 +163,9 @@ impl Case {
 
     /// The mesh, as JSON: `nodes_mm` and `tets`.
     pub(crate) fn mesh_json(&self) -> Result<String> {
-        let gel = self.gel(1.0).mesh_along(&BALL, &self.path)?;
+        let gel = self
+            .gel(1.0, LinearSolver::TwoLevel)
+            .mesh_along(&BALL, &self.path)?;
         let mesh = gel.body().mesh();
         let nodes_mm: Vec<[f64; 3]> = mesh.nodes_mm.iter().map(DVec3::to_array).collect();
         Ok(serde_json::json!({ "nodes_mm": nodes_mm, "tets": mesh.tets }).to_string())
@@ -136,7 +173,17 @@ impl Case {
 
     /// Follows the press with a solver tolerance, and says so after each frame.
     pub(crate) fn follow(&self, tolerance: f64, advanced: &mut dyn FnMut()) -> Result<Followed> {
-        let followed = self.gel(tolerance).follow(&BALL, &self.path, advanced)?;
+        self.follow_by(LinearSolver::TwoLevel, tolerance, advanced)
+    }
+
+    /// The same, with a choice of how linear systems are solved.
+    pub(crate) fn follow_by(
+        &self,
+        linear: LinearSolver,
+        tolerance: f64,
+        advanced: &mut dyn FnMut(),
+    ) -> Result<Followed> {
+        let followed = self.gel(tolerance, linear).follow(&BALL, &self.path, advanced)?;
         if let Some(failure) = &followed.failure {
             anyhow::bail!("{}: {failure}", self.name);
         }

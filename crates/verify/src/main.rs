@@ -7,8 +7,10 @@ use clap::{Parser, Subcommand};
 mod bench;
 mod calculix;
 mod cases;
+mod files;
 mod ladder;
 mod peers;
+mod scaling;
 
 #[derive(Parser)]
 #[command(about = "Benchmarks and verification of the soft body")]
@@ -25,6 +27,13 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
+    /// How time and memory grow with the mesh: writes docs/benchmarks/scaling.*
+    Scaling,
+    /// One mesh of the above: one JSON line
+    Size {
+        /// Edges over the block's height
+        edges_per_height: f64,
+    },
     /// The verification ladder: closed forms, convergence, balance and robustness, each with a stated limit
     Ladder(ladder::Options),
     /// The block press on other engines and on ours: makes a Python environment, writes docs/benchmarks/peers.*
@@ -40,6 +49,8 @@ enum Task {
 fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Softbody { json } => bench::run(json).map(|()| true),
+        Task::Scaling => scaling::run().map(|()| true),
+        Task::Size { edges_per_height } => scaling::print_size(edges_per_height).map(|()| true),
         Task::Ladder(options) => ladder::run(&options),
         Task::Peers(options) => peers::run(&options).map(|()| true),
         Task::Press { poissons_ratio } => peers::print_row(poissons_ratio).map(|()| true),

@@ -1,5 +1,6 @@
 //! Newton's linear system by conjugate gradients.
 
+use super::block::Vector;
 use super::cycle::TwoLevel;
 use super::matrix::Pattern;
 use super::sweep::{Step, Vectors};
@@ -81,6 +82,26 @@ impl ConjugateGradients {
         }
         self.vectors.finish(step);
         (Outcome::Slow, max_iterations)
+    }
+
+    /// Takes a solution, and its `√D Bᵀ`, that another method finds; false if it finds none that leads downhill.
+    pub(crate) fn take(
+        &mut self,
+        pattern: &Pattern,
+        find: impl FnOnce(&[Vector], &mut [Vector], &mut [f32]) -> bool,
+    ) -> bool {
+        let Vectors {
+            residual, solution, ..
+        } = &mut self.vectors;
+        if !find(residual, solution, &mut self.volumes) {
+            return false;
+        }
+        let values = self.solution_mpa.iter_mut().zip(&self.volumes);
+        for ((mpa, volume), root) in values.zip(&pattern.root_stiffness) {
+            *mpa = root * volume;
+        }
+        let rows = residual.iter().zip(&*solution);
+        rows.map(|(force, way)| f64::from(force.dot(way))).sum::<f64>() > 0.0
     }
 
     fn move_along(&mut self, pattern: &Pattern, step: Step) {

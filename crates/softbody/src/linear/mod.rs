@@ -6,6 +6,7 @@
 pub(crate) mod block;
 pub(crate) mod coarse;
 pub(crate) mod cycle;
+pub(crate) mod direct;
 mod elimination_order;
 pub(crate) mod krylov;
 pub(crate) mod matrix;

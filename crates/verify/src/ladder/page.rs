@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::outcome::{Outcome, number};
 use super::{Effort, Rung};
+use crate::files::write_whole;
 
 /// Writes a rung's page, plots and record, and returns the record.
 pub(crate) fn write(folder: &Path, rung: &Rung, outcome: &Outcome, effort: Effort) -> Result<Value> {
@@ -104,12 +105,4 @@ pub(crate) fn write_index(folder: &Path) -> Result<()> {
 fn limit(limit: &Value) -> Option<(&'static str, f64)> {
     let at_most = limit["at_most"].as_f64().map(|limit| ("≤", limit));
     at_most.or_else(|| limit["at_least"].as_f64().map(|limit| ("≥", limit)))
-}
-
-/// Under a temporary name first: files are there in full or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let partial = path.with_extension("partial");
-    std::fs::write(&partial, bytes)
-        .and_then(|()| std::fs::rename(&partial, path))
-        .with_context(|| format!("writing {}", path.display()))
 }

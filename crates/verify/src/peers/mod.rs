@@ -12,12 +12,12 @@ mod process;
 mod row;
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 
 use crate::cases;
+use crate::files::write_whole;
 use page::Results;
 use plan::Plan;
 use process::Python;
@@ -103,14 +103,4 @@ fn write_results(results: &Results) -> Result<()> {
     write_whole(&folder.join("peers.md"), page::markdown(results).as_bytes())?;
     eprintln!("wrote {RESULTS}/peers.md, peers.json and peers.png");
     Ok(())
-}
-
-/// A file that appears whole or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let partial = path.with_extension("tmp");
-    let write = || -> std::io::Result<()> {
-        fs::File::create(&partial)?.write_all(bytes)?;
-        fs::rename(&partial, path)
-    };
-    write().with_context(|| format!("writing {}", path.display()))
 }

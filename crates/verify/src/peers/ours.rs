@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use super::row::Figures;
-use crate::{bench, cases};
+use crate::{bench, cases, files};
 
 /// Clock ticks a second in `/proc`: fixed on Linux, whatever the kernel's own rate (proc(5)).
 const TICKS_PER_S: f64 = 100.0;
@@ -38,7 +38,7 @@ pub(crate) fn print_row(poissons_ratio: f64) -> Result<()> {
         start_up_s,
         reached_mm: rest.position_mm.z - end.position_mm.z,
         force_n: bench::forces(&followed),
-        memory_mib: peak_memory_mib()?,
+        memory_mib: files::peak_memory_mib()?,
     };
     writeln!(std::io::stdout().lock(), "{}", serde_json::to_string(&figures)?)?;
     Ok(())
@@ -51,15 +51,4 @@ fn processor_s() -> Option<f64> {
     let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks: f64 = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
     Some(ticks / TICKS_PER_S)
-}
-
-/// The most memory that this process held, MiB.
-fn peak_memory_mib() -> Result<f64> {
-    let text =
-        std::fs::read_to_string("/proc/self/status").context("peak memory is read from Linux's /proc")?;
-    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kib = line
-        .and_then(|line| line.split_whitespace().next())
-        .context("VmHWM")?;
-    Ok(kib.parse::<f64>()? / 1024.0)
 }
