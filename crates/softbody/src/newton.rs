@@ -376,6 +376,24 @@ impl Buffers {
         x: &Unknowns,
         forcing: f64,
     ) -> Result<(), Failure> {
+        match self.try_direction(body, step, x, forcing) {
+            // Far from equilibrium, pressures foreseen can bend the tangent more than stiffening makes up for.
+            Err(Failure::Singular) if self.foreseen_mpa.iter().any(|mpa| *mpa != 0.0) => {
+                self.foreseen_mpa.fill(0.0);
+                self.has_matrix = false;
+                self.try_direction(body, step, x, forcing)
+            }
+            result => result,
+        }
+    }
+
+    fn try_direction(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &Unknowns,
+        forcing: f64,
+    ) -> Result<(), Failure> {
         let started = Instant::now();
         if !self.has_matrix {
             self.assemble(body, step, x);

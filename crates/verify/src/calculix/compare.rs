@@ -3,25 +3,31 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, bail, ensure};
-use twintac_simulate::{Gel, SimulateSettings};
+use twintac_simulate::{Followed, Gel, SimulateSettings};
+use twintac_softbody::Element;
 
-use super::case::Case;
-use super::reference::Reference;
+use super::case::{Case, line_mm, taxels_mm};
+use super::reference::{Reference, ReferenceFrame};
+
+/// How deep quadratic elements are pressed, which take long, mm.
+const QUADRATIC_MM: f64 = 1.0;
 
 /// Part of the largest pressure at a taxel above which errors are relative to the taxel's own pressure.
 const MEANINGFUL: f64 = 0.05;
 
-/// A press as two codes see it.
+/// A press as two codes, or two kinds of element, see it.
 pub(super) struct Compared {
     /// Name of the case.
     pub(super) case: String,
+    /// Whether what it is compared to is CalculiX's, and not our own quadratic elements'.
+    pub(super) is_calculix: bool,
     /// Nodes of our mesh.
     pub(super) n_nodes: usize,
     /// Depth by depth.
     pub(super) frames: Vec<ComparedFrame>,
 }
 
-/// The gel at one depth; pairs are of our value and CalculiX's.
+/// The gel at one depth; pairs are of our value and of the other.
 pub(super) struct ComparedFrame {
     pub(super) depth_mm: f64,
     pub(super) force_n: [f64; 2],
@@ -33,14 +39,7 @@ pub(super) struct ComparedFrame {
 
 /// Presses the gel as `twintac simulate --sensor F --path F` does, with the settings as they come.
 pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
-    let sensor = case.sensor()?;
-    let shape = &sensor
-        .indenters
-        .first()
-        .context("the sensor has an indenter")?
-        .shape;
-    let followed =
-        Gel::new(sensor.clone(), SimulateSettings::default()).follow(shape, &case.path()?, &mut || ())?;
+    let followed = follow(case, SimulateSettings::default())?;
     if let Some(failure) = followed.failure {
         bail!("{}: {failure}", case.name);
     }
@@ -77,9 +76,54 @@ pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
         });
     Ok(Compared {
         case: case.name.clone(),
+        is_calculix: true,
         n_nodes: followed.n_nodes,
         frames: frames.collect::<Result<_>>()?,
     })
+}
+
+/// Presses the gel with composite and with quadratic elements on the same nodes, as deep as [`QUADRATIC_MM`].
+pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
+    let case = case.as_deep_as(QUADRATIC_MM);
+    let mut settings = SimulateSettings::default();
+    settings.solver.element = Element::Quadratic;
+    let followed = follow(&case, settings)?;
+    if let Some(failure) = followed.failure {
+        bail!("{}, quadratic elements: {failure}", case.name);
+    }
+    let frames = followed.frames[1..].iter().zip(&case.depths_mm);
+    let frames = frames.map(|(frame, &depth_mm)| {
+        let pressure = |name: &str| frame.pressure_kpa.get(name).copied().context("a pressure lacks");
+        let taxels = taxels_mm().into_iter();
+        Ok(ReferenceFrame {
+            depth_mm,
+            force_n: -frame.force_n.z,
+            penetration_mm: frame.honesty.penetration_mm,
+            pressure_kpa: taxels
+                .map(|(name, _)| Ok((name.clone(), pressure(&name)?)))
+                .collect::<Result<_>>()?,
+            line_kpa: (0..line_mm().len())
+                .map(|index| pressure(&format!("line{index:02}")))
+                .collect::<Result<_>>()?,
+        })
+    });
+    let reference = Reference {
+        case: case.name.clone(),
+        is_fine: true,
+        n_elements: followed.n_tets,
+        n_nodes: followed.n_nodes,
+        frames: frames.collect::<Result<_>>()?,
+    };
+    Ok(Compared {
+        is_calculix: false,
+        ..compare(&case, &reference)?
+    })
+}
+
+fn follow(case: &Case, settings: SimulateSettings) -> Result<Followed> {
+    let sensor = case.sensor()?;
+    let indenter = sensor.indenters.first().context("the sensor has an indenter")?;
+    Ok(Gel::new(sensor.clone(), settings).follow(&indenter.shape, &case.path()?, &mut || ())?)
 }
 
 impl ComparedFrame {

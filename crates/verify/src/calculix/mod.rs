@@ -54,7 +54,12 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
                 figures.push(Figure::told(name, finest.n_nodes as f64, ""));
                 compared.push(ours);
             }
-            None => figures.push(missing(&case, 0)),
+            None => {
+                let ours = compare::compare_elements(&case)?;
+                figures.extend(figures_of(&ours));
+                figures.push(missing(&case, 0));
+                compared.push(ours);
+            }
         }
         let n_depths = meshes().map(|reference| reference.frames.len()).max();
         if let Some(n_depths) = n_depths.filter(|&n_depths| n_depths < case.depths_mm.len()) {
@@ -73,7 +78,8 @@ pub(crate) fn run(_: Effort) -> Result<Outcome> {
              does, with the settings as they come. Pressure is `-tr(σ)/3` on the board, its mean over a taxel's port of 1 mm radius; taxels \
              are where those of `sensors/phystac.toml` are. Errors of a pressure are parts of itself, or of the largest at any taxel where \
              it is below a twentieth of that; along the board (y = {LINE_Y_MM} mm) they are the root mean square as part of the largest \
-             pressure there, which is what a checkerboard would break at ν = 0.4999.\n\n\
+             pressure there, which is what a checkerboard would break at ν = 0.4999. Where CalculiX finds no equilibrium, as at ν = 0.4999, TwinTac's \
+             quadratic elements on the same nodes stand in for it, to a depth of 1 mm.\n\n\
              What CalculiX found is kept in `{REFERENCES}`; `cargo xtask verify calculix --ccx NAME` runs it anew (Debian package \
              calculix-ccx) for the cases whose names start so, on a coarse and on a fine mesh, in `{}`.",
             reference::FOLDER
@@ -101,8 +107,17 @@ fn missing(case: &Case, n_found: usize) -> Figure {
 
 fn figures_of(compared: &Compared) -> Vec<Figure> {
     let largest = |errors: &mut dyn Iterator<Item = f64>| errors.map(f64::abs).fold(0.0, f64::max);
-    let (case, n_nodes) = (&compared.case, compared.n_nodes);
-    let mut figures = vec![Figure::told(format!("{case}: nodes"), n_nodes as f64, "")];
+    let beside = if compared.is_calculix {
+        ""
+    } else {
+        " beside quadratic elements"
+    };
+    let case = format!("{}{beside}", compared.case);
+    let mut figures = vec![Figure::told(
+        format!("{case}: nodes"),
+        compared.n_nodes as f64,
+        "",
+    )];
     for frame in &compared.frames {
         let mut add = |limit: f64, what: &str, value: f64| {
             let name = format!("{case}, {} mm: {what}", frame.depth_mm);
@@ -157,13 +172,13 @@ fn plot(compared: &[Compared]) -> Scene {
                     0 => plots::line("TwinTac", 0, points),
                     _ => twintac_report::plot::Series {
                         ink: Ink::Text,
-                        ..plots::dashes("CalculiX", 0, points)
+                        ..plots::dashes("CalculiX, or quadratic elements", 0, points)
                     },
                 }
             })
         };
         Panel {
-            name: compared.case.split('-').next().unwrap_or_default().to_owned(),
+            name: compared.case.replace("-nu0.", " ").replace("-nu", " 0."),
             y_label: "kPa".to_owned(),
             series: series(0).chain(series(1)).collect(),
             y_range: None,
