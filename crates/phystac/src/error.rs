@@ -31,7 +31,7 @@ pub enum Error<E> {
     },
     /// The barometer does not acknowledge its address.
     BarometerMissing,
-    /// Not one barometer acknowledges the trigger.
+    /// Not one barometer takes the trigger: none acknowledges, or all still convert.
     NotTriggered,
     /// The conversion did not end in time.
     ConversionStuck,
@@ -73,7 +73,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 write!(f, "the switch was told to open {wrote} and has {found} open")
             }
             Self::BarometerMissing => f.write_str("the barometer does not acknowledge its address"),
-            Self::NotTriggered => f.write_str("no barometer acknowledges the trigger"),
+            Self::NotTriggered => f.write_str("no barometer takes the trigger"),
             Self::ConversionStuck => f.write_str("the conversion does not end"),
             Self::OversamplingRefused { wrote, found } => {
                 write!(

@@ -82,24 +82,48 @@ fn conversions_that_never_end_cost_the_frame_its_patience_once() {
         let bench = Bench::new();
         let mut sensor = sensor_on(&bench);
         assert!(is_complete(&next_frame(&bench, &mut sensor)));
-        bench.with(|world| {
-            stuck
-                .iter()
-                .for_each(|taxel| world.parts[*taxel].conversion_ns = u64::MAX)
-        });
+        for taxel in &stuck {
+            bench.with(|world| world.parts[*taxel].conversion_ns = u64::MAX);
+        }
         let before_ns = bench.with(|world| world.now_ns);
         let frame = next_frame(&bench, &mut sensor).unwrap();
         let expected: Vec<_> = stuck.iter().map(|taxel| (*taxel, Fault::Stuck)).collect();
         assert_eq!(faults(&frame), expected);
         let passed_ns = bench.with(|world| world.now_ns) - before_ns;
         assert!((20_000_000..32_000_000).contains(&passed_ns), "{passed_ns} ns");
+
+        // It is not waited for again, and not triggered before it has ended.
+        match next_frame(&bench, &mut sensor) {
+            Ok(frame) => {
+                assert_eq!(faults(&frame), expected);
+                assert!(frame.read_us[7] - frame.triggered_us < 9000);
+            }
+            Err(error) => assert_eq!((error, stuck.len()), (Error::NotTriggered, 8)),
+        }
         bench.with(|world| {
-            world
-                .parts
-                .iter_mut()
-                .for_each(|part| part.conversion_ns = 6_000_000)
+            for part in &mut world.parts {
+                part.conversion_ns = 6_000_000;
+                part.restart();
+            }
         });
-        assert!(is_complete(&next_frame(&bench, &mut sensor)));
+        let next = next_frame(&bench, &mut sensor);
+        assert!(is_complete(&next), "{stuck:?}: {next:?}");
+    }
+}
+
+#[test]
+fn a_conversion_that_outlasts_its_frame_is_not_taken_for_the_next() {
+    for conversion_ms in [21, 25, 33, 60] {
+        let bench = Bench::new();
+        let mut sensor = sensor_on(&bench);
+        bench.with(|world| world.parts[4].conversion_ns = 1_000_000 * conversion_ms);
+        for _ in 0..20 {
+            let frame = next_frame(&bench, &mut sensor).unwrap();
+            assert!(
+                frame.faults().all(|fault| fault == (4, Fault::Stuck)),
+                "{frame:?}"
+            );
+        }
     }
 }
 

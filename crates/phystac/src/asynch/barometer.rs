@@ -45,7 +45,7 @@ impl<I2C: I2c> Cps135b<I2C> {
         Ok(register::is_converting(command))
     }
 
-    /// What the last conversion gave. While one is under way that is the one before: see [`finish`](Self::finish).
+    /// What the last conversion gave. While one is under way that is the one before: [`wait`](Self::wait) first.
     ///
     /// # Errors
     /// [`Error::BarometerMissing`], [`Error::Bus`].
@@ -53,20 +53,20 @@ impl<I2C: I2c> Cps135b<I2C> {
         self.read(register::DATA).await.map(register::sample)
     }
 
-    /// Waits until the conversion under way has ended, and reads what it gave. Takes what it waits off `patience`.
+    /// Waits until no conversion is under way. Takes what it waits off `patience`.
     ///
     /// # Errors
     /// [`Error::ConversionStuck`] once `patience` is used up, [`Error::BarometerMissing`], [`Error::Bus`].
-    pub async fn finish(
+    pub async fn wait(
         &mut self,
         delay: &mut impl DelayNs,
         patience: &mut Patience,
-    ) -> Result<Sample, Error<I2C::Error>> {
+    ) -> Result<(), Error<I2C::Error>> {
         while self.is_converting().await? {
             patience.waits = patience.waits.checked_sub(1).ok_or(Error::ConversionStuck)?;
             delay.delay_us(patience.interval_us).await;
         }
-        self.sample().await
+        Ok(())
     }
 
     /// How many conversions make one pressure.

@@ -3,6 +3,7 @@
 //! Futures may be dropped at any point: no driver trusts what it has not seen end.
 
 mod barometer;
+mod diagnosis;
 mod phystac;
 mod switch;
 

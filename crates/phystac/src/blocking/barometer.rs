@@ -44,7 +44,7 @@ impl<I2C: I2c> Cps135b<I2C> {
         now(self.0.is_converting())
     }
 
-    /// What the last conversion gave. While one is under way that is the one before: see [`finish`](Self::finish).
+    /// What the last conversion gave. While one is under way that is the one before: [`wait`](Self::wait) first.
     ///
     /// # Errors
     /// [`Error::BarometerMissing`], [`Error::Bus`].
@@ -52,16 +52,16 @@ impl<I2C: I2c> Cps135b<I2C> {
         now(self.0.sample())
     }
 
-    /// Waits until the conversion under way has ended, and reads what it gave. Takes what it waits off `patience`.
+    /// Waits until no conversion is under way. Takes what it waits off `patience`.
     ///
     /// # Errors
     /// [`Error::ConversionStuck`] once `patience` is used up, [`Error::BarometerMissing`], [`Error::Bus`].
-    pub fn finish(
+    pub fn wait(
         &mut self,
         delay: &mut impl DelayNs,
         patience: &mut Patience,
-    ) -> Result<Sample, Error<I2C::Error>> {
-        now(self.0.finish(&mut AtOnce(delay), patience))
+    ) -> Result<(), Error<I2C::Error>> {
+        now(self.0.wait(&mut AtOnce(delay), patience))
     }
 
     /// How many conversions make one pressure.

@@ -15,7 +15,8 @@ use crate::settings::Settings;
 /// `N` barometers behind a switch, read as frames.
 ///
 /// A frame is triggered for all barometers with one write, so that its samples are of one moment; then each is asked, through its
-/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other.
+/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. A barometer that
+/// is still converting is never triggered: its next sample would be of an earlier moment than the frame says.
 ///
 /// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each channel
 /// before any broadcast.
@@ -34,7 +35,9 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         (i2c, delay, clock)
     }
 
-    /// Closes all channels, sees that the switch obeys, and looks into each channel alone. [`frame`](Self::frame) does so by itself when needed.
+    /// Closes all channels, sees that the switch obeys, looks into each channel alone, and lets conversions under way end.
+    ///
+    /// The other operations do so by themselves when needed.
     ///
     /// # Errors
     /// Any but those of a single barometer; [`Error::BusHung`] with the taxel, if opening its channel hangs the bus.
@@ -45,7 +48,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
     /// Triggers the next frame, unless one is under way. Right after [`frame`](Self::frame) the barometers convert while the caller computes.
     ///
     /// # Errors
-    /// [`Error::NotTriggered`] if nobody acknowledges, and those of [`start`](Self::start).
+    /// [`Error::NotTriggered`], and those of [`start`](Self::start).
     pub fn trigger(&mut self) -> Result<(), Error<I2C::Error>> {
         now(self.0.trigger())
     }

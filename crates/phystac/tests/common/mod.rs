@@ -19,14 +19,15 @@ pub(crate) struct Part {
     pub(crate) is_present: bool,
     /// Holds its lines low while its channel is open.
     pub(crate) is_shorted: bool,
-    /// Pressure that the next conversion will find, counts.
+    /// Pressure that the next conversion finds when it is triggered, counts.
     pub(crate) counts: i32,
-    /// Temperature that it will find, 1/256 °C.
+    /// Temperature that it finds, 1/256 °C.
     pub(crate) temperature: i16,
     pub(crate) conversion_ns: u64,
     pub(crate) configuration: u8,
     pub(crate) keeps_configuration: bool,
-    converting_until_ns: Option<u64>,
+    /// When the conversion under way ends, and what it will have found.
+    converting: Option<(u64, [u8; 5])>,
     data: [u8; 5],
 }
 
@@ -67,7 +68,7 @@ impl Bench {
             conversion_ns: 6_000_000,
             configuration: 0x28,
             keeps_configuration: true,
-            converting_until_ns: None,
+            converting: None,
             data: [0; 5],
         };
         Self(Rc::new(RefCell::new(World {
@@ -176,9 +177,28 @@ impl World {
 }
 
 impl Part {
+    /// Takes the part's power and gives it back.
+    pub(crate) fn restart(&mut self) {
+        self.converting = None;
+        self.data = [0; 5];
+    }
+
+    fn is_converting(&mut self, now_ns: u64) -> bool {
+        if let Some((_, data)) = self.converting.take_if(|(end_ns, _)| *end_ns <= now_ns) {
+            self.data = data;
+        }
+        self.converting.is_some()
+    }
+
     fn write(&mut self, bytes: &[u8], now_ns: u64) {
         match bytes {
-            [0x30, 0x0A] => self.converting_until_ns = Some(now_ns.saturating_add(self.conversion_ns)),
+            [0x30, 0x0A] => {
+                assert!(!self.is_converting(now_ns), "triggered while converting");
+                let [_, high, middle, low] = self.counts.to_be_bytes();
+                let [upper, lower] = self.temperature.to_be_bytes();
+                let end_ns = now_ns.saturating_add(self.conversion_ns);
+                self.converting = Some((end_ns, [high, middle, low, upper, lower]));
+            }
             [0xA6, value] if self.keeps_configuration => self.configuration = *value,
             [0xA6, _] => {}
             other => panic!("nobody may write {other:02x?}"),
@@ -186,20 +206,10 @@ impl Part {
     }
 
     fn read(&mut self, register: u8, bytes: &mut [u8], now_ns: u64) {
-        if self.converting_until_ns.is_some_and(|end_ns| end_ns <= now_ns) {
-            self.converting_until_ns = None;
-            self.data[..3].copy_from_slice(&self.counts.to_be_bytes()[1..]);
-            self.data[3..].copy_from_slice(&self.temperature.to_be_bytes());
-        }
+        let is_converting = self.is_converting(now_ns);
         match register {
             0x06 => bytes.copy_from_slice(&self.data),
-            0x30 => {
-                bytes[0] = if self.converting_until_ns.is_some() {
-                    0x0A
-                } else {
-                    0x02
-                }
-            }
+            0x30 => bytes[0] = if is_converting { 0x0A } else { 0x02 },
             0xA6 => bytes[0] = self.configuration,
             other => panic!("nobody may read {other:#04x}"),
         }
