@@ -82,6 +82,11 @@ fn the_soft_body_is_a_solver_in_its_own_right() {
 }
 
 #[test]
+fn the_drivers_stand_alone() {
+    assert_eq!(reached_from("phystac"), BTreeSet::new());
+}
+
+#[test]
 fn files_named_in_the_documents_exist() {
     for document in ["README.md", "ARCHITECTURE.md"] {
         let text = fs::read_to_string(root().join(document)).unwrap();

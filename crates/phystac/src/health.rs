@@ -9,10 +9,10 @@ use crate::frame::Frame;
 pub struct Thresholds {
     /// Equal samples in a row that make a taxel frozen.
     ///
-    /// Default 10. The family's last bit is 1/4 to 1/64 Pa, below a barometer's noise: a living part repeats itself by chance, but
-    /// not ten times in pressure and temperature alike.
+    /// Default 10. The family's last bit is 1/4 to 1/64 Pa, below the noise of a barometer: a living part repeats itself by chance, but not
+    /// ten times in pressure and temperature alike.
     pub frozen_frames: u16,
-    /// Drift that is too much, Pa. Default 500: well above the weeks-long drift of a barometer (tens of Pa), well below a touch (kPa).
+    /// Drift that is too much, Pa. Default 500: a start, not measured on a sensor.
     pub drift_pa: f32,
 }
 

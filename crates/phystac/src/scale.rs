@@ -86,41 +86,47 @@ impl Proposal {
 /// # Errors
 /// If that is not exactly one scale.
 pub fn propose<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<Proposal, ScaleError> {
-    let mut proposal: Option<Proposal> = None;
-    for (taxel, result) in frame.taxels.iter().enumerate() {
-        let Ok(sample) = result else { continue };
-        let counts = sample.counts;
-        let pressure_pa = |per_pa: u16| counts.signed() as f32 / f32::from(per_pa);
-        let mut fitting = SCALES_PER_PA
-            .into_iter()
-            .filter(|per_pa| air.contains(pressure_pa(*per_pa)));
-        let counts_per_pa = fitting.next().ok_or(ScaleError::NoScale { taxel, counts })?;
-        if let Some(other) = fitting.next() {
-            return Err(ScaleError::Ambiguous {
-                taxel,
-                counts,
-                scales_per_pa: [counts_per_pa, other],
-            });
+    let mut proposal = None;
+    for (taxel, sample) in frame.taxels.iter().enumerate() {
+        let Ok(sample) = sample else { continue };
+        let counts_per_pa = scale_of(taxel, sample.counts, air)?;
+        let pressure_pa = pressure_pa(sample.counts, counts_per_pa);
+        let so_far = *proposal.get_or_insert(Proposal {
+            counts_per_pa,
+            lowest_pa: pressure_pa,
+            highest_pa: pressure_pa,
+        });
+        if so_far.counts_per_pa != counts_per_pa {
+            let scales_per_pa = [so_far.counts_per_pa, counts_per_pa];
+            return Err(ScaleError::Disagreement { taxel, scales_per_pa });
         }
-        let pressure_pa = pressure_pa(counts_per_pa);
-        proposal = Some(match proposal {
-            None => Proposal {
-                counts_per_pa,
-                lowest_pa: pressure_pa,
-                highest_pa: pressure_pa,
-            },
-            Some(so_far) if so_far.counts_per_pa == counts_per_pa => Proposal {
-                lowest_pa: so_far.lowest_pa.min(pressure_pa),
-                highest_pa: so_far.highest_pa.max(pressure_pa),
-                ..so_far
-            },
-            Some(so_far) => {
-                let scales_per_pa = [so_far.counts_per_pa, counts_per_pa];
-                return Err(ScaleError::Disagreement { taxel, scales_per_pa });
-            }
+        proposal = Some(Proposal {
+            counts_per_pa,
+            lowest_pa: so_far.lowest_pa.min(pressure_pa),
+            highest_pa: so_far.highest_pa.max(pressure_pa),
         });
     }
     proposal.ok_or(ScaleError::NoSample)
+}
+
+/// The one scale, counts per Pa, with which a taxel reads free air.
+fn scale_of(taxel: usize, counts: Counts, air: FreeAir) -> Result<u16, ScaleError> {
+    let mut fitting = SCALES_PER_PA
+        .into_iter()
+        .filter(|per_pa| air.contains(pressure_pa(counts, *per_pa)));
+    let first = fitting.next().ok_or(ScaleError::NoScale { taxel, counts })?;
+    match fitting.next() {
+        None => Ok(first),
+        Some(second) => Err(ScaleError::Ambiguous {
+            taxel,
+            counts,
+            scales_per_pa: [first, second],
+        }),
+    }
+}
+
+fn pressure_pa(counts: Counts, counts_per_pa: u16) -> f32 {
+    counts.signed() as f32 / f32::from(counts_per_pa)
 }
 
 /// Why no scale is proposed.

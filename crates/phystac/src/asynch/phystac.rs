@@ -19,8 +19,8 @@ use crate::settings::{Patience, Settings};
 /// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. A barometer that
 /// is still converting is never triggered: its next sample would be of an earlier moment than the frame says.
 ///
-/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each channel
-/// before any broadcast.
+/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each
+/// channel before any broadcast.
 #[derive(Debug)]
 pub struct PhysTac<I2C, D, C, const N: usize> {
     i2c: I2C,
@@ -31,7 +31,7 @@ pub struct PhysTac<I2C, D, C, const N: usize> {
     is_ready: bool,
     /// When the frame under way was triggered.
     triggered_us: Option<u64>,
-    /// Channels whose barometers still converted when last asked, and so were not triggered.
+    /// Channels whose barometers may still convert: asked before the next trigger, and left out of it if they do.
     late: Channels,
     /// The taxel with whose channel open the bus hung last.
     pub(super) suspect: Option<usize>,
@@ -62,7 +62,7 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         }
     }
 
-    /// Gives the bus, the delay and the clock back.
+    /// Gives the bus, the delay and the clock back. Channels stay open unless [`stop`](Self::stop) closed them.
     pub fn release(self) -> (I2C, D, C) {
         (self.i2c, self.delay, self.clock)
     }
@@ -183,7 +183,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
                 Ok(sample) => Ok(sample),
                 Err(error) => Err(self.fault_of(taxel, error).await?),
             };
-            if frame.taxels[taxel.index] == Err(Fault::Stuck) {
+            if frame.taxels[taxel.index].is_err() {
                 self.late = self.late | taxel.channel;
             }
         }
@@ -192,8 +192,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Ok(frame)
     }
 
-    /// Sets the oversampling of each barometer, until it loses power. More samples take longer: let [`set_conversion_us`](Self::set_conversion_us)
-    /// follow.
+    /// Sets the oversampling of each barometer, until it loses power. More samples take longer: let
+    /// [`set_conversion_us`](Self::set_conversion_us) follow.
     ///
     /// # Errors
     /// What stops all taxels. A frame under way is lost.

@@ -18,8 +18,8 @@ use crate::settings::Settings;
 /// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. A barometer that
 /// is still converting is never triggered: its next sample would be of an earlier moment than the frame says.
 ///
-/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each channel
-/// before any broadcast.
+/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each
+/// channel before any broadcast.
 #[derive(Debug)]
 pub struct PhysTac<I2C, D, C, const N: usize>(asynch::PhysTac<AtOnce<I2C>, AtOnce<D>, C, N>);
 
@@ -29,7 +29,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Self(asynch::PhysTac::new(AtOnce(i2c), AtOnce(delay), clock, settings))
     }
 
-    /// Gives the bus, the delay and the clock back.
+    /// Gives the bus, the delay and the clock back. Channels stay open unless [`stop`](Self::stop) closed them.
     pub fn release(self) -> (I2C, D, C) {
         let (AtOnce(i2c), AtOnce(delay), clock) = self.0.release();
         (i2c, delay, clock)
@@ -61,8 +61,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         now(self.0.frame())
     }
 
-    /// Sets the oversampling of each barometer, until it loses power. More samples take longer: let [`set_conversion_us`](Self::set_conversion_us)
-    /// follow.
+    /// Sets the oversampling of each barometer, until it loses power. More samples take longer: let
+    /// [`set_conversion_us`](Self::set_conversion_us) follow.
     ///
     /// # Errors
     /// What stops all taxels. A frame under way is lost.
