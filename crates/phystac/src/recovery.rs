@@ -5,7 +5,26 @@
 //! is open; the switch's RESET closes all channels, whatever hangs behind them.
 //!
 //! The pins belong to the I²C peripheral while it runs. [`PhysTac::recover`](crate::PhysTac::recover) lends the owner the bus for as long
-//! as this takes; [`PhysTac::release`](crate::PhysTac::release) gives it back for good.
+//! as this takes; [`PhysTac::release`](crate::PhysTac::release) gives it back for good. RESET is a pin of its own:
+//!
+//! ```
+//! use embedded_hal::{delay::DelayNs, digital::OutputPin, i2c::I2c};
+//! use phystac::{Clock, Error, Frame, PhysTac, recovery};
+//!
+//! /// The next frame; none if the bus had to be freed.
+//! fn frame<B: I2c>(
+//!     sensor: &mut PhysTac<B, impl DelayNs, impl Clock, 8>,
+//!     reset: &mut impl OutputPin,
+//! ) -> Result<Option<Frame<8>>, Error<B::Error>> {
+//!     match sensor.frame() {
+//!         Err(hung @ Error::BusHung { .. }) => {
+//!             let freed = sensor.recover(|_, delay| recovery::reset_switch(reset, delay));
+//!             if freed.is_ok() { Ok(None) } else { Err(hung) }
+//!         }
+//!         result => result.map(Some),
+//!     }
+//! }
+//! ```
 
 use core::fmt;
 

@@ -135,10 +135,10 @@ fn starting_anew_lets_conversions_under_way_end() {
         world
             .parts
             .iter_mut()
-            .for_each(|part| part.conversion_ns = 18_000_000)
+            .for_each(|part| part.conversion_ns = 40_000_000)
     });
     let settings = Settings {
-        conversion_us: 18_000,
+        conversion_us: 40_000,
         ..Settings::default()
     };
     let mut sensor = PhysTac::new(bench.clone(), bench.clone(), bench.clock(), settings);
