@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use twintac_config::ConfigError;
 
-type Status = String;
-type ControllerCode = String;
+use crate::netft::Status;
+use crate::xarm::ControllerCode;
 
 /// A kind of device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,10 +10,20 @@ mod clock;
 mod error;
 mod pose;
 mod safety;
+mod splitter;
+mod units;
+mod wrench;
+
+pub mod netft;
+pub mod xarm;
 
 pub use clock::{BenchClock, Stamp};
 pub use error::{Device, RigError};
 pub use pose::TcpPose;
 pub use safety::{
     Cause, Decision, Event, Limits, Retreat, SensorLimits, Setup, Start, StreamId, Supervisor, Workspace,
+};
+pub use splitter::Splitter;
+pub use wrench::{
+    Analog, AnalogCalibration, NetFtSource, Replay, VoltageSample, Wrench, WrenchSample, WrenchSource,
 };

@@ -1,0 +1,87 @@
+//! Streams poses that the robot follows at once.
+//!
+//! The limits are the manufacturer's for its servo mode: at most 250 poses a second, steps of at most 10 mm, at most 1000 mm/s. The
+//! robot keeps no queue: only the latest pose counts.
+
+use std::time::{Duration, Instant};
+
+use super::{Client, Command, Mode, MotionState, MoveTo, SetState, Wire};
+use crate::{RigError, TcpPose};
+
+/// Shortest time between two poses, s.
+pub const SHORTEST_PERIOD_S: f64 = 0.004;
+/// Longest way from one pose to the next, mm.
+pub const LONGEST_STEP_MM: f64 = 10.0;
+const FASTEST_MM_PER_S: f64 = 1000.0;
+/// Time that the robot needs to change to servo mode.
+const SETTLES: Duration = Duration::from_millis(100);
+
+/// What a stream of poses remembers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Servo {
+    last: TcpPose,
+    sent: Instant,
+}
+
+impl<W: Wire> Client<W> {
+    /// Puts the robot, which was enabled, into servo mode where it is, and returns its pose: the first pose must be near it.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`], and a robot that is not ready.
+    pub fn begin_servo(&mut self) -> Result<TcpPose, RigError> {
+        self.set_mode(Mode::Servo)?;
+        self.set_state(SetState::Motion)?;
+        std::thread::sleep(SETTLES);
+        let state = self.state()?;
+        if !matches!(state, MotionState::Ready | MotionState::Moving) {
+            return Err(refused(format!("the robot is {state}"), "enable it anew"));
+        }
+        let last = self.pose()?;
+        self.servo = Some(Servo {
+            last,
+            sent: Instant::now(),
+        });
+        Ok(last)
+    }
+
+    /// Sends a pose, not before 4 ms have passed since the last one, and waits for the answer. After any error the stream has
+    /// ended, and the robot holds the last pose.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`]; a pose that is no number, too far from the last one or too fast; no stream begun.
+    pub fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
+        let Some(servo) = self.servo.take() else {
+            return Err(refused("no stream of poses was begun".to_owned(), "begin one"));
+        };
+        let period = Duration::from_secs_f64(SHORTEST_PERIOD_S);
+        std::thread::sleep(period.saturating_sub(servo.sent.elapsed()));
+        let step_mm = pose.distance_mm(&servo.last);
+        let longest_mm = LONGEST_STEP_MM.min(FASTEST_MM_PER_S * servo.sent.elapsed().as_secs_f64());
+        let is_near = step_mm <= longest_mm;
+        if !is_near || !pose.is_finite() {
+            return Err(refused(
+                format!("a step of {step_mm:.3} mm, where {longest_mm:.3} mm are the most"),
+                "send poses closer to each other",
+            ));
+        }
+        let sent = Instant::now();
+        self.call(Command::ServoCartesian {
+            to: MoveTo {
+                pose: *pose,
+                speed_mm_per_s: 0.0,
+                acceleration_mm_per_s2: 0.0,
+            },
+            in_tool_frame: false,
+        })?;
+        self.servo = Some(Servo { last: *pose, sent });
+        Ok(())
+    }
+}
+
+fn refused(problem: String, hint: &'static str) -> RigError {
+    RigError::Robot {
+        command: "servo",
+        problem,
+        hint,
+    }
+}
