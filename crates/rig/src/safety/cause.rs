@@ -1,7 +1,5 @@
 //! Why the supervisor stops.
 
-use crate::Device;
-
 /// Why the supervisor stopped a press. The first cause stays; later ones do not replace it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -37,11 +35,8 @@ pub enum Cause {
         longest_silence_s: f64,
     },
     /// The robot reports an error.
-    #[error("the {device} reports an error")]
-    InError {
-        /// The device.
-        device: Device,
-    },
+    #[error("the robot reports an error")]
+    RobotInError,
     /// A device reports an error, or cannot be reached.
     #[error("{stream}: {problem}")]
     DeviceError {

@@ -6,7 +6,7 @@ use super::retreat::Progress;
 use super::speed::SpeedBudget;
 use super::watchdog::Watchdog;
 use super::{Cause, SensorLimits, Setup, StreamId};
-use crate::{Device, RigError, TcpPose};
+use crate::{RigError, TcpPose};
 
 /// By how much a measured position may be beyond a limit that the goals keep, mm: robots overshoot, and round.
 const TRACKING_TOLERANCE_MM: f64 = 0.1;
@@ -70,6 +70,41 @@ pub struct Start {
 /// It does nothing by itself and knows no clock: it is told what devices say and when, and asked once in each servo
 /// period. The first cause to stop is latched: no goal goes out any more, by this call or by any later one. To go on, a
 /// person looks at the bench and a new supervisor is made.
+///
+/// ```
+/// use glam::DVec3;
+/// use twintac_rig::{Decision, Event, Limits, Retreat, SensorLimits, Setup, Start, Supervisor, TcpPose, Workspace};
+///
+/// let setup = Setup {
+///     limits: Limits {
+///         force_n: 10.0,
+///         depth_mm: 3.0,
+///         workspace: Workspace { min_mm: DVec3::new(150.0, -50.0, 90.0), max_mm: DVec3::new(250.0, 50.0, 150.0) },
+///         step_mm: 1.0,
+///         turn_step_rad: 0.1,
+///         speed_mm_per_s: 50.0,
+///     },
+///     surface_mm: DVec3::new(200.0, 0.0, 100.0),
+///     approach: DVec3::NEG_Z,
+///     servo_period_s: 0.004,
+///     force_silence_s: 0.02,
+///     robot_silence_s: 0.05,
+///     retreat: Retreat { distance_mm: 5.0, speed_mm_per_s: 25.0, force_noise_n: 0.2 },
+/// };
+/// let above = TcpPose {
+///     position_mm: DVec3::new(200.0, 0.0, 100.1),
+///     roll_pitch_yaw_rad: DVec3::new(std::f64::consts::PI, 0.0, 0.0),
+/// };
+/// let sensor = SensorLimits { force_n: 20.0, depth_mm: 4.0 };
+/// let start = Start { now_s: 0.0, pose: above, force_n: DVec3::ZERO };
+/// let mut supervisor = Supervisor::new(setup, &sensor, start)?;
+///
+/// assert_eq!(supervisor.decide(0.004, &above), Decision::Go(above));
+/// supervisor.observe(0.006, Event::Force(DVec3::new(0.0, 0.0, 10.5)));
+/// assert_eq!(supervisor.decide(0.008, &above), Decision::Stop);
+/// assert_eq!(supervisor.cause().unwrap().to_string(), "force is 10.5 N, the limit is 10 N");
+/// # Ok::<(), twintac_rig::RigError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Supervisor {
     setup: Setup,
@@ -135,9 +170,7 @@ impl Supervisor {
                 self.robot_in_error = in_error;
                 self.watchdog.heard(StreamId::ROBOT, now_s);
                 if in_error {
-                    Some(Cause::InError {
-                        device: Device::Robot,
-                    })
+                    Some(Cause::RobotInError)
                 } else {
                     self.place(
                         ["robot's depth", "robot"],

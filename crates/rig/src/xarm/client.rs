@@ -205,10 +205,10 @@ impl<W: Wire> Client<W> {
             std::thread::sleep(POLL);
         }
         self.stop()?;
-        Err(RigError::Timeout {
-            device: Device::Robot,
-            what: name.to_owned(),
-            after: within,
+        Err(RigError::Robot {
+            command: name,
+            problem: format!("the robot is not there within {} s", within.as_secs_f64()),
+            hint: "see what holds it, or give it more time",
         })
     }
 

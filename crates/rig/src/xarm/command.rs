@@ -179,7 +179,8 @@ impl Command {
         }
     }
 
-    /// The command of a function code and a payload; [`Command::Other`] for a code that is not known. Bytes after the payload are left alone.
+    /// The command of a function code and a payload; [`Command::Other`] for a code that is not known. Bytes after the payload are
+    /// left alone.
     ///
     /// # Errors
     /// A known command whose payload is too short or names an unknown state or mode.

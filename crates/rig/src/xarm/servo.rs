@@ -56,7 +56,7 @@ impl<W: Wire> Client<W> {
         let period = Duration::from_secs_f64(SHORTEST_PERIOD_S);
         std::thread::sleep(period.saturating_sub(servo.sent.elapsed()));
         let step_mm = pose.distance_mm(&servo.last);
-        let longest_mm = LONGEST_STEP_MM.min(FASTEST_MM_PER_S * servo.sent.elapsed().as_secs_f64());
+        let longest_mm = longest_step_mm(servo.sent.elapsed());
         let is_near = step_mm <= longest_mm;
         if !is_near || !pose.is_finite() {
             return Err(refused(
@@ -78,10 +78,26 @@ impl<W: Wire> Client<W> {
     }
 }
 
+/// Longest step after so long a time, mm.
+fn longest_step_mm(elapsed: Duration) -> f64 {
+    LONGEST_STEP_MM.min(FASTEST_MM_PER_S * elapsed.as_secs_f64())
+}
+
 fn refused(problem: String, hint: &'static str) -> RigError {
     RigError::Robot {
         command: "servo",
         problem,
         hint,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_limited_by_speed_and_then_by_length() {
+        assert!((longest_step_mm(Duration::from_millis(4)) - 4.0).abs() < 1e-9);
+        assert_eq!(longest_step_mm(Duration::from_secs(1)), 10.0);
     }
 }
