@@ -24,6 +24,6 @@ pub use errors::ControllerCode;
 pub use real_time_report::RealTimeReport;
 pub use report::{LARGEST_REPORT_BYTES, Report, ReportPort, RobotStatus, RobotWrench, report_splitter};
 pub use report_reader::ReportReader;
-pub use servo::{LONGEST_STEP_MM, SHORTEST_PERIOD_S};
+pub use servo::LONGEST_STEP_MM;
 pub use state::{Mode, MotionState, ResponseState};
 pub use wire::{Pair, Wire};

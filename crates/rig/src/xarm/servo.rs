@@ -8,10 +8,9 @@ use std::time::{Duration, Instant};
 use super::{Client, Command, Mode, MotionState, MoveTo, SetState, Wire};
 use crate::{RigError, TcpPose};
 
-/// Shortest time between two poses, s.
-pub const SHORTEST_PERIOD_S: f64 = 0.004;
 /// Longest way from one pose to the next, mm.
 pub const LONGEST_STEP_MM: f64 = 10.0;
+const PERIOD: Duration = Duration::from_millis(4);
 const FASTEST_MM_PER_S: f64 = 1000.0;
 /// Time that the robot needs to change to servo mode.
 const SETTLES: Duration = Duration::from_millis(100);
@@ -21,6 +20,8 @@ const SETTLES: Duration = Duration::from_millis(100);
 pub(super) struct Servo {
     last: TcpPose,
     sent: Instant,
+    /// When the next pose may go out.
+    due: Instant,
 }
 
 impl<W: Wire> Client<W> {
@@ -37,15 +38,14 @@ impl<W: Wire> Client<W> {
             return Err(refused(format!("the robot is {state}"), "enable it anew"));
         }
         let last = self.pose()?;
-        self.servo = Some(Servo {
-            last,
-            sent: Instant::now(),
-        });
+        let sent = Instant::now();
+        let due = sent + PERIOD;
+        self.servo = Some(Servo { last, sent, due });
         Ok(last)
     }
 
-    /// Sends a pose, not before 4 ms have passed since the last one, and waits for the answer. After any error the stream has
-    /// ended, and the robot holds the last pose.
+    /// Sends a pose when it is due, and waits for the answer. Poses are due every 4 ms: one that comes late may be followed sooner,
+    /// after 2 ms at the soonest. After any error the stream has ended, and the robot holds the last pose.
     ///
     /// # Errors
     /// Those of [`Client::call`]; a pose that is no number, too far from the last one or too fast; no stream begun.
@@ -53,8 +53,7 @@ impl<W: Wire> Client<W> {
         let Some(servo) = self.servo.take() else {
             return Err(refused("no stream of poses was begun".to_owned(), "begin one"));
         };
-        let period = Duration::from_secs_f64(SHORTEST_PERIOD_S);
-        std::thread::sleep(period.saturating_sub(servo.sent.elapsed()));
+        std::thread::sleep(servo.due.saturating_duration_since(Instant::now()));
         let step_mm = pose.distance_mm(&servo.last);
         let longest_mm = longest_step_mm(servo.sent.elapsed());
         let is_near = step_mm <= longest_mm;
@@ -73,14 +72,19 @@ impl<W: Wire> Client<W> {
             },
             in_tool_frame: false,
         })?;
-        self.servo = Some(Servo { last: *pose, sent });
+        let due = (servo.due + PERIOD).max(sent + PERIOD / 2);
+        self.servo = Some(Servo {
+            last: *pose,
+            sent,
+            due,
+        });
         Ok(())
     }
 }
 
-/// Longest step after so long a time, mm.
+/// Longest step after so long a time, mm: the speed counts over a period at least.
 fn longest_step_mm(elapsed: Duration) -> f64 {
-    LONGEST_STEP_MM.min(FASTEST_MM_PER_S * elapsed.as_secs_f64())
+    LONGEST_STEP_MM.min(FASTEST_MM_PER_S * elapsed.max(PERIOD).as_secs_f64())
 }
 
 fn refused(problem: String, hint: &'static str) -> RigError {
@@ -97,7 +101,8 @@ mod tests {
 
     #[test]
     fn steps_are_limited_by_speed_and_then_by_length() {
-        assert!((longest_step_mm(Duration::from_millis(4)) - 4.0).abs() < 1e-9);
+        assert!((longest_step_mm(Duration::from_millis(2)) - 4.0).abs() < 1e-9);
+        assert!((longest_step_mm(Duration::from_millis(6)) - 6.0).abs() < 1e-9);
         assert_eq!(longest_step_mm(Duration::from_secs(1)), 10.0);
     }
 }
