@@ -169,10 +169,9 @@ impl Client {
 
     fn send(&self, command: Command) -> Result<(), RigError> {
         let request = Request { command, samples: 0 };
-        match self.socket.send(&request.encode()) {
-            Ok(_) => Ok(()),
-            Err(source) => Err(transport("sending a request", source)),
-        }
+        let sent = self.socket.send(&request.encode());
+        sent.map(|_| ())
+            .map_err(|source| transport("sending a request", source))
     }
 
     /// Mean of the records that arrive after a while.

@@ -37,12 +37,13 @@ pub(super) enum Progress {
 }
 
 impl Progress {
-    /// The next pose, if going back is safe. `is_safe` says whether the force sensor is alive, and the robot is alive and without error.
+    /// The next pose, if going back is safe: whether the force sensor is alive, and the robot is alive and without error. `robot` is a
+    /// pose that the robot is at, or nearer to the sensor than.
     pub(super) fn next(
         &mut self,
         setup: &Setup,
         is_safe: bool,
-        measured: &TcpPose,
+        robot: &TcpPose,
         force_n: f64,
     ) -> Option<TcpPose> {
         let noise_n = setup.retreat.force_noise_n;
@@ -56,7 +57,7 @@ impl Progress {
                     };
                     return None;
                 }
-                (*measured, setup.retreat.distance_mm, force_n)
+                (*robot, setup.retreat.distance_mm, force_n)
             }
             Self::Moving {
                 last,
@@ -74,8 +75,8 @@ impl Progress {
         let step_mm = (setup.retreat.speed_mm_per_s * setup.servo_period_s)
             .min(setup.limits.step_mm)
             .min(left_mm);
-        // Never towards the sensor: neither from the pose before, nor from where the robot says that it is.
-        let ahead_mm = (last.position_mm - measured.position_mm).dot(setup.approach);
+        // Never towards the sensor: neither from the pose before, nor from where the robot may be.
+        let ahead_mm = (last.position_mm - robot.position_mm).dot(setup.approach);
         let position_mm: DVec3 = last.position_mm - setup.approach * (step_mm + ahead_mm.max(0.0));
         if step_mm <= 0.0 || !setup.limits.workspace.contains(position_mm, 0.0) {
             *self = Self::Ended;

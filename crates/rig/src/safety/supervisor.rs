@@ -224,10 +224,21 @@ impl Supervisor {
             && self.measured.is_finite();
         match self
             .retreat
-            .next(&self.setup, is_safe, &self.measured, self.force_n)
+            .next(&self.setup, is_safe, &self.farthest(), self.force_n)
         {
             Some(pose) => Decision::Retreat(pose),
             None => Decision::Stop,
+        }
+    }
+
+    /// The measured pose or the last goal, whichever is farther from the sensor: a report is old when it arrives, and the robot
+    /// may have gone up since.
+    fn farthest(&self) -> TcpPose {
+        let depth_mm = |pose: &TcpPose| self.setup.depth_mm(pose.position_mm);
+        if depth_mm(&self.goal) < depth_mm(&self.measured) {
+            self.goal
+        } else {
+            self.measured
         }
     }
 
