@@ -27,13 +27,18 @@ fn configuration() -> Configuration {
 struct Habits {
     /// Requests to start and to bias of which it only hears the last.
     deaf: u32,
+    /// Numbers of the record that it leaves out, of the one that it sends twice, and of the one after which it counts anew.
     lost: Option<u32>,
+    doubled: Option<u32>,
+    last: Option<u32>,
     status: Status,
 }
 
 const WELL: Habits = Habits {
     deaf: 0,
     lost: None,
+    doubled: None,
+    last: None,
     status: Status::HEALTHY,
 };
 
@@ -44,7 +49,7 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
     socket.set_read_timeout(Some(Duration::from_micros(500))).unwrap();
     let (done, is_done) = mpsc::channel::<()>();
     let server: JoinHandle<Vec<Command>> = std::thread::spawn(move || {
-        let (mut heard, mut client, mut bias, mut sequence) = (Vec::new(), None, 0, 0);
+        let (mut heard, mut client, mut bias, mut sequence, mut ticks) = (Vec::new(), None, 0, 0, 70_000);
         while is_done.try_recv().is_err() {
             let mut bytes = [0; 64];
             if let Ok((size, from)) = socket.recv_from(&mut bytes) {
@@ -65,13 +70,21 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
             let mut records = Vec::new();
             for _ in 0..5 {
                 sequence += 1;
-                if Some(sequence) != habits.lost {
-                    records.push(Record {
-                        rdt_sequence: sequence,
-                        ft_sequence: 70_000 + sequence,
-                        status: habits.status,
-                        counts: [0, 0, 2_000_000 - bias, 0, 0, 1000],
-                    });
+                ticks += 1;
+                let record = Record {
+                    rdt_sequence: sequence,
+                    ft_sequence: ticks,
+                    status: habits.status,
+                    counts: [0, 0, 2_000_000 - bias, 0, 0, 1000],
+                };
+                let times = match Some(sequence) {
+                    number if number == habits.lost => 0,
+                    number if number == habits.doubled => 2,
+                    _ => 1,
+                };
+                records.extend(vec![record; times]);
+                if Some(sequence) == habits.last {
+                    sequence = 0;
                 }
             }
             let _ = socket.send_to(&encode_records(&records), client);
@@ -139,6 +152,7 @@ fn a_bias_that_never_shows_is_an_error() {
 fn readings_keep_the_sensors_clock_and_mark_gaps() {
     let (address, stop) = sensor(Habits {
         lost: Some(43),
+        doubled: Some(30),
         ..WELL
     });
     let mut client = Client::connect(address, configuration()).unwrap();
@@ -154,7 +168,7 @@ fn readings_keep_the_sensors_clock_and_mark_gaps() {
     }
     assert_eq!(samples.iter().map(|sample| sample.lost_before).sum::<u32>(), 1);
     assert_eq!(samples[0].wrench.force_n, DVec3::new(0.0, 0.0, 2.0));
-    assert_eq!(source.report().lost, 1);
+    assert_eq!((source.report().lost, source.report().doubled), (1, 1));
     drop(source);
     std::thread::sleep(Duration::from_millis(20));
     assert_eq!(
@@ -176,6 +190,20 @@ fn untrustworthy_records_are_errors() {
     assert_eq!(error, "force sensor: status 0x80020000 (saturation or A/D)");
     let mut source = NetFtSource::new(client, BenchClock::start());
     assert!(source.next_sample(Duration::from_secs(2)).is_err());
+    stop();
+}
+
+#[test]
+fn a_stream_that_begins_anew_is_an_error() {
+    let (address, stop) = sensor(Habits {
+        last: Some(20),
+        ..WELL
+    });
+    let mut client = Client::connect(address, configuration()).unwrap();
+    client.start(true).unwrap();
+    let mut source = NetFtSource::new(client, BenchClock::start());
+    let error = (0..40).find_map(|_| source.next_sample(Duration::from_secs(2)).err());
+    assert!(error.unwrap().to_string().contains("its stream began anew"));
     stop();
 }
 
