@@ -87,6 +87,14 @@ fn the_drivers_stand_alone() {
 }
 
 #[test]
+fn the_bench_waits_for_nobody() {
+    let reached = reached_from("twintac-rig");
+    for other in ["twintac-lab", "digitac", "twintac-softbody", "twintac-simulate"] {
+        assert!(!reached.contains(other), "twintac-rig reaches {other}");
+    }
+}
+
+#[test]
 fn files_named_in_the_documents_exist() {
     for document in ["README.md", "ARCHITECTURE.md"] {
         let text = fs::read_to_string(root().join(document)).unwrap();
