@@ -1,0 +1,328 @@
+//! The bus, and what is on it.
+
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
+
+use super::barometer::Barometer;
+use super::switch::Switch;
+use super::{BoardSettings, ClockLine, DataLine, ResetLine};
+use crate::clock::{nanoseconds, seconds};
+use crate::fault::{Schedule, Wire};
+use crate::worker::locked;
+use crate::{CHANNELS, EmulateError, Fault, Scene, What};
+
+/// Every barometer's 7-bit address.
+const BAROMETER: u8 = 0x6D;
+/// Clocks after which whoever holds the data line has sent its byte.
+const HELD_CLOCKS: u8 = 9;
+
+/// A sensor's board, with its lines.
+#[derive(Clone)]
+pub struct Board {
+    parts: Arc<Mutex<Parts>>,
+    scene: Scene,
+    period_ns: f64,
+    timeout_ns: u64,
+}
+
+/// A controller's port to the board. A transaction takes as long as its clocks do: nine for a byte, one for each START and STOP.
+///
+/// What is not acknowledged is [`ErrorKind::NoAcknowledge`], a data line that is held [`ErrorKind::Bus`].
+#[derive(Clone)]
+pub struct Bus(Board);
+
+/// What is on the bus.
+#[derive(Debug)]
+pub(super) struct Parts {
+    switch_address: u8,
+    switch: Switch,
+    barometers: [Option<Barometer>; CHANNELS],
+    schedule: Schedule,
+    /// Who holds the data line, and for how many clocks more: each channel, and at the end the switch.
+    held_clocks: [u8; CHANNELS + 1],
+}
+
+impl Board {
+    /// A board in a scene, with the faults that show on its bus.
+    ///
+    /// # Errors
+    /// A setting or a fault that makes no sense.
+    pub fn new(scene: Scene, settings: &BoardSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+        settings.check()?;
+        crate::fault::check_all(faults)?;
+        let barometer = |channel: usize| {
+            let is_there = settings.channels.contains(&(channel as u8)); // 0 to 7
+            is_there.then(|| Barometer::new(channel, settings.barometer, settings.seed))
+        };
+        Ok(Self {
+            parts: Arc::new(Mutex::new(Parts {
+                switch_address: settings.switch_address,
+                switch: Switch::default(),
+                barometers: std::array::from_fn(barometer),
+                schedule: Schedule::new(faults, Wire::I2c),
+                held_clocks: [0; CHANNELS + 1],
+            })),
+            scene,
+            period_ns: 1e9 / settings.bus_hz,
+            timeout_ns: nanoseconds(settings.timeout_s),
+        })
+    }
+
+    /// A port to its bus.
+    #[must_use]
+    pub fn bus(&self) -> Bus {
+        Bus(self.clone())
+    }
+
+    /// The bus's clock and data lines, as pins, while no transaction is under way.
+    #[must_use]
+    pub fn lines(&self) -> (ClockLine, DataLine) {
+        let parts = || Arc::clone(&self.parts);
+        let clock = ClockLine {
+            parts: parts(),
+            is_high: true,
+        };
+        let data = DataLine {
+            parts: parts(),
+            is_high: true,
+        };
+        (clock, data)
+    }
+
+    /// The switch's RESET.
+    #[must_use]
+    pub fn reset_line(&self) -> ResetLine {
+        let parts = Arc::clone(&self.parts);
+        ResetLine { parts }
+    }
+
+    /// How long each channel's barometer takes for a conversion, s.
+    #[must_use]
+    pub fn conversions_s(&self) -> [Option<f64>; CHANNELS] {
+        let parts = locked(&self.parts);
+        parts
+            .barometers
+            .each_ref()
+            .map(|part| part.as_ref().map(Barometer::conversion_s))
+    }
+
+    fn transaction(&self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+        let clock = self.scene.clock();
+        let begun_ns = clock.now_ns();
+        let (result, ends_ns) = {
+            let mut parts = locked(&self.parts);
+            parts.misbehave(begun_ns);
+            let stretched_s: f64 = parts
+                .schedule
+                .active()
+                .map(|what| {
+                    if let What::ClockStretch { by_s } = what {
+                        by_s
+                    } else {
+                        0.0
+                    }
+                })
+                .sum();
+            if parts.is_held() {
+                (Err(ErrorKind::Bus), begun_ns + self.timeout_ns)
+            } else {
+                let mut transaction = Transaction {
+                    parts: &mut parts,
+                    scene: &self.scene,
+                    begun_ns,
+                    period_ns: self.period_ns,
+                    clocks: 0,
+                };
+                let result = transaction.carry_out(address, operations);
+                transaction.stop();
+                (result, transaction.now_ns() + nanoseconds(stretched_s))
+            }
+        };
+        clock.wait_until_ns(ends_ns);
+        result
+    }
+}
+
+impl Parts {
+    /// Whether somebody holds the data line on the controller's side of the switch.
+    pub(super) fn is_held(&self) -> bool {
+        self.holders().next().is_some()
+            || self
+                .schedule
+                .active()
+                .any(|what| matches!(what, What::Short { channel } if self.switch.mask() >> channel & 1 == 1))
+    }
+
+    /// Those who hold the data line until they get their clocks, and whom clocks reach.
+    fn holders(&self) -> impl Iterator<Item = usize> + use<> {
+        let reached = u16::from(self.switch.mask()) | 1 << CHANNELS;
+        let held_clocks = self.held_clocks;
+        (0..=CHANNELS).filter(move |part| reached >> part & 1 == 1 && held_clocks[*part] > 0)
+    }
+
+    /// A clock, outside any transaction.
+    pub(super) fn clock(&mut self) {
+        for part in self.holders() {
+            self.held_clocks[part] -= 1;
+        }
+    }
+
+    /// The switch's RESET: it closes its channels and lets go of the bus.
+    pub(super) fn reset(&mut self) {
+        self.switch.reset();
+        self.held_clocks[CHANNELS] = 0;
+    }
+
+    /// What goes wrong before the next transaction.
+    fn misbehave(&mut self, now_ns: u64) {
+        let (_, happened) = self.schedule.next_event(seconds(now_ns));
+        for what in happened {
+            match what {
+                What::StuckBus { channel } => {
+                    self.held_clocks[channel.map_or(CHANNELS, usize::from)] = HELD_CLOCKS;
+                }
+                What::SwitchBrownOut => self.switch.reset(),
+                What::BarometerBrownOut { channel } => {
+                    self.barometers[usize::from(channel)]
+                        .iter_mut()
+                        .for_each(Barometer::wake_up);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// A transaction, byte by byte.
+struct Transaction<'a> {
+    parts: &'a mut Parts,
+    scene: &'a Scene,
+    begun_ns: u64,
+    period_ns: f64,
+    clocks: u32,
+}
+
+impl Transaction<'_> {
+    fn now_ns(&self) -> u64 {
+        self.begun_ns + (f64::from(self.clocks) * self.period_ns).round() as u64
+    }
+
+    fn carry_out(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+        let mut was_reading = None;
+        for operation in operations {
+            let is_reading = matches!(operation, Operation::Read(_));
+            if was_reading != Some(is_reading) {
+                self.address(address, is_reading)?;
+                was_reading = Some(is_reading);
+            }
+            match operation {
+                Operation::Read(bytes) => bytes.iter_mut().for_each(|byte| *byte = self.read(address)),
+                Operation::Write(bytes) => bytes.iter().for_each(|byte| self.write(address, *byte)),
+            }
+        }
+        Ok(())
+    }
+
+    /// START and an address.
+    fn address(&mut self, address: u8, is_reading: bool) -> Result<(), ErrorKind> {
+        self.clocks += 1 + 9;
+        let is_heard = self.is_switch(address) || {
+            let mut n_heard = 0;
+            self.each_barometer(address, |barometer, _| {
+                barometer.address(!is_reading);
+                n_heard += 1;
+            });
+            n_heard > 0
+        };
+        // Whoever hears it pulls the line: one is enough.
+        is_heard
+            .then_some(())
+            .ok_or(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address))
+    }
+
+    fn write(&mut self, address: u8, byte: u8) {
+        self.clocks += 9;
+        if self.is_switch(address) {
+            self.parts.switch.write(byte);
+        }
+        self.each_barometer(address, |barometer, now_ns| barometer.write(byte, now_ns));
+    }
+
+    /// The byte that all who speak make together: a line is low if one of them pulls it.
+    fn read(&mut self, address: u8) -> u8 {
+        self.clocks += 9;
+        let mut byte = if self.is_switch(address) {
+            self.parts.switch.mask()
+        } else {
+            0xFF
+        };
+        self.each_barometer(address, |barometer, _| byte &= barometer.read());
+        byte
+    }
+
+    fn stop(&mut self) {
+        self.clocks += 1;
+        self.parts.switch.stop();
+    }
+
+    fn is_switch(&self, address: u8) -> bool {
+        address == self.parts.switch_address
+            && !self.parts.schedule.has(What::NoAcknowledge { channel: None })
+    }
+
+    /// All barometers at the address that are there and on open channels.
+    fn each_barometer(&mut self, address: u8, mut tell: impl FnMut(&mut Barometer, u64)) {
+        if address != BAROMETER {
+            return;
+        }
+        let now_ns = self.now_ns();
+        let Parts {
+            switch,
+            barometers,
+            schedule,
+            ..
+        } = &mut *self.parts;
+        for (channel, barometer) in (0..).zip(barometers) {
+            let is_away = schedule.has(What::NoAcknowledge {
+                channel: Some(channel),
+            });
+            let Some(barometer) = barometer else { continue };
+            barometer.settle(
+                now_ns,
+                self.scene,
+                schedule.has(What::EndlessConversion { channel }),
+            );
+            if switch.mask() >> channel & 1 == 1 && !is_away && barometer.acknowledges() {
+                tell(barometer, now_ns);
+            }
+        }
+    }
+}
+
+impl ErrorType for Bus {
+    type Error = ErrorKind;
+}
+
+impl I2c for Bus {
+    fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+        self.0.transaction(address, operations)
+    }
+}
+
+impl fmt::Debug for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = locked(&self.parts);
+        f.debug_struct("Board")
+            .field("mask", &parts.switch.mask())
+            .field("barometers", &parts.barometers.iter().flatten().count())
+            .finish()
+    }
+}
+
+impl fmt::Debug for Bus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
