@@ -7,9 +7,6 @@ use embedded_hal::delay::DelayNs;
 
 use crate::worker::locked;
 
-/// Remaining wait below which sleeping is too coarse, as the operating system wakes late.
-const SPIN_NS: u64 = 120_000;
-
 /// The lab's time, in real or in virtual seconds. Clones read the same clock.
 ///
 /// Real time passes by itself, and waiting takes as long as it says. Virtual time stands still until somebody waits: who waits
@@ -61,13 +58,9 @@ impl LabClock {
     /// Waits until that long after the start; virtual time goes there, unless it is past.
     pub fn wait_until_ns(&self, until_ns: u64) {
         match &*self.0 {
-            Time::Real(_) => loop {
-                match until_ns.saturating_sub(self.now_ns()) {
-                    0 => return,
-                    left_ns @ SPIN_NS.. => std::thread::sleep(Duration::from_nanos(left_ns - SPIN_NS / 2)),
-                    _ => std::thread::yield_now(),
-                }
-            },
+            Time::Real(_) => {
+                std::thread::sleep(Duration::from_nanos(until_ns.saturating_sub(self.now_ns())));
+            }
             Time::Virtual { now_ns, moved } => {
                 let mut now_ns = locked(now_ns);
                 *now_ns = until_ns.max(*now_ns);
