@@ -89,8 +89,22 @@ fn the_drivers_stand_alone() {
 #[test]
 fn the_bench_waits_for_nobody() {
     let reached = reached_from("twintac-rig");
-    for other in ["twintac-lab", "digitac", "twintac-softbody", "twintac-simulate"] {
+    for other in [
+        "twintac-lab",
+        "twintac-emulate",
+        "digitac",
+        "twintac-softbody",
+        "twintac-simulate",
+    ] {
         assert!(!reached.contains(other), "twintac-rig reaches {other}");
+    }
+}
+
+#[test]
+fn wires_know_no_gel() {
+    let reached = reached_from("twintac-emulate");
+    for other in ["twintac-lab", "digitac", "twintac-softbody", "twintac-simulate"] {
+        assert!(!reached.contains(other), "twintac-emulate reaches {other}");
     }
 }
 

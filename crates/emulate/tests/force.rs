@@ -1,5 +1,7 @@
 //! The client against the emulated force sensor on the loopback, and the sensor alone in virtual time.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use std::time::Duration;
 
 use glam::DVec3;

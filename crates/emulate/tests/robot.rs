@@ -1,5 +1,7 @@
 //! The client against the emulated robot on the loopback.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,7 @@
 //! The drivers against the emulated board, in virtual time: one fault after the other.
 
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
 use embedded_hal::i2c::{ErrorKind, I2c, NoAcknowledgeSource};
 use glam::DVec3;
 use phystac::recovery::{free_bus, reset_switch};
