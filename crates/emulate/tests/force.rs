@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use glam::DVec3;
 use twintac_emulate::force::{ForceSensor, ForceServer, ForceSettings, Outgoing};
-use twintac_emulate::{ArmSettings, EmulateError, Fault, Hertz, LabClock, Moment, Scene, What};
+use twintac_emulate::robot::ArmSettings;
+use twintac_emulate::{EmulateError, Fault, Hertz, LabClock, Moment, Scene, What};
 use twintac_rig::netft::{
     BiasTolerance, Client, Command, Record, Request, SequenceReport, SequenceTracker, decode_records,
 };
@@ -197,6 +198,21 @@ fn what_is_sent_does_not_depend_on_how_often_it_is_asked_for() {
         tracker.track(record);
     }
     assert_eq!((tracker.report().late, tracker.report().lost), (10, 3));
+}
+
+#[test]
+fn at_the_fastest_rate_each_record_has_a_tick_of_its_own() {
+    let settings = ForceSettings {
+        rate_hz: 7000.0,
+        ..ForceSettings::default()
+    };
+    let records = records(&second(settings, &[], 0.01, &[(Command::StartBuffered, 0)]));
+    assert_eq!(records.len(), 7000);
+    assert!(
+        (0..)
+            .zip(&records)
+            .all(|(tick, record)| record.ft_sequence == tick)
+    );
 }
 
 #[test]

@@ -7,7 +7,8 @@ use glam::DVec3;
 use phystac::recovery::{free_bus, reset_switch};
 use phystac::{Budget, Error, Frame, Health, Oversampling, PhysTac, Settings, Thresholds, Transfer};
 use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
-use twintac_emulate::{ArmSettings, Fault, Hertz, LabClock, Moment, Scene, What};
+use twintac_emulate::robot::ArmSettings;
+use twintac_emulate::{Fault, Hertz, LabClock, Moment, Scene, What};
 use twintac_rig::TcpPose;
 
 const BAROMETER: u8 = 0x6D;

@@ -6,8 +6,8 @@ use twintac_rig::netft::{Command, Configuration, Record, Request, Status, TICKS_
 use super::ForceSettings;
 use crate::chance::Chance;
 use crate::clock::{nanoseconds, seconds};
-use crate::fault::{Schedule, Wire};
-use crate::{EmulateError, Fault, Scene, What};
+use crate::schedule::Schedule;
+use crate::{EmulateError, Fault, Scene, What, Wire};
 
 const SATURATED: u32 = 0x8002_0000;
 const MONITOR_LATCHED: u32 = 0x8001_0000;
@@ -169,10 +169,13 @@ impl ForceSensor {
         for (is_set, condition) in [(is_saturated, SATURATED), (self.is_latched, MONITOR_LATCHED)] {
             bits |= if is_set { condition } else { 0 };
         }
-        // Both counters wrap.
+        // The sensor's own clock, counted so that no two records share a tick. Both counters wrap.
+        let begun_ns = self.stream.as_ref().map_or(at_ns, |stream| stream.begun_ns);
+        let ticks = (seconds(begun_ns) * TICKS_PER_SECOND).floor()
+            + (n_measured as f64 * TICKS_PER_SECOND / self.settings.rate_hz).round();
         Record {
             rdt_sequence: (n_measured + 1) as u32,
-            ft_sequence: (seconds(at_ns) * TICKS_PER_SECOND) as u64 as u32,
+            ft_sequence: ticks as u64 as u32,
             status: Status(bits),
             counts: self.configuration.counts(&Wrench::from_axes(axes)),
         }

@@ -3,18 +3,17 @@
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
+use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, Operation};
 
 use super::barometer::Barometer;
 use super::switch::Switch;
+use super::transaction::Transaction;
 use super::{BoardSettings, ClockLine, DataLine, ResetLine};
 use crate::clock::{nanoseconds, seconds};
-use crate::fault::{Schedule, Wire};
+use crate::schedule::Schedule;
 use crate::worker::locked;
-use crate::{CHANNELS, EmulateError, Fault, Scene, What};
+use crate::{CHANNELS, EmulateError, Fault, Scene, What, Wire};
 
-/// Every barometer's 7-bit address.
-const BAROMETER: u8 = 0x6D;
 /// Clocks after which whoever holds the data line has sent its byte.
 const HELD_CLOCKS: u8 = 9;
 
@@ -39,10 +38,10 @@ pub struct Bus(Board);
 /// What is on the bus.
 #[derive(Debug)]
 pub(super) struct Parts {
-    switch_address: u8,
-    switch: Switch,
-    barometers: [Option<Barometer>; CHANNELS],
-    schedule: Schedule,
+    pub(super) switch_address: u8,
+    pub(super) switch: Switch,
+    pub(super) barometers: [Option<Barometer>; CHANNELS],
+    pub(super) schedule: Schedule,
     /// Who holds the data line, and for how many clocks more: each channel, and at the end the switch.
     held_clocks: [u8; CHANNELS + 1],
     /// How much later than it should have ended the last transaction did, ns.
@@ -134,16 +133,9 @@ impl Board {
             if parts.is_held() {
                 (Err(ErrorKind::Bus), begun_ns + self.timeout_ns)
             } else {
-                let mut transaction = Transaction {
-                    parts: &mut parts,
-                    scene: &self.scene,
-                    begun_ns,
-                    period_ns: self.period_ns,
-                    clocks: 0,
-                };
+                let mut transaction = Transaction::begin(&mut parts, &self.scene, begun_ns, self.period_ns);
                 let result = transaction.carry_out(address, operations);
-                transaction.stop();
-                (result, transaction.now_ns() + nanoseconds(stretched_s))
+                (result, transaction.stop() + nanoseconds(stretched_s))
             }
         };
         self.pace(ends_ns);
@@ -205,112 +197,6 @@ impl Parts {
                         .for_each(Barometer::wake_up);
                 }
                 _ => {}
-            }
-        }
-    }
-}
-
-/// A transaction, byte by byte.
-struct Transaction<'a> {
-    parts: &'a mut Parts,
-    scene: &'a Scene,
-    begun_ns: u64,
-    period_ns: f64,
-    clocks: u32,
-}
-
-impl Transaction<'_> {
-    fn now_ns(&self) -> u64 {
-        self.begun_ns + (f64::from(self.clocks) * self.period_ns).round() as u64
-    }
-
-    fn carry_out(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
-        let mut was_reading = None;
-        for operation in operations {
-            let is_reading = matches!(operation, Operation::Read(_));
-            if was_reading != Some(is_reading) {
-                self.address(address, is_reading)?;
-                was_reading = Some(is_reading);
-            }
-            match operation {
-                Operation::Read(bytes) => bytes.iter_mut().for_each(|byte| *byte = self.read(address)),
-                Operation::Write(bytes) => bytes.iter().for_each(|byte| self.write(address, *byte)),
-            }
-        }
-        Ok(())
-    }
-
-    /// START and an address.
-    fn address(&mut self, address: u8, is_reading: bool) -> Result<(), ErrorKind> {
-        self.clocks += 1 + 9;
-        let is_heard = self.is_switch(address) || {
-            let mut n_heard = 0;
-            self.each_barometer(address, |barometer, _| {
-                barometer.address(!is_reading);
-                n_heard += 1;
-            });
-            n_heard > 0
-        };
-        // Whoever hears it pulls the line: one is enough.
-        is_heard
-            .then_some(())
-            .ok_or(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address))
-    }
-
-    fn write(&mut self, address: u8, byte: u8) {
-        self.clocks += 9;
-        if self.is_switch(address) {
-            self.parts.switch.write(byte);
-        }
-        self.each_barometer(address, |barometer, now_ns| barometer.write(byte, now_ns));
-    }
-
-    /// The byte that all who speak make together: a line is low if one of them pulls it.
-    fn read(&mut self, address: u8) -> u8 {
-        self.clocks += 9;
-        let mut byte = if self.is_switch(address) {
-            self.parts.switch.mask()
-        } else {
-            0xFF
-        };
-        self.each_barometer(address, |barometer, _| byte &= barometer.read());
-        byte
-    }
-
-    fn stop(&mut self) {
-        self.clocks += 1;
-        self.parts.switch.stop();
-    }
-
-    fn is_switch(&self, address: u8) -> bool {
-        address == self.parts.switch_address
-            && !self.parts.schedule.has(What::NoAcknowledge { channel: None })
-    }
-
-    /// All barometers at the address that are there and on open channels.
-    fn each_barometer(&mut self, address: u8, mut tell: impl FnMut(&mut Barometer, u64)) {
-        if address != BAROMETER {
-            return;
-        }
-        let now_ns = self.now_ns();
-        let Parts {
-            switch,
-            barometers,
-            schedule,
-            ..
-        } = &mut *self.parts;
-        for (channel, barometer) in (0..).zip(barometers) {
-            let is_away = schedule.has(What::NoAcknowledge {
-                channel: Some(channel),
-            });
-            let Some(barometer) = barometer else { continue };
-            barometer.settle(
-                now_ns,
-                self.scene,
-                schedule.has(What::EndlessConversion { channel }),
-            );
-            if switch.mask() >> channel & 1 == 1 && !is_away && barometer.acknowledges() {
-                tell(barometer, now_ns);
             }
         }
     }

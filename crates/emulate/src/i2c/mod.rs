@@ -9,6 +9,7 @@ mod board;
 mod lines;
 mod settings;
 mod switch;
+mod transaction;
 
 pub use board::{Board, Bus};
 pub use lines::{ClockLine, DataLine, ResetLine};

@@ -5,6 +5,7 @@
 
 mod arm;
 mod controller;
+mod other;
 mod report;
 mod server;
 mod settings;
