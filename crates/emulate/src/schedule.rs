@@ -27,12 +27,11 @@ impl Schedule {
         }
     }
 
-    /// The next event happens: its number, from 0, and what goes wrong once now.
-    pub(crate) fn next_event(&mut self, now_s: f64) -> (u64, Vec<What>) {
-        let event = self.count;
+    /// The next event happens: what goes wrong once now.
+    pub(crate) fn next_event(&mut self, now_s: f64) -> Vec<What> {
         let happened = self.look(now_s);
         self.count += 1;
-        (event, happened)
+        happened
     }
 
     /// What goes wrong once now, with the next event still ahead.
@@ -99,7 +98,7 @@ mod tests {
             let mut schedule = Schedule::new(&[fault], Wire::Force);
             let mut active = Vec::new();
             for event in 0..10 {
-                assert_eq!(schedule.next_event(event as f64), (event, Vec::new()));
+                assert_eq!(schedule.next_event(event as f64), []);
                 if schedule.has(What::LostDatagrams) {
                     active.push(event);
                 }
@@ -122,7 +121,7 @@ mod tests {
             lasts: None,
         };
         let mut schedule = Schedule::new(&[fault, lost(Moment::Count(0), None)], Wire::I2c);
-        let happened: Vec<usize> = (0..4).map(|_| schedule.next_event(0.0).1.len()).collect();
+        let happened: Vec<usize> = (0..4).map(|_| schedule.next_event(0.0).len()).collect();
         assert_eq!(happened, [0, 1, 0, 0]);
         assert_eq!(schedule.active().count(), 0);
     }

@@ -209,17 +209,11 @@ impl ForceSensor {
         if self.schedule.has(What::LostDatagrams) {
             return;
         }
-        let late_s: f64 = self
-            .schedule
-            .active()
-            .map(|what| {
-                if let What::LateDatagrams { by_s } = what {
-                    by_s
-                } else {
-                    0.0
-                }
-            })
-            .sum();
+        let delays = self.schedule.active().map(|what| match what {
+            What::LateDatagrams { by_s } => by_s,
+            _ => 0.0,
+        });
+        let late_s: f64 = delays.sum();
         let at_ns = at_ns + nanoseconds(late_s);
         let times = if self.schedule.has(What::DoubledDatagrams) {
             2

@@ -119,17 +119,11 @@ impl Board {
         let (result, ends_ns) = {
             let mut parts = locked(&self.parts);
             parts.misbehave(begun_ns);
-            let stretched_s: f64 = parts
-                .schedule
-                .active()
-                .map(|what| {
-                    if let What::ClockStretch { by_s } = what {
-                        by_s
-                    } else {
-                        0.0
-                    }
-                })
-                .sum();
+            let stretches = parts.schedule.active().map(|what| match what {
+                What::ClockStretch { by_s } => by_s,
+                _ => 0.0,
+            });
+            let stretched_s: f64 = stretches.sum();
             if parts.is_held() {
                 (Err(ErrorKind::Bus), begun_ns + self.timeout_ns)
             } else {
@@ -184,7 +178,7 @@ impl Parts {
 
     /// What goes wrong before the next transaction.
     fn misbehave(&mut self, now_ns: u64) {
-        let (_, happened) = self.schedule.next_event(seconds(now_ns));
+        let happened = self.schedule.next_event(seconds(now_ns));
         for what in happened {
             match what {
                 What::StuckBus { channel } => {

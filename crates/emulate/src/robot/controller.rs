@@ -1,11 +1,12 @@
 //! What the controller answers, and what it lets the arm do.
 
+use glam::DVec3;
 use twintac_rig::TcpPose;
 use twintac_rig::xarm::{
     Answer, Command, Mode, MotionState, MoveTo, PROTOCOL, Request, Response, ResponseState, SetState,
 };
 
-use super::RobotSettings;
+use super::{Arm, RobotSettings};
 use crate::schedule::Schedule;
 use crate::{EmulateError, Fault, Scene, What, Wire};
 
@@ -63,8 +64,8 @@ impl Controller {
             error: 0,
             warning: 0,
             tcp_offset: TcpPose {
-                position_mm: glam::DVec3::ZERO,
-                roll_pitch_yaw_rad: glam::DVec3::ZERO,
+                position_mm: DVec3::ZERO,
+                roll_pitch_yaw_rad: DVec3::ZERO,
             },
             payload: [0.0; 4],
             collision_sensitivity: 3,
@@ -75,7 +76,7 @@ impl Controller {
 
     /// The answer to a frame of the command socket; none to what is no request, or while a fault keeps it silent.
     pub fn respond(&mut self, frame: &[u8]) -> Option<Vec<u8>> {
-        let (_, happened) = self.schedule.next_event(self.scene.clock().now_s());
+        let happened = self.schedule.next_event(self.scene.clock().now_s());
         self.suffer(happened);
         let request = match Request::decode(frame) {
             Ok(request) => request,
@@ -172,7 +173,7 @@ impl Controller {
         }
     }
 
-    fn steer<T>(&self, tell: impl FnOnce(&mut super::Arm) -> T) -> T {
+    fn steer<T>(&self, tell: impl FnOnce(&mut Arm) -> T) -> T {
         self.scene.steer(self.scene.clock().now_ns(), tell)
     }
 
@@ -187,7 +188,7 @@ impl Controller {
 
     fn stop(&mut self, state: MotionState) {
         self.state = state;
-        self.steer(super::Arm::halt);
+        self.steer(Arm::halt);
     }
 
     fn is_ready(&self) -> bool {
@@ -221,38 +222,28 @@ impl Controller {
             },
             Command::GetPose => Answer::Pose(self.pose()),
             Command::GetJoints => Answer::Joints(JOINTS_RAD),
-            Command::CleanError => {
-                self.error = 0;
-                Answer::Done
-            }
-            Command::CleanWarning => {
-                self.warning = 0;
-                Answer::Done
-            }
-            Command::MotionEnable { axis, on } => {
-                self.enable(*axis, *on)?;
-                Answer::Done
-            }
+            Command::Other { function, payload } => return self.other(*function, payload),
+            acting => self.act(acting).map(|()| Answer::Done)?,
+        };
+        Ok(answer.encode())
+    }
+
+    /// Does what changes something and has no answer.
+    fn act(&mut self, command: &Command) -> Result<(), ResponseState> {
+        match command {
+            Command::CleanError => self.error = 0,
+            Command::CleanWarning => self.warning = 0,
+            Command::MotionEnable { axis, on } => self.enable(*axis, *on)?,
             Command::SetMode { mode, .. } => {
                 self.mode = *mode;
                 self.stop(MotionState::NotReady(5));
-                Answer::Done
             }
-            Command::SetState(state) => {
-                self.set_state(*state);
-                Answer::Done
-            }
-            Command::MoveLine { to, .. } => {
-                self.move_line(to)?;
-                Answer::Done
-            }
-            Command::ServoCartesian { to, in_tool_frame } => {
-                self.servo(&to.pose, *in_tool_frame)?;
-                Answer::Done
-            }
-            Command::Other { function, payload } => return self.other(*function, payload),
-        };
-        Ok(answer.encode())
+            Command::SetState(state) => self.set_state(*state),
+            Command::MoveLine { to, .. } => self.move_line(to)?,
+            Command::ServoCartesian { to, in_tool_frame } => self.servo(&to.pose, *in_tool_frame)?,
+            _ => return Err(ResponseState::INVALID),
+        }
+        Ok(())
     }
 
     fn enable(&mut self, axis: u8, on: bool) -> Result<(), ResponseState> {
@@ -275,12 +266,12 @@ impl Controller {
             // An error holds it where it is until it is cleaned.
             SetState::Motion if self.error == 0 => {
                 self.state = MotionState::Ready;
-                self.steer(super::Arm::go_on);
+                self.steer(Arm::go_on);
             }
             SetState::Motion => {}
             SetState::Pause if self.state == MotionState::Ready => {
                 self.state = MotionState::Paused;
-                self.steer(super::Arm::pause);
+                self.steer(Arm::pause);
             }
             SetState::Pause => {}
             SetState::Stop | SetState::DecelerationStop => self.stop(MotionState::Stopped),
