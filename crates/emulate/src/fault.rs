@@ -57,8 +57,8 @@ pub enum What {
         /// The channel.
         channel: u8,
     },
-    /// Happens: a channel's barometer, or without a channel the switch, waits for nine clocks and holds the data line until it gets them. The
-    /// switch's reset frees its own side.
+    /// Happens: a channel's barometer, or without a channel the switch, waits for nine clocks and holds the data line until it gets
+    /// them. The switch's reset frees its own side.
     StuckBus {
         /// The channel.
         channel: Option<u8>,
