@@ -82,6 +82,33 @@ fn the_soft_body_is_a_solver_in_its_own_right() {
 }
 
 #[test]
+fn the_drivers_stand_alone() {
+    assert_eq!(reached_from("phystac"), BTreeSet::new());
+}
+
+#[test]
+fn the_bench_waits_for_nobody() {
+    let reached = reached_from("twintac-rig");
+    for other in [
+        "twintac-lab",
+        "twintac-emulate",
+        "digitac",
+        "twintac-softbody",
+        "twintac-simulate",
+    ] {
+        assert!(!reached.contains(other), "twintac-rig reaches {other}");
+    }
+}
+
+#[test]
+fn wires_know_no_gel() {
+    let reached = reached_from("twintac-emulate");
+    for other in ["twintac-lab", "digitac", "twintac-softbody", "twintac-simulate"] {
+        assert!(!reached.contains(other), "twintac-emulate reaches {other}");
+    }
+}
+
+#[test]
 fn files_named_in_the_documents_exist() {
     for document in ["README.md", "ARCHITECTURE.md"] {
         let text = fs::read_to_string(root().join(document)).unwrap();

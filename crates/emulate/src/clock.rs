@@ -1,0 +1,134 @@
+//! The one clock that all emulated devices share.
+
+use std::sync::{Arc, Condvar, Mutex};
+use std::time::{Duration, Instant};
+
+use embedded_hal::delay::DelayNs;
+
+use crate::worker::locked;
+
+/// The lab's time, in real or in virtual seconds. Clones read the same clock.
+///
+/// Real time passes by itself, and waiting takes as long as it says. Virtual time stands still until somebody waits: who waits
+/// longest moves it for all, so that a test of minutes is over at once and always the same.
+#[derive(Clone, Debug)]
+pub struct LabClock(Arc<Time>);
+
+#[derive(Debug)]
+enum Time {
+    Real(Instant),
+    Virtual { now_ns: Mutex<u64>, moved: Condvar },
+}
+
+impl LabClock {
+    /// A clock of real time that starts at zero.
+    #[must_use]
+    pub fn real() -> Self {
+        Self(Arc::new(Time::Real(Instant::now())))
+    }
+
+    /// A clock of virtual time that stands at zero.
+    #[must_use]
+    pub fn virtual_time() -> Self {
+        let (now_ns, moved) = (Mutex::new(0), Condvar::new());
+        Self(Arc::new(Time::Virtual { now_ns, moved }))
+    }
+
+    /// Time since the start, ns.
+    #[must_use]
+    pub fn now_ns(&self) -> u64 {
+        match &*self.0 {
+            Time::Real(start) => start.elapsed().as_nanos() as u64, // 584 years
+            Time::Virtual { now_ns, .. } => *locked(now_ns),
+        }
+    }
+
+    /// Time since the start, µs.
+    #[must_use]
+    pub fn now_us(&self) -> u64 {
+        self.now_ns() / 1000
+    }
+
+    /// Time since the start, s.
+    #[must_use]
+    pub fn now_s(&self) -> f64 {
+        seconds(self.now_ns())
+    }
+
+    /// Waits until that long after the start; virtual time goes there, unless it is past.
+    pub fn wait_until_ns(&self, until_ns: u64) {
+        match &*self.0 {
+            Time::Real(_) => {
+                std::thread::sleep(Duration::from_nanos(until_ns.saturating_sub(self.now_ns())));
+            }
+            Time::Virtual { now_ns, moved } => {
+                let mut now_ns = locked(now_ns);
+                *now_ns = until_ns.max(*now_ns);
+                moved.notify_all();
+            }
+        }
+    }
+
+    /// Waits so long.
+    pub fn wait_s(&self, seconds: f64) {
+        self.wait_until_ns(self.now_ns() + nanoseconds(seconds));
+    }
+
+    /// Lets a server rest until something is due, or for so long of real time: it has a wire to look after as well. Never moves the clock.
+    pub(crate) fn rest_until_ns(&self, due_ns: u64, at_most: Duration) {
+        match &*self.0 {
+            Time::Real(_) => {
+                let left = Duration::from_nanos(due_ns.saturating_sub(self.now_ns()));
+                std::thread::sleep(left.min(at_most));
+            }
+            Time::Virtual { now_ns, moved } => {
+                let now_ns = locked(now_ns);
+                // Whether it was in time or not: the server looks at the clock.
+                let _ = moved.wait_timeout_while(now_ns, at_most, |now_ns| *now_ns < due_ns);
+            }
+        }
+    }
+}
+
+impl DelayNs for LabClock {
+    fn delay_ns(&mut self, ns: u32) {
+        self.wait_until_ns(self.now_ns() + u64::from(ns));
+    }
+
+    fn delay_us(&mut self, us: u32) {
+        self.wait_until_ns(self.now_ns() + 1000 * u64::from(us));
+    }
+}
+
+pub(crate) fn seconds(ns: u64) -> f64 {
+    ns as f64 * 1e-9
+}
+
+pub(crate) fn nanoseconds(seconds: f64) -> u64 {
+    (seconds * 1e9).round() as u64 // what is below zero becomes zero
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn virtual_time_passes_only_where_somebody_waits() {
+        let clock = LabClock::virtual_time();
+        let mut copy = clock.clone();
+        copy.delay_us(250);
+        assert_eq!((clock.now_ns(), clock.now_us()), (250_000, 250));
+        clock.wait_until_ns(100_000);
+        assert_eq!(clock.now_us(), 250);
+        clock.rest_until_ns(1_000_000, Duration::from_millis(1));
+        assert_eq!(clock.now_us(), 250);
+    }
+
+    #[test]
+    fn real_time_is_waited_for() {
+        let clock = LabClock::real();
+        let before_s = clock.now_s();
+        clock.wait_s(0.003);
+        assert!(clock.now_s() - before_s >= 0.003);
+    }
+}

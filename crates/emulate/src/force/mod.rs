@@ -1,0 +1,12 @@
+//! The force/torque sensor: an ATI Net F/T, as its clients see it by UDP and HTTP.
+//!
+//! Source: ATI Industrial Automation, Network Force/Torque Sensor System, manual 9620-05-NET FT. Records, requests and the page are
+//! made and read by the codecs of `twintac-rig`, in the other direction.
+
+mod sensor;
+mod server;
+mod settings;
+
+pub use sensor::{ForceSensor, Outgoing};
+pub use server::ForceServer;
+pub use settings::ForceSettings;

@@ -1,0 +1,223 @@
+//! The bus, and what is on it.
+
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, Operation};
+
+use super::barometer::Barometer;
+use super::switch::Switch;
+use super::transaction::Transaction;
+use super::{BoardSettings, ClockLine, DataLine, ResetLine};
+use crate::clock::{nanoseconds, seconds};
+use crate::schedule::Schedule;
+use crate::worker::locked;
+use crate::{CHANNELS, EmulateError, Fault, Scene, What, Wire};
+
+/// Clocks after which whoever holds the data line has sent its byte.
+const HELD_CLOCKS: u8 = 9;
+
+/// Lateness beyond which the bus does not catch up.
+const MOST_LATE_NS: u64 = 5_000_000;
+
+/// A sensor's board, with its lines.
+#[derive(Clone)]
+pub struct Board {
+    parts: Arc<Mutex<Parts>>,
+    scene: Scene,
+    period_ns: f64,
+    timeout_ns: u64,
+}
+
+/// A controller's port to the board. A transaction takes as long as its clocks do: nine for a byte, one for each START and STOP.
+///
+/// What is not acknowledged is [`ErrorKind::NoAcknowledge`], a data line that is held [`ErrorKind::Bus`].
+#[derive(Clone)]
+pub struct Bus(Board);
+
+/// What is on the bus.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub(super) switch_address: u8,
+    pub(super) switch: Switch,
+    pub(super) barometers: [Option<Barometer>; CHANNELS],
+    pub(super) schedule: Schedule,
+    /// Who holds the data line, and for how many clocks more: each channel, and at the end the switch.
+    held_clocks: [u8; CHANNELS + 1],
+    /// How much later than it should have ended the last transaction did, ns.
+    late_ns: u64,
+}
+
+impl Board {
+    /// A board in a scene, with the faults that show on its bus.
+    ///
+    /// # Errors
+    /// A setting or a fault that makes no sense.
+    pub fn new(scene: Scene, settings: &BoardSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+        settings.check()?;
+        crate::fault::check_all(faults)?;
+        let barometer = |channel: usize| {
+            let is_there = settings.channels.contains(&(channel as u8)); // 0 to 7
+            is_there.then(|| Barometer::new(channel, settings.barometer, settings.seed))
+        };
+        Ok(Self {
+            parts: Arc::new(Mutex::new(Parts {
+                switch_address: settings.switch_address,
+                switch: Switch::default(),
+                barometers: std::array::from_fn(barometer),
+                schedule: Schedule::new(faults, Wire::I2c),
+                held_clocks: [0; CHANNELS + 1],
+                late_ns: 0,
+            })),
+            scene,
+            period_ns: 1e9 / settings.bus_hz,
+            timeout_ns: nanoseconds(settings.timeout_s),
+        })
+    }
+
+    /// A port to its bus.
+    #[must_use]
+    pub fn bus(&self) -> Bus {
+        Bus(self.clone())
+    }
+
+    /// The bus's clock and data lines, as pins, while no transaction is under way.
+    #[must_use]
+    pub fn lines(&self) -> (ClockLine, DataLine) {
+        let parts = || Arc::clone(&self.parts);
+        let clock = ClockLine {
+            parts: parts(),
+            is_high: true,
+        };
+        let data = DataLine {
+            parts: parts(),
+            is_high: true,
+        };
+        (clock, data)
+    }
+
+    /// The switch's RESET.
+    #[must_use]
+    pub fn reset_line(&self) -> ResetLine {
+        let parts = Arc::clone(&self.parts);
+        ResetLine { parts }
+    }
+
+    /// How long each channel's barometer takes for a conversion, s.
+    #[must_use]
+    pub fn conversions_s(&self) -> [Option<f64>; CHANNELS] {
+        let parts = locked(&self.parts);
+        parts
+            .barometers
+            .each_ref()
+            .map(|part| part.as_ref().map(Barometer::conversion_s))
+    }
+
+    fn transaction(&self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+        let clock = self.scene.clock();
+        let begun_ns = clock.now_ns();
+        let (result, ends_ns) = {
+            let mut parts = locked(&self.parts);
+            parts.misbehave(begun_ns);
+            let stretches = parts.schedule.active().map(|what| match what {
+                What::ClockStretch { by_s } => by_s,
+                _ => 0.0,
+            });
+            let stretched_s: f64 = stretches.sum();
+            if parts.is_held() {
+                (Err(ErrorKind::Bus), begun_ns + self.timeout_ns)
+            } else {
+                let mut transaction = Transaction::begin(&mut parts, &self.scene, begun_ns, self.period_ns);
+                let result = transaction.carry_out(address, operations);
+                (result, transaction.stop() + nanoseconds(stretched_s))
+            }
+        };
+        self.pace(ends_ns);
+        result
+    }
+
+    /// Waits for the end of a transaction. The operating system wakes late, by about the time of a transaction: what one took too long, the
+    /// next ones are shorter.
+    fn pace(&self, ends_ns: u64) {
+        let clock = self.scene.clock();
+        let due_ns = ends_ns.saturating_sub(locked(&self.parts).late_ns);
+        clock.wait_until_ns(due_ns);
+        locked(&self.parts).late_ns = (clock.now_ns() - due_ns).min(MOST_LATE_NS);
+    }
+}
+
+impl Parts {
+    /// Whether somebody holds the data line on the controller's side of the switch.
+    pub(super) fn is_held(&self) -> bool {
+        self.holders().next().is_some()
+            || self
+                .schedule
+                .active()
+                .any(|what| matches!(what, What::Short { channel } if self.switch.mask() >> channel & 1 == 1))
+    }
+
+    /// Those who hold the data line until they get their clocks, and whom clocks reach.
+    fn holders(&self) -> impl Iterator<Item = usize> + use<> {
+        let reached = u16::from(self.switch.mask()) | 1 << CHANNELS;
+        let held_clocks = self.held_clocks;
+        (0..=CHANNELS).filter(move |part| reached >> part & 1 == 1 && held_clocks[*part] > 0)
+    }
+
+    /// A clock, outside any transaction.
+    pub(super) fn clock(&mut self) {
+        for part in self.holders() {
+            self.held_clocks[part] -= 1;
+        }
+    }
+
+    /// The switch's RESET: it closes its channels and lets go of the bus.
+    pub(super) fn reset(&mut self) {
+        self.switch.reset();
+        self.held_clocks[CHANNELS] = 0;
+    }
+
+    /// What goes wrong before the next transaction.
+    fn misbehave(&mut self, now_ns: u64) {
+        let happened = self.schedule.next_event(seconds(now_ns));
+        for what in happened {
+            match what {
+                What::StuckBus { channel } => {
+                    self.held_clocks[channel.map_or(CHANNELS, usize::from)] = HELD_CLOCKS;
+                }
+                What::SwitchBrownOut => self.switch.reset(),
+                What::BarometerBrownOut { channel } => {
+                    self.barometers[usize::from(channel)]
+                        .iter_mut()
+                        .for_each(Barometer::wake_up);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+impl ErrorType for Bus {
+    type Error = ErrorKind;
+}
+
+impl I2c for Bus {
+    fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+        self.0.transaction(address, operations)
+    }
+}
+
+impl fmt::Debug for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = locked(&self.parts);
+        f.debug_struct("Board")
+            .field("mask", &parts.switch.mask())
+            .field("barometers", &parts.barometers.iter().flatten().count())
+            .finish()
+    }
+}
+
+impl fmt::Debug for Bus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}

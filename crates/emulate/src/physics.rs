@@ -1,0 +1,56 @@
+//! What is felt where the robot presses.
+
+use twintac_rig::{TcpPose, Wrench};
+
+/// Barometers that a switch can have.
+pub const CHANNELS: usize = 8;
+
+/// What the sensor and the force sensor are exposed to at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensed {
+    /// Absolute pressure at each channel's barometer, kPa.
+    pub taxel_pressures_kpa: [f64; CHANNELS],
+    /// Temperature of the barometers, °C.
+    pub temperature_c: f64,
+    /// Force and torque on the force sensor, in its own frame.
+    pub wrench: Wrench,
+}
+
+/// What happens between the robot's tool and the sensor.
+pub trait Physics: Send {
+    /// What is felt with the tool at a pose of the robot's base frame, at a time of the lab's clock, s.
+    ///
+    /// It is asked in steps of time that are all the same ([`Scene::STEP_S`](crate::Scene::STEP_S)), from zero on and each once:
+    /// it may remember what was before. In real time it has to keep up with them: all devices wait meanwhile.
+    fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed;
+}
+
+impl Sensed {
+    /// Nothing touches: the same pressure everywhere, kPa, at a temperature, °C.
+    #[must_use]
+    pub fn untouched(pressure_kpa: f64, temperature_c: f64) -> Self {
+        Self {
+            taxel_pressures_kpa: [pressure_kpa; CHANNELS],
+            temperature_c,
+            wrench: Wrench::ZERO,
+        }
+    }
+
+    /// What lies between this and another, by a fraction from 0 to 1.
+    pub(crate) fn mix(&self, other: &Self, fraction: f64) -> Self {
+        let between = |one: f64, two: f64| one + fraction * (two - one);
+        Self {
+            taxel_pressures_kpa: std::array::from_fn(|channel| {
+                between(
+                    self.taxel_pressures_kpa[channel],
+                    other.taxel_pressures_kpa[channel],
+                )
+            }),
+            temperature_c: between(self.temperature_c, other.temperature_c),
+            wrench: Wrench {
+                force_n: self.wrench.force_n.lerp(other.wrench.force_n, fraction),
+                torque_n_mm: self.wrench.torque_n_mm.lerp(other.wrench.torque_n_mm, fraction),
+            },
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Where the robot's tool is and what is felt there, moment by moment.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use glam::DQuat;
+use twintac_rig::TcpPose;
+
+use crate::clock::{nanoseconds, seconds};
+use crate::robot::{Arm, ArmSettings};
+use crate::worker::locked;
+use crate::{LabClock, Physics, Sensed};
+
+/// Steps that are remembered, 2 s: barometers convert, and say what was when they did.
+const MOST_STEPS: usize = 2000;
+const STEP_NS: u64 = 1_000_000;
+
+/// What the bench is like at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Situation {
+    /// Where the robot's tool is.
+    pub tool: TcpPose,
+    /// What is felt.
+    pub sensed: Sensed,
+}
+
+/// The robot's arm and the physics around its tool; clones are of the same scene.
+///
+/// It goes on in equal steps, on a grid of times of its own, and is read between them linearly. So what a device reads does not depend on
+/// who else has read, or when.
+#[derive(Clone)]
+pub struct Scene {
+    clock: LabClock,
+    world: Arc<Mutex<World>>,
+}
+
+struct World {
+    arm: Arm,
+    physics: Box<dyn Physics>,
+    /// The latest steps; the last one has the number `n_steps`.
+    situations: VecDeque<Situation>,
+    n_steps: u64,
+}
+
+impl Scene {
+    /// Time between two steps, s.
+    pub const STEP_S: f64 = STEP_NS as f64 * 1e-9;
+
+    /// A scene whose arm is at rest at a pose. Its time is that of the clock, from zero.
+    #[must_use]
+    pub fn new(clock: LabClock, physics: impl Physics + 'static, tool: TcpPose, arm: ArmSettings) -> Self {
+        let mut world = World {
+            arm: Arm::new(tool, arm),
+            physics: Box::new(physics),
+            situations: VecDeque::with_capacity(MOST_STEPS),
+            n_steps: 0,
+        };
+        world.look();
+        let world = Arc::new(Mutex::new(world));
+        Self { clock, world }
+    }
+
+    /// The clock.
+    #[must_use]
+    pub fn clock(&self) -> &LabClock {
+        &self.clock
+    }
+
+    /// How it is now.
+    #[must_use]
+    pub fn now(&self) -> Situation {
+        self.at_ns(self.clock.now_ns())
+    }
+
+    /// How it was at a time of the clock, s; what is longer ago than two seconds is forgotten, and the oldest that is known given instead.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> Situation {
+        self.at_ns(nanoseconds(time_s))
+    }
+
+    pub(crate) fn at_ns(&self, time_ns: u64) -> Situation {
+        let mut world = locked(&self.world);
+        world.advance(time_ns.div_ceil(STEP_NS));
+        let from_end = |step: u64| (world.n_steps - step) as usize;
+        let newest = world.situations.len() - 1;
+        let (before, after) = (time_ns / STEP_NS, time_ns.div_ceil(STEP_NS));
+        let before = &world.situations[newest.saturating_sub(from_end(before))];
+        let after = &world.situations[newest.saturating_sub(from_end(after))];
+        before.mix(after, (time_ns % STEP_NS) as f64 / STEP_NS as f64)
+    }
+
+    /// Lets the arm be told something at a time: it shows from the next step on.
+    pub(crate) fn steer<T>(&self, time_ns: u64, tell: impl FnOnce(&mut Arm) -> T) -> T {
+        let mut world = locked(&self.world);
+        world.advance(time_ns.div_ceil(STEP_NS));
+        tell(&mut world.arm)
+    }
+}
+
+impl World {
+    fn advance(&mut self, step: u64) {
+        while self.n_steps < step {
+            self.n_steps += 1;
+            self.arm.advance(Scene::STEP_S);
+            self.look();
+        }
+    }
+
+    fn look(&mut self) {
+        if self.situations.len() == MOST_STEPS {
+            self.situations.pop_front();
+        }
+        let tool = self.arm.pose();
+        let sensed = self.physics.at(&tool, seconds(self.n_steps * STEP_NS));
+        self.situations.push_back(Situation { tool, sensed });
+    }
+}
+
+impl Situation {
+    fn mix(&self, other: &Self, fraction: f64) -> Self {
+        Self {
+            tool: mix_poses(&self.tool, &other.tool, fraction),
+            sensed: self.sensed.mix(&other.sensed, fraction),
+        }
+    }
+}
+
+/// What lies between two poses, by a fraction from 0 to 1, along the line and the shorter turn.
+pub(crate) fn mix_poses(one: &TcpPose, other: &TcpPose, fraction: f64) -> TcpPose {
+    let position_mm = one.position_mm.lerp(other.position_mm, fraction);
+    if one.roll_pitch_yaw_rad == other.roll_pitch_yaw_rad {
+        return TcpPose {
+            position_mm,
+            roll_pitch_yaw_rad: one.roll_pitch_yaw_rad, // bit for bit
+        };
+    }
+    let turn: DQuat = one.base_from_tool().slerp(other.base_from_tool(), fraction);
+    TcpPose::new(position_mm, turn)
+}
+
+impl fmt::Debug for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let world = locked(&self.world);
+        f.debug_struct("Scene")
+            .field("time_s", &seconds(world.n_steps * STEP_NS))
+            .field("arm", &world.arm)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,128 @@
+//! The faults of a wire, as time goes by.
+
+use crate::fault::{Fault, Moment, What, Wire};
+
+/// The faults of one wire, as its time and its events go by.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Schedule {
+    faults: Vec<(Fault, Stage)>,
+    count: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    Ahead,
+    /// Since a time, s, and an event.
+    Active(f64, u64),
+    Over,
+}
+
+impl Schedule {
+    /// Those of all faults that show on a wire.
+    pub(crate) fn new(faults: &[Fault], wire: Wire) -> Self {
+        let here = faults.iter().filter(|fault| fault.what.wire() == wire);
+        Self {
+            faults: here.map(|fault| (*fault, Stage::Ahead)).collect(),
+            count: 0,
+        }
+    }
+
+    /// The next event happens: what goes wrong once now.
+    pub(crate) fn next_event(&mut self, now_s: f64) -> Vec<What> {
+        let happened = self.look(now_s);
+        self.count += 1;
+        happened
+    }
+
+    /// What goes wrong once now, with the next event still ahead.
+    pub(crate) fn look(&mut self, now_s: f64) -> Vec<What> {
+        let mut happened = Vec::new();
+        for (fault, stage) in &mut self.faults {
+            let is_due = match fault.begins {
+                Moment::TimeS(time_s) => now_s >= time_s,
+                Moment::Count(count) => self.count >= count,
+            };
+            if *stage == Stage::Ahead && is_due {
+                // What begins at a time has lasted since then, however late somebody looks.
+                let since_s = match fault.begins {
+                    Moment::TimeS(time_s) => time_s,
+                    Moment::Count(_) => now_s,
+                };
+                *stage = Stage::Active(since_s, self.count);
+                if !fault.what.lasts() {
+                    *stage = Stage::Over;
+                    happened.push(fault.what);
+                }
+            }
+            if let Stage::Active(since_s, since) = *stage {
+                let is_over = match fault.lasts {
+                    None => false,
+                    Some(Moment::TimeS(time_s)) => now_s >= since_s + time_s,
+                    Some(Moment::Count(count)) => self.count >= since + count,
+                };
+                if is_over {
+                    *stage = Stage::Over;
+                }
+            }
+        }
+        happened
+    }
+
+    /// What goes wrong all the while, as of the last look.
+    pub(crate) fn active(&self) -> impl Iterator<Item = What> {
+        let active = self
+            .faults
+            .iter()
+            .filter(|(_, stage)| matches!(stage, Stage::Active(..)));
+        active.map(|(fault, _)| fault.what)
+    }
+
+    /// Whether one of those is this one.
+    pub(crate) fn has(&self, what: What) -> bool {
+        self.active().any(|active| active == what)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lost(begins: Moment, lasts: Option<Moment>) -> Fault {
+        let what = What::LostDatagrams;
+        Fault { what, begins, lasts }
+    }
+
+    #[test]
+    fn counts_and_times_begin_and_end_what_lasts() {
+        let active_at = |fault: Fault| -> Vec<u64> {
+            let mut schedule = Schedule::new(&[fault], Wire::Force);
+            let mut active = Vec::new();
+            for event in 0..10 {
+                assert_eq!(schedule.next_event(event as f64), []);
+                if schedule.has(What::LostDatagrams) {
+                    active.push(event);
+                }
+            }
+            active
+        };
+        let (time, count) = (Moment::TimeS, Moment::Count);
+        assert_eq!(active_at(lost(count(3), Some(count(2)))), [3, 4]);
+        assert_eq!(active_at(lost(time(2.5), Some(time(3.0)))), [3, 4, 5]);
+        assert_eq!(active_at(lost(count(7), Some(time(2.0)))), [7, 8]);
+        assert_eq!(active_at(lost(time(7.5), None)), [8, 9]);
+        assert_eq!(active_at(lost(count(3), Some(count(0)))), Vec::<u64>::new());
+    }
+
+    #[test]
+    fn what_happens_happens_once_and_on_its_own_wire() {
+        let fault = Fault {
+            what: What::SwitchBrownOut,
+            begins: Moment::Count(1),
+            lasts: None,
+        };
+        let mut schedule = Schedule::new(&[fault, lost(Moment::Count(0), None)], Wire::I2c);
+        let happened: Vec<usize> = (0..4).map(|_| schedule.next_event(0.0).len()).collect();
+        assert_eq!(happened, [0, 1, 0, 0]);
+        assert_eq!(schedule.active().count(), 0);
+    }
+}

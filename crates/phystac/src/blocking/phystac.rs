@@ -1,0 +1,100 @@
+//! The sensor: all barometers at once.
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::i2c::I2c;
+
+use super::{AtOnce, now};
+use crate::asynch;
+use crate::clock::Clock;
+use crate::error::Error;
+use crate::fault::Fault;
+use crate::frame::Frame;
+use crate::register::Oversampling;
+use crate::settings::Settings;
+
+/// `N` barometers behind a switch, read as frames.
+///
+/// A frame is triggered for all barometers with one write, so that its samples are of one moment; then each is asked, through its
+/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. A barometer that
+/// is still converting is never triggered: its next sample would be of an earlier moment than the frame says.
+///
+/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each
+/// channel before any broadcast.
+#[derive(Debug)]
+pub struct PhysTac<I2C, D, C, const N: usize>(asynch::PhysTac<AtOnce<I2C>, AtOnce<D>, C, N>);
+
+impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
+    /// The sensor on a bus. Nothing is sent yet.
+    pub const fn new(i2c: I2C, delay: D, clock: C, settings: Settings<N>) -> Self {
+        Self(asynch::PhysTac::new(AtOnce(i2c), AtOnce(delay), clock, settings))
+    }
+
+    /// Gives the bus, the delay and the clock back. Channels stay open unless [`stop`](Self::stop) closed them.
+    pub fn release(self) -> (I2C, D, C) {
+        let (AtOnce(i2c), AtOnce(delay), clock) = self.0.release();
+        (i2c, delay, clock)
+    }
+
+    /// Closes all channels, sees that the switch obeys, looks into each channel alone, and lets conversions under way end.
+    ///
+    /// The other operations do so by themselves when needed.
+    ///
+    /// # Errors
+    /// Any but those of a single barometer; [`Error::BusHung`] with the taxel, if opening its channel hangs the bus.
+    pub fn start(&mut self) -> Result<(), Error<I2C::Error>> {
+        now(self.0.start())
+    }
+
+    /// Triggers the next frame, unless one is under way. Right after [`frame`](Self::frame) the barometers convert while the caller computes.
+    ///
+    /// # Errors
+    /// [`Error::NotTriggered`], and those of [`start`](Self::start).
+    pub fn trigger(&mut self) -> Result<(), Error<I2C::Error>> {
+        now(self.0.trigger())
+    }
+
+    /// Reads the frame under way, and triggers one before if there is none.
+    ///
+    /// # Errors
+    /// What stops all taxels; those of [`trigger`](Self::trigger). The frame under way is lost.
+    pub fn frame(&mut self) -> Result<Frame<N>, Error<I2C::Error>> {
+        now(self.0.frame())
+    }
+
+    /// Sets the oversampling of each barometer, until it loses power. More samples take longer: let
+    /// [`set_conversion_us`](Self::set_conversion_us) follow.
+    ///
+    /// # Errors
+    /// What stops all taxels. A frame under way is lost.
+    pub fn set_oversampling(
+        &mut self,
+        oversampling: Oversampling,
+    ) -> Result<[Result<(), Fault>; N], Error<I2C::Error>> {
+        now(self.0.set_oversampling(oversampling))
+    }
+
+    /// Closes all channels. A frame under way is lost.
+    ///
+    /// # Errors
+    /// [`Error::SwitchMissing`], [`Error::Bus`], [`Error::BusHung`].
+    pub fn stop(&mut self) -> Result<(), Error<I2C::Error>> {
+        now(self.0.stop())
+    }
+
+    /// Lends the bus to its owner, to free it after [`Error::BusHung`]: by [`recovery`](crate::recovery), or a way of the bus's own.
+    ///
+    /// Which taxels are isolated is not forgotten.
+    pub fn recover<T>(&mut self, free: impl FnOnce(&mut I2C, &mut D) -> T) -> T {
+        self.0.recover(|i2c, delay| free(&mut i2c.0, &mut delay.0))
+    }
+
+    /// Gives isolated taxels another chance. A taxel is isolated when the bus hung twice running with its channel alone open.
+    pub const fn readmit(&mut self) {
+        self.0.readmit();
+    }
+
+    /// Changes [`Settings::conversion_us`], from the frame under way on.
+    pub const fn set_conversion_us(&mut self, conversion_us: u32) {
+        self.0.set_conversion_us(conversion_us);
+    }
+}

@@ -1,0 +1,40 @@
+//! What can be wrong with one taxel.
+
+use core::fmt;
+
+use embedded_hal::i2c::ErrorKind;
+
+/// Why a taxel has no value in a frame; the other taxels have theirs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Fault {
+    /// Its barometer does not acknowledge.
+    Missing,
+    /// Its conversion did not end in time. What its registers hold is of an earlier frame and was not read.
+    Stuck,
+    /// The bus failed with its channel open, and works again with it closed.
+    Bus(ErrorKind),
+    /// Its channel hung the bus and stays closed until [`PhysTac::readmit`](crate::PhysTac::readmit).
+    Isolated,
+    /// Its barometer does not keep the oversampling that it is given.
+    Refused,
+    /// The pressure is at an end of the range or beyond; found by [`Transfer`](crate::Transfer) and [`Health`](crate::Health).
+    Saturated,
+    /// The same value, bit for bit, for too many frames; found by [`Health`](crate::Health).
+    Frozen,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => f.write_str("the barometer does not acknowledge"),
+            Self::Stuck => f.write_str("the conversion does not end"),
+            Self::Bus(kind) => write!(f, "the bus fails on this channel: {kind}"),
+            Self::Isolated => f.write_str("the channel hung the bus and is kept closed"),
+            Self::Refused => f.write_str("the barometer does not keep its oversampling"),
+            Self::Saturated => f.write_str("the pressure is out of range"),
+            Self::Frozen => f.write_str("the value no longer changes"),
+        }
+    }
+}
+
+impl core::error::Error for Fault {}

@@ -1,0 +1,48 @@
+//! How the sensor is wired, and how long its barometers take.
+
+use crate::channels::{SwitchAddress, Wiring};
+
+/// How a [`PhysTac`](crate::PhysTac) is wired and timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings<const N: usize> {
+    /// The switch's address.
+    pub switch: SwitchAddress,
+    /// Which channel each taxel is on.
+    pub wiring: Wiring<N>,
+    /// How long to leave the bus alone after a trigger, µs. Default 6000, what public code of the CPS135B waits.
+    pub conversion_us: u32,
+    /// How long all taxels together may take beyond that. Default 56 waits of 250 µs: 20 ms in all, the family's longest conversion.
+    pub patience: Patience,
+}
+
+impl<const N: usize> Settings<N> {
+    /// The defaults, for a wiring.
+    #[must_use]
+    pub fn new(wiring: Wiring<N>) -> Self {
+        Self {
+            switch: SwitchAddress::default(),
+            wiring,
+            conversion_us: 6000,
+            patience: Patience {
+                interval_us: 250,
+                waits: 56,
+            },
+        }
+    }
+}
+
+/// Taxel `i` on channel `i` of a switch at 0x70.
+impl Default for Settings<8> {
+    fn default() -> Self {
+        Self::new(Wiring::default())
+    }
+}
+
+/// How often to ask again whether a conversion has ended: a bound that no broken clock can move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// Time between two questions, µs.
+    pub interval_us: u32,
+    /// How many such times to wait.
+    pub waits: u32,
+}

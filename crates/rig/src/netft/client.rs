@@ -1,0 +1,235 @@
+//! Streams records from a sensor.
+
+use std::io::ErrorKind;
+use std::net::{ToSocketAddrs, UdpSocket};
+use std::time::{Duration, Instant};
+
+use super::{Command, Configuration, Health, PORT, Record, Request, decode_records, page};
+use crate::{Device, RigError, Wrench};
+
+/// Requests are never acknowledged: one that shows no effect is sent again, this often at most.
+const MOST_TRIES: u32 = 10;
+const START_WITHIN: Duration = Duration::from_millis(200);
+const PAGE_WITHIN: Duration = Duration::from_secs(2);
+/// Time after which a bias shows in the records that arrive.
+const BIAS_SETTLES: Duration = Duration::from_millis(20);
+const BIAS_WITHIN: Duration = Duration::from_secs(1);
+/// Records that a bias is judged by.
+const BIAS_RECORDS: usize = 50;
+/// Largest datagram that UDP can carry.
+const LARGEST_DATAGRAM: usize = 65_536;
+
+/// What the mean of the records after a bias may read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BiasTolerance {
+    /// Along each axis, N.
+    pub force_n: f64,
+    /// About each axis, N mm.
+    pub torque_n_mm: f64,
+}
+
+/// A connection to a sensor. It streams to one client only, and is stopped when the client is dropped.
+#[derive(Debug)]
+pub struct Client {
+    socket: UdpSocket,
+    configuration: Configuration,
+    datagram: Vec<u8>,
+}
+
+impl Client {
+    /// Reads the configuration of the sensor at a host from its web server, and opens a socket to its usual port.
+    ///
+    /// # Errors
+    /// A sensor that cannot be reached within two seconds, a page without what is needed.
+    pub fn open(host: &str) -> Result<Self, RigError> {
+        Self::connect((host, PORT), page::fetch(host, PAGE_WITHIN)?)
+    }
+
+    /// Opens a socket to a sensor whose configuration is known.
+    ///
+    /// # Errors
+    /// An address that does not exist, a socket that cannot be opened.
+    pub fn connect(address: impl ToSocketAddrs, configuration: Configuration) -> Result<Self, RigError> {
+        let socket = UdpSocket::bind("0.0.0.0:0")
+            .and_then(|socket| socket.connect(address).map(|()| socket))
+            .map_err(|source| transport("opening a socket", source))?;
+        Ok(Self {
+            socket,
+            configuration,
+            datagram: vec![0; LARGEST_DATAGRAM],
+        })
+    }
+
+    /// Reads a sensor's configuration from its web server, `host` or `host:port`.
+    ///
+    /// # Errors
+    /// A sensor that cannot be reached within two seconds, a page without what is needed.
+    pub fn read_configuration(host: &str) -> Result<Configuration, RigError> {
+        page::fetch(host, PAGE_WITHIN)
+    }
+
+    /// The sensor's configuration.
+    #[must_use]
+    pub fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// Starts streaming, several records in a datagram if `buffered`. The first datagram is taken as the answer, and not given out.
+    ///
+    /// # Errors
+    /// No record after ten requests; an error in the first one's status.
+    pub fn start(&mut self, buffered: bool) -> Result<(), RigError> {
+        let command = if buffered {
+            Command::StartBuffered
+        } else {
+            Command::StartRealTime
+        };
+        for _ in 0..MOST_TRIES {
+            self.send(command)?;
+            if let Some(record) = self.receive(START_WITHIN)?.first() {
+                return trusted(record);
+            }
+        }
+        Err(RigError::Timeout {
+            device: Device::ForceSensor,
+            what: format!("{MOST_TRIES} requests to start"),
+            after: START_WITHIN * MOST_TRIES,
+        })
+    }
+
+    /// Counts the present load as zero, and makes sure on the records that the sensor does; it must be streaming. Returns what the mean
+    /// of the records then reads.
+    ///
+    /// # Errors
+    /// A mean beyond the tolerance after ten requests; silence; an error in a record's status.
+    pub fn bias(&mut self, tolerance: &BiasTolerance) -> Result<Wrench, RigError> {
+        let mut mean = Wrench::ZERO;
+        for _ in 0..MOST_TRIES {
+            self.send(Command::Bias)?;
+            mean = self.mean_after(BIAS_SETTLES)?;
+            let force_n = mean.force_n.abs().max_element();
+            let torque_n_mm = mean.torque_n_mm.abs().max_element();
+            if force_n <= tolerance.force_n && torque_n_mm <= tolerance.torque_n_mm {
+                return Ok(mean);
+            }
+        }
+        Err(RigError::ForceSensor {
+            problem: format!(
+                "after {MOST_TRIES} requests for a bias it reads {:.3} N and {:.3} N mm",
+                mean.force_n, mean.torque_n_mm
+            ),
+            hint: "let the load rest, or allow a larger tolerance",
+        })
+    }
+
+    /// Unlatches monitor conditions.
+    ///
+    /// # Errors
+    /// A socket that cannot be sent to.
+    pub fn reset_latch(&mut self) -> Result<(), RigError> {
+        self.send(Command::ResetLatch)
+    }
+
+    /// Stops streaming, and throws away what is still under way.
+    ///
+    /// # Errors
+    /// A sensor that streams on after ten requests.
+    pub fn stop(&mut self) -> Result<(), RigError> {
+        for _ in 0..MOST_TRIES {
+            self.send(Command::Stop)?;
+            let asked = Instant::now();
+            while asked.elapsed() < BIAS_SETTLES {
+                if self.receive(BIAS_SETTLES)?.is_empty() {
+                    return Ok(());
+                }
+            }
+        }
+        Err(RigError::ForceSensor {
+            problem: format!("it streams on after {MOST_TRIES} requests to stop"),
+            hint: "another client may have started it: the sensor serves one only",
+        })
+    }
+
+    /// The records of the next datagram; none if nothing arrives in time.
+    ///
+    /// # Errors
+    /// A datagram that holds no records, a socket that cannot be read from.
+    pub fn receive(&mut self, within: Duration) -> Result<Vec<Record>, RigError> {
+        self.socket
+            .set_read_timeout(Some(within.max(Duration::from_micros(1))))
+            .map_err(|source| transport("setting a time-out", source))?;
+        match self.socket.recv(&mut self.datagram) {
+            Ok(size) => Ok(decode_records(&self.datagram[..size])?.collect()),
+            Err(found) => match found.kind() {
+                ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(Vec::new()),
+                _ => Err(transport("receiving", found)),
+            },
+        }
+    }
+
+    fn send(&self, command: Command) -> Result<(), RigError> {
+        let request = Request { command, samples: 0 };
+        let sent = self.socket.send(&request.encode());
+        sent.map(|_| ())
+            .map_err(|source| transport("sending a request", source))
+    }
+
+    /// Mean of the records that arrive after a while.
+    fn mean_after(&mut self, settles: Duration) -> Result<Wrench, RigError> {
+        let asked = Instant::now();
+        let (mut sum, mut n_records) = (Wrench::ZERO, 0);
+        while n_records < BIAS_RECORDS {
+            let Some(left) = BIAS_WITHIN.checked_sub(asked.elapsed()) else {
+                return Err(RigError::Timeout {
+                    device: Device::ForceSensor,
+                    what: format!("a bias, with {BIAS_RECORDS} records"),
+                    after: BIAS_WITHIN,
+                });
+            };
+            let records = self.receive(left)?;
+            if asked.elapsed() < settles {
+                continue;
+            }
+            for record in &records {
+                trusted(record)?;
+                let wrench = self.configuration.wrench(record.counts);
+                sum.force_n += wrench.force_n;
+                sum.torque_n_mm += wrench.torque_n_mm;
+            }
+            n_records += records.len();
+        }
+        Ok(Wrench {
+            force_n: sum.force_n / n_records as f64,
+            torque_n_mm: sum.torque_n_mm / n_records as f64,
+        })
+    }
+}
+
+impl Drop for Client {
+    fn drop(&mut self) {
+        // Nothing can be done about a sensor that cannot be reached any more.
+        let _ = self.send(Command::Stop);
+    }
+}
+
+/// An error, unless the record's readings can be trusted.
+fn trusted(record: &Record) -> Result<(), RigError> {
+    match record.status.health() {
+        Health::Healthy | Health::Warning => Ok(()),
+        Health::Error => Err(RigError::ForceSensorStatus {
+            status: record.status,
+        }),
+    }
+}
+
+fn transport(what: &str, source: std::io::Error) -> RigError {
+    RigError::Transport {
+        device: Device::ForceSensor,
+        what: what.to_owned(),
+        source,
+    }
+}
+
+#[cfg(test)]
+#[path = "client_tests.rs"]
+mod tests;

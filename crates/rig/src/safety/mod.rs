@@ -1,0 +1,14 @@
+//! The safety supervisor: says in each servo period whether the next pose may go out.
+
+mod cause;
+mod limits;
+mod retreat;
+mod speed;
+mod supervisor;
+mod watchdog;
+
+pub use cause::Cause;
+pub use limits::{Limits, SensorLimits, Setup, Workspace};
+pub use retreat::Retreat;
+pub use supervisor::{Decision, Event, Start, Supervisor};
+pub use watchdog::StreamId;

@@ -1,0 +1,73 @@
+//! Readings of a sensor with analog gauges.
+
+use std::time::Duration;
+
+use super::{AnalogCalibration, WrenchSample, WrenchSource};
+use crate::{RigError, Stamp};
+
+/// Six gauge voltages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VoltageSample {
+    /// When they were measured.
+    pub stamp: Stamp,
+    /// The voltages, V.
+    pub volts: [f64; 6],
+    /// Samples lost between the one before and this one.
+    pub lost_before: u32,
+}
+
+/// A measuring card that reads six gauges: any function that waits for the next voltages, at most so long, as
+/// [`WrenchSource::next_sample`] does.
+#[derive(Clone, Debug)]
+pub struct Analog<F> {
+    read: F,
+    /// What the voltages mean.
+    pub calibration: AnalogCalibration,
+}
+
+impl<F: FnMut(Duration) -> Result<Option<VoltageSample>, RigError>> Analog<F> {
+    /// Readings of a card with a sensor's calibration.
+    pub fn new(read: F, calibration: AnalogCalibration) -> Self {
+        Self { read, calibration }
+    }
+}
+
+impl<F: FnMut(Duration) -> Result<Option<VoltageSample>, RigError>> WrenchSource for Analog<F> {
+    fn next_sample(&mut self, within: Duration) -> Result<Option<WrenchSample>, RigError> {
+        let Some(sample) = (self.read)(within)? else {
+            return Ok(None);
+        };
+        Ok(Some(WrenchSample {
+            stamp: sample.stamp,
+            wrench: self.calibration.wrench(sample.volts)?,
+            lost_before: sample.lost_before,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BenchClock, Wrench};
+
+    #[test]
+    fn voltages_keep_their_stamp_and_their_gap() {
+        let clock = BenchClock::start();
+        let calibration = AnalogCalibration {
+            matrix: std::array::from_fn(|row| std::array::from_fn(|column| f64::from(row == column))),
+            bias_v: [0.5; 6],
+            range_v: 10.0,
+        };
+        let mut samples = [[1.5; 6], [11.0; 6]].into_iter().map(|volts| VoltageSample {
+            stamp: clock.stamp(Some(3.0)),
+            volts,
+            lost_before: 2,
+        });
+        let mut source = Analog::new(|_| Ok(samples.next()), calibration);
+        let sample = source.next_sample(Duration::ZERO).unwrap().unwrap();
+        assert_eq!(sample.wrench, Wrench::from_axes([1.0; 6]));
+        assert_eq!((sample.stamp.source_s, sample.lost_before), (Some(3.0), 2));
+        assert!(source.next_sample(Duration::ZERO).is_err(), "saturated");
+        assert_eq!(source.next_sample(Duration::ZERO).unwrap(), None);
+    }
+}

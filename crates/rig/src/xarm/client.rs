@@ -1,0 +1,314 @@
+//! Sends commands to the robot and waits for their answers.
+
+use std::net::{TcpStream, ToSocketAddrs};
+use std::time::{Duration, Instant};
+
+use super::frame_reader::{FrameReader, transport};
+use super::servo::Servo;
+use super::{
+    Answer, Command, ControllerCode, Incoming, Mode, MotionState, MoveTo, PROTOCOL, Request, Response,
+    ResponseState, SetState, Wire, splitter,
+};
+use crate::{Device, RigError, TcpPose};
+
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+/// Motors take their time.
+const ENABLE_WITHIN: Duration = Duration::from_secs(5);
+const POLL: Duration = Duration::from_millis(20);
+/// How near a move must end, mm and radians.
+const ARRIVED_MM: f64 = 0.1;
+const ARRIVED_RAD: f64 = 0.01;
+/// Unanswered requests whose answers may still come.
+const MOST_ABANDONED: usize = 16;
+
+/// A connection to the robot's command socket.
+///
+/// [`Client::enable`], [`Client::move_to`] a first pose, [`Client::begin_servo`], then [`Client::servo`] in each period. After
+/// any error in servo mode the stream has ended: look at the error, and begin from `enable`.
+#[derive(Debug)]
+pub struct Client<W> {
+    reader: FrameReader<W>,
+    transaction: u16,
+    abandoned: Vec<u16>,
+    /// The byte that firmware from 1.10 on wants beside a mode.
+    detection: Option<u8>,
+    pub(super) servo: Option<Servo>,
+}
+
+impl Client<TcpStream> {
+    /// Connects by TCP, such as to `(host, PORT)`.
+    ///
+    /// # Errors
+    /// An address that does not exist, or does not answer within two seconds.
+    pub fn connect(address: impl ToSocketAddrs) -> Result<Self, RigError> {
+        let stream = connect(address)?;
+        stream
+            .set_nodelay(true)
+            .and_then(|()| stream.set_write_timeout(Some(ANSWER_WITHIN)))
+            .map_err(|found| transport("setting a time-out", found))?;
+        Ok(Self::new(stream))
+    }
+}
+
+/// Connects to the first address that answers.
+pub(super) fn connect(address: impl ToSocketAddrs) -> Result<TcpStream, RigError> {
+    let mut last = std::io::ErrorKind::NotFound.into();
+    for address in address
+        .to_socket_addrs()
+        .map_err(|found| transport("looking up the address", found))?
+    {
+        match TcpStream::connect_timeout(&address, ANSWER_WITHIN) {
+            Ok(stream) => return Ok(stream),
+            Err(found) => last = found,
+        }
+    }
+    Err(transport("connecting", last))
+}
+
+impl<W: Wire> Client<W> {
+    /// A client on a connection that is open.
+    #[must_use]
+    pub fn new(wire: W) -> Self {
+        Self {
+            reader: FrameReader::new(wire, splitter()),
+            transaction: 0,
+            abandoned: Vec::new(),
+            detection: Some(0),
+            servo: None,
+        }
+    }
+
+    /// Cleans error and warning, switches the motors on, and makes the robot ready for moves to positions.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`]: an error that cannot be cleaned is named.
+    pub fn enable(&mut self) -> Result<(), RigError> {
+        let version = self.version()?;
+        self.detection = wants_detection(&version).then_some(0);
+        self.clean_errors()?;
+        self.call(Command::MotionEnable {
+            axis: Command::ALL_AXES,
+            on: true,
+        })?;
+        self.set_mode(Mode::Position)?;
+        self.set_state(SetState::Motion)
+    }
+
+    /// Cleans error and warning.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn clean_errors(&mut self) -> Result<(), RigError> {
+        self.call(Command::CleanError)?;
+        self.call(Command::CleanWarning).map(|_| ())
+    }
+
+    /// Changes the mode; the state has to be set to motion after it.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn set_mode(&mut self, mode: Mode) -> Result<(), RigError> {
+        self.servo = None;
+        let detection = self.detection;
+        self.call(Command::SetMode { mode, detection }).map(|_| ())
+    }
+
+    /// Changes the state.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn set_state(&mut self, state: SetState) -> Result<(), RigError> {
+        self.call(Command::SetState(state)).map(|_| ())
+    }
+
+    /// Stops the robot now. No command moves it before it is enabled anew.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`]; a robot that does not confirm may be moving.
+    pub fn stop(&mut self) -> Result<(), RigError> {
+        self.servo = None;
+        self.set_state(SetState::Stop)
+    }
+
+    /// The firmware's version.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn version(&mut self) -> Result<String, RigError> {
+        self.ask(Command::GetVersion, |answer| match answer {
+            Answer::Version(version) => Some(version),
+            _ => None,
+        })
+    }
+
+    /// What the robot is doing.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn state(&mut self) -> Result<MotionState, RigError> {
+        self.ask(Command::GetState, |answer| match answer {
+            Answer::State(state) => Some(state),
+            _ => None,
+        })
+    }
+
+    /// The error or, without one, the warning that the controller has.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn errors(&mut self) -> Result<Option<ControllerCode>, RigError> {
+        self.ask(Command::GetErrors, |answer| match answer {
+            Answer::Errors { error, warning } => Some(ControllerCode::of(error, warning)),
+            _ => None,
+        })
+    }
+
+    /// Where the tool is.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`].
+    pub fn pose(&mut self) -> Result<TcpPose, RigError> {
+        self.ask(Command::GetPose, |answer| match answer {
+            Answer::Pose(pose) => Some(pose),
+            _ => None,
+        })
+    }
+
+    /// Moves along a line and waits until the robot is there; it must have been enabled. Stops the robot if it is not there in time.
+    ///
+    /// # Errors
+    /// Those of [`Client::call`]; an error or a warning on the way, by its name; a robot that was stopped; lateness.
+    pub fn move_to(&mut self, to: &MoveTo, within: Duration) -> Result<(), RigError> {
+        let name = "move";
+        let begun = Instant::now();
+        let time_s = 0.0;
+        self.call(Command::MoveLine { to: *to, time_s })?;
+        while begun.elapsed() < within {
+            if let Some(code) = self.errors()? {
+                return Err(RigError::Controller { code, command: name });
+            }
+            let state = self.state()?;
+            if !matches!(state, MotionState::Ready | MotionState::Moving) {
+                return Err(RigError::Robot {
+                    command: name,
+                    problem: format!("the robot is {state}"),
+                    hint: "see why it was stopped, then enable it anew",
+                });
+            }
+            let pose = self.pose()?;
+            if state == MotionState::Ready
+                && pose.distance_mm(&to.pose) <= ARRIVED_MM
+                && pose.turn_rad(&to.pose) <= ARRIVED_RAD
+            {
+                return Ok(());
+            }
+            std::thread::sleep(POLL);
+        }
+        self.stop()?;
+        Err(RigError::Robot {
+            command: name,
+            problem: format!("the robot is not there within {} s", within.as_secs_f64()),
+            hint: "see what holds it, or give it more time",
+        })
+    }
+
+    /// Sends any command and waits for its answer, two seconds, or five for switching motors on. Answers to requests that were
+    /// given up are passed over, as is what the robot says unasked.
+    ///
+    /// # Errors
+    /// A connection that fails, silence, a response to something else, and state bits that the command does not put up with: an
+    /// error or a warning of the controller by its name, a robot that is not ready, a result that is not valid. Questions,
+    /// cleaning and stopping put up with all but the last.
+    pub fn call(&mut self, command: Command) -> Result<Answer, RigError> {
+        self.transaction = self.transaction.checked_add(1).unwrap_or(1);
+        let request = Request {
+            transaction: self.transaction,
+            protocol: PROTOCOL,
+            command,
+        };
+        let wire = &mut self.reader.wire;
+        wire.write_all(&request.encode())
+            .and_then(|()| wire.flush())
+            .map_err(|found| transport("sending", found))?;
+        let response = self.response_to(&request)?;
+        let answer = response.answer(&request)?;
+        self.check(response.state, &request.command)?;
+        Ok(answer)
+    }
+
+    fn ask<T>(&mut self, command: Command, pick: impl FnOnce(Answer) -> Option<T>) -> Result<T, RigError> {
+        let name = command.name();
+        // A decoded answer fits its command.
+        pick(self.call(command)?)
+            .ok_or_else(|| RigError::malformed(Device::Robot, "answer", name, "another answer"))
+    }
+
+    fn response_to(&mut self, request: &Request) -> Result<Response, RigError> {
+        let within = match request.command {
+            Command::MotionEnable { .. } => ENABLE_WITHIN,
+            _ => ANSWER_WITHIN,
+        };
+        let deadline = Instant::now() + within;
+        while let Some(frame) = self.reader.next(deadline)? {
+            let Incoming::Response(response) = Incoming::decode(&frame)? else {
+                continue;
+            };
+            match self.abandoned.iter().position(|old| *old == response.transaction) {
+                Some(index) => drop(self.abandoned.remove(index)),
+                None => return Ok(response),
+            }
+        }
+        if self.abandoned.len() == MOST_ABANDONED {
+            self.abandoned.remove(0);
+        }
+        self.abandoned.push(request.transaction);
+        Err(RigError::Timeout {
+            device: Device::Robot,
+            what: request.command.name().to_owned(),
+            after: within,
+        })
+    }
+
+    fn check(&mut self, state: ResponseState, command: &Command) -> Result<(), RigError> {
+        let bad = state.without(command.tolerates());
+        let command = command.name();
+        if bad.has(ResponseState::ERROR | ResponseState::WARNING)
+            && let Some(code) = self.errors()?
+        {
+            return Err(RigError::Controller { code, command });
+        }
+        let (problem, hint) = if bad.has(ResponseState::INVALID) {
+            (
+                "the robot calls the result invalid",
+                "check the command against its firmware",
+            )
+        } else if bad.has(ResponseState::NOT_READY) {
+            ("the robot is not ready to move", "enable it anew")
+        } else if bad.has(ResponseState::ERROR | ResponseState::WARNING) {
+            ("the robot reports an error without a code", "enable it anew")
+        } else {
+            return Ok(());
+        };
+        Err(RigError::Robot {
+            command,
+            problem: problem.to_owned(),
+            hint,
+        })
+    }
+}
+
+/// Whether firmware wants to be told, with a mode, how to detect collisions: from 1.10 on, or when it does not say what it is.
+fn wants_detection(version: &str) -> bool {
+    version
+        .split(['v', 'V'])
+        .skip(1)
+        .find_map(|text| {
+            let mut numbers = text.split(|c: char| !c.is_ascii_digit()).map(str::parse::<u32>);
+            Some((numbers.next()?.ok()?, numbers.next()?.ok()?))
+        })
+        .is_none_or(|version| version >= (1, 10))
+}
+
+#[cfg(test)]
+#[path = "client_tests.rs"]
+mod tests;

@@ -1,0 +1,409 @@
+//! The client against a controller on the loopback, and on a pair of buffers.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpListener};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+
+use glam::DVec3;
+
+use super::*;
+use crate::xarm::{FEEDBACK, Pair, Report, ReportPort, ReportReader};
+
+/// Where the arm is and how it answers.
+#[derive(Clone, Debug)]
+struct Arm {
+    pose: TcpPose,
+    mode: Mode,
+    state: MotionState,
+    error: u8,
+    version: &'static str,
+    /// The command that is answered wrongly, and how.
+    fault: Option<(u8, Fault)>,
+    heard: Vec<Command>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Fault {
+    Error(u8),
+    State(u8),
+    Transaction,
+    Silence,
+    Truncated,
+    Ignored,
+}
+
+impl Arm {
+    fn new() -> Self {
+        Self {
+            pose: at(300.0),
+            mode: Mode::Position,
+            state: MotionState::Stopped,
+            error: 0,
+            version: "xarm6,v2.3.0",
+            fault: None,
+            heard: Vec::new(),
+        }
+    }
+
+    fn respond(&mut self, request: &Request) -> Option<Vec<u8>> {
+        self.heard.push(request.command.clone());
+        let fault = self
+            .fault
+            .filter(|(function, _)| *function == request.command.function())
+            .map(|(_, fault)| fault);
+        if let Some(Fault::Error(code)) = fault {
+            self.error = code;
+        }
+        let is_ignored = matches!(fault, Some(Fault::Ignored));
+        let answer = match &request.command {
+            _ if is_ignored => Answer::Done,
+            Command::GetVersion => Answer::Version(self.version.into()),
+            Command::GetState => Answer::State(self.state),
+            Command::GetErrors => Answer::Errors {
+                error: self.error,
+                warning: 0,
+            },
+            Command::GetPose => Answer::Pose(self.pose),
+            command => {
+                match command {
+                    Command::CleanError if self.error != 1 => self.error = 0,
+                    Command::SetMode { mode, .. } => self.mode = *mode,
+                    Command::SetState(SetState::Motion) => self.state = MotionState::Ready,
+                    Command::SetState(SetState::Stop) => self.state = MotionState::Stopped,
+                    Command::MoveLine { to, .. } | Command::ServoCartesian { to, .. } => self.pose = to.pose,
+                    _ => {}
+                }
+                Answer::Done
+            }
+        };
+        let mut state = ResponseState::default();
+        if self.error != 0 {
+            state = state | ResponseState::ERROR;
+        }
+        if self.state == MotionState::Stopped {
+            state = state | ResponseState::NOT_READY;
+        }
+        let mut response = Response::to(request, state, &answer);
+        match fault {
+            Some(Fault::State(bits)) => response.state = ResponseState(bits),
+            Some(Fault::Transaction) => response.transaction = response.transaction.wrapping_add(7),
+            Some(Fault::Truncated) => response.payload.clear(),
+            Some(Fault::Silence) => return None,
+            Some(Fault::Error(_) | Fault::Ignored) | None => {}
+        }
+        Some(response.encode())
+    }
+}
+
+fn at(height_mm: f64) -> TcpPose {
+    TcpPose {
+        position_mm: DVec3::new(200.0, 0.0, height_mm),
+        roll_pitch_yaw_rad: DVec3::new(3.0, 0.0, 0.0),
+    }
+}
+
+fn to(pose: TcpPose) -> MoveTo {
+    MoveTo {
+        pose,
+        speed_mm_per_s: 50.0,
+        acceleration_mm_per_s2: 500.0,
+    }
+}
+
+const SOON: Duration = Duration::from_secs(1);
+
+/// Serves one connection; answers come in two pieces, each after a frame of feedback.
+fn controller(arm: Arm) -> (SocketAddr, Arc<Mutex<Arm>>, JoinHandle<()>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    let arm = Arc::new(Mutex::new(arm));
+    let shared = Arc::clone(&arm);
+    let server = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        stream.set_nodelay(true).unwrap();
+        let mut splitter = splitter();
+        let mut bytes = [0; 256];
+        while let Ok(size @ 1..) = stream.read(&mut bytes) {
+            let mut chunk = &bytes[..size];
+            while let Some(frame) = splitter.take(&mut chunk).unwrap() {
+                let request = Request::decode(&frame).unwrap();
+                let Some(response) = shared.lock().unwrap().respond(&request) else {
+                    continue;
+                };
+                stream.write_all(&[0, 0, 0, 2, 0, 3, FEEDBACK, 1, 2]).unwrap();
+                let (front, rest) = response.split_at(5);
+                stream.write_all(front).unwrap();
+                stream.write_all(rest).unwrap();
+            }
+        }
+    });
+    (address, arm, server)
+}
+
+#[test]
+fn a_session_from_enabling_to_stopping() {
+    let (address, arm, server) = controller(Arm {
+        error: 22,
+        ..Arm::new()
+    });
+    let mut client = Client::connect(address).unwrap();
+    client.enable().unwrap();
+    client.move_to(&to(at(250.0)), SOON).unwrap();
+    let start = client.begin_servo().unwrap();
+    assert_eq!(start, at(250.0));
+    let begun = Instant::now();
+    for step in 1..=50 {
+        client.servo(&at(250.0 - 0.2 * f64::from(step))).unwrap();
+    }
+    let rate_hz = 50.0 / begun.elapsed().as_secs_f64();
+    assert!(rate_hz <= 250.0, "{rate_hz} Hz");
+    assert!(client.pose().unwrap().distance_mm(&at(240.0)) < 1e-4);
+    client.stop().unwrap();
+    assert!(client.servo(&at(240.0)).is_err(), "the stream has ended");
+    assert_eq!(client.state().unwrap(), MotionState::Stopped);
+    drop(client);
+    server.join().unwrap();
+    let functions: Vec<u8> = arm.lock().unwrap().heard.iter().map(Command::function).collect();
+    // Version, clean twice, enable, mode, state; the move, with errors, state and pose; mode, state, state, pose; servo; pose; stop; state.
+    assert_eq!(functions[..10], [1, 16, 17, 11, 19, 12, 21, 15, 13, 41]);
+    assert_eq!(functions[10..15], [19, 12, 13, 41, 30]);
+    assert_eq!(functions[63..], [30, 41, 12, 13]);
+}
+
+#[test]
+fn errors_have_names_and_end_the_stream() {
+    for (function, fault, words) in [
+        (
+            30,
+            Fault::Error(31),
+            "robot: error 31 (collision: a motor draws too much current; ",
+        ),
+        (
+            30,
+            Fault::State(0x10),
+            "robot: servo: the robot is not ready to move; enable it anew",
+        ),
+        (
+            30,
+            Fault::State(0x08),
+            "robot: servo: the robot calls the result invalid",
+        ),
+        (
+            30,
+            Fault::State(0x20),
+            "robot: servo: the robot reports an error without a code",
+        ),
+        (30, Fault::Transaction, "robot: transaction: expected "),
+        (
+            41,
+            Fault::Truncated,
+            "robot: payload: expected the answer to get pose, found 0 bytes",
+        ),
+        (
+            21,
+            Fault::Error(35),
+            "robot: error 35 (outside the safety boundary; ",
+        ),
+        (11, Fault::Error(1), "robot: error 1 (emergency stop; "),
+        (
+            13,
+            Fault::State(0x08),
+            "robot: get state: the robot calls the result invalid",
+        ),
+    ] {
+        let (address, _, server) = controller(Arm {
+            fault: Some((function, fault)),
+            ..Arm::new()
+        });
+        let mut client = Client::connect(address).unwrap();
+        let mut session = || {
+            client.enable()?;
+            client.move_to(&to(at(250.0)), SOON)?;
+            client.begin_servo()?;
+            client.servo(&at(249.9))
+        };
+        let error = session().unwrap_err().to_string();
+        assert!(error.starts_with(words), "{error}");
+        let again = client.servo(&at(249.8)).unwrap_err().to_string();
+        assert!(again.contains("no stream of poses was begun"), "{again}");
+        drop(client);
+        server.join().unwrap();
+    }
+}
+
+#[test]
+fn an_emergency_stop_cannot_be_cleaned() {
+    let (address, _, server) = controller(Arm {
+        error: 1,
+        ..Arm::new()
+    });
+    let mut client = Client::connect(address).unwrap();
+    let error = client.enable().unwrap_err().to_string();
+    assert!(
+        error.contains("emergency stop") && error.ends_with("after enable motion"),
+        "{error}"
+    );
+    drop(client);
+    server.join().unwrap();
+}
+
+#[test]
+fn steps_are_limited() {
+    for (height_mm, is_sent) in [(295.0, true), (289.9, false), (f64::NAN, false)] {
+        let (address, arm, server) = controller(Arm::new());
+        let mut client = Client::connect(address).unwrap();
+        client.enable().unwrap();
+        client.begin_servo().unwrap();
+        std::thread::sleep(Duration::from_millis(15));
+        assert_eq!(client.servo(&at(height_mm)).is_ok(), is_sent, "{height_mm}");
+        if is_sent {
+            assert!(client.servo(&at(height_mm + 10.1)).is_err());
+        }
+        drop(client);
+        server.join().unwrap();
+        let sent = arm
+            .lock()
+            .unwrap()
+            .heard
+            .iter()
+            .filter(|command| command.function() == 30)
+            .count();
+        assert_eq!(sent, usize::from(is_sent));
+    }
+}
+
+#[test]
+fn silence_is_noticed_and_late_answers_are_passed_over() {
+    let (address, arm, server) = controller(Arm {
+        fault: Some((13, Fault::Silence)),
+        ..Arm::new()
+    });
+    let mut client = Client::connect(address).unwrap();
+    let asked = Instant::now();
+    let error = client.state().unwrap_err().to_string();
+    assert_eq!(error, "robot: no answer to get state within 2 s");
+    assert!((1.9..10.0).contains(&asked.elapsed().as_secs_f64()));
+    arm.lock().unwrap().fault = None;
+    assert_eq!(client.state().unwrap(), MotionState::Stopped);
+    drop(client);
+    server.join().unwrap();
+
+    let command = Command::GetState;
+    let late = |transaction| {
+        let request = Request {
+            transaction,
+            protocol: PROTOCOL,
+            command: command.clone(),
+        };
+        let answer = Answer::State(MotionState::from_code(transaction as u8));
+        Response::to(&request, ResponseState::default(), &answer).encode()
+    };
+    let mut client = Client::new(Pair {
+        reader: std::io::Cursor::new([late(1), late(2)].concat()),
+        writer: Vec::new(),
+    });
+    client.transaction = 1;
+    client.abandoned.push(1);
+    assert_eq!(client.state().unwrap(), MotionState::Ready, "the second one's");
+    assert_eq!(client.reader.wire.writer, [0, 2, 0, 2, 0, 1, 13]);
+    assert!(
+        client.state().unwrap_err().to_string().contains("receiving"),
+        "the connection has ended"
+    );
+}
+
+#[test]
+fn transactions_wrap_to_one() {
+    let mut client = Client::new(Pair {
+        reader: std::io::empty(),
+        writer: Vec::new(),
+    });
+    client.transaction = u16::MAX - 1;
+    for _ in 0..2 {
+        assert!(client.state().is_err());
+    }
+    let sent: Vec<&[u8]> = client.reader.wire.writer.chunks(7).collect();
+    assert_eq!(sent, [[0xff, 0xff, 0, 2, 0, 1, 13], [0, 1, 0, 2, 0, 1, 13]]);
+}
+
+#[test]
+fn old_firmware_is_not_told_how_to_detect_collisions() {
+    for (version, wants) in [
+        ("xarm6,v2.3.0", true),
+        ("v1.10.2", true),
+        ("v1.9.0", false),
+        ("XARM6,XS1203,V1.6.1", false),
+        ("", true),
+        ("vx", true),
+    ] {
+        assert_eq!(wants_detection(version), wants, "{version}");
+    }
+    let (address, arm, server) = controller(Arm {
+        version: "v1.8.4",
+        ..Arm::new()
+    });
+    let mut client = Client::connect(address).unwrap();
+    client.enable().unwrap();
+    drop(client);
+    server.join().unwrap();
+    let mode = Command::SetMode {
+        mode: Mode::Position,
+        detection: None,
+    };
+    assert!(arm.lock().unwrap().heard.contains(&mode));
+}
+
+#[test]
+fn a_move_that_does_not_arrive_is_stopped() {
+    let (address, arm, server) = controller(Arm {
+        fault: Some((21, Fault::Ignored)),
+        ..Arm::new()
+    });
+    let mut client = Client::connect(address).unwrap();
+    client.enable().unwrap();
+    let error = client
+        .move_to(&to(at(250.0)), Duration::from_millis(50))
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "robot: move: the robot is not there within 0.05 s; see what holds it, or give it more time"
+    );
+    assert_eq!(client.state().unwrap(), MotionState::Stopped);
+    assert_eq!(arm.lock().unwrap().pose, at(300.0));
+    drop(client);
+    server.join().unwrap();
+}
+
+#[test]
+fn reports_are_read_from_a_stream() {
+    let report = |height_mm| Report {
+        state: MotionState::Ready,
+        mode: 1,
+        command_count: 0,
+        joints_rad: [0.0; 7],
+        pose: at(height_mm),
+        joint_torques: [0.0; 7],
+        status: None,
+        wrench: None,
+        version: None,
+    };
+    let port = ReportPort::Development;
+    let stream: Vec<u8> = [300.0, 299.0]
+        .iter()
+        .flat_map(|height_mm| report(*height_mm).encode(port))
+        .collect();
+    let mut reader = ReportReader::new(
+        Pair {
+            reader: std::io::Cursor::new(stream),
+            writer: std::io::sink(),
+        },
+        port,
+    );
+    for height_mm in [300.0, 299.0] {
+        let found = reader.next_report(SOON).unwrap().unwrap();
+        assert_eq!(found.pose, at(height_mm));
+    }
+    assert!(reader.next_report(SOON).is_err(), "the stream has ended");
+}

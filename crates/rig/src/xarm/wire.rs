@@ -1,0 +1,53 @@
+//! What carries commands and answers.
+
+use std::io::{self, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+/// A connection in both directions.
+pub trait Wire: Read + Write {
+    /// Lets the next reads wait no longer than this; they then fail with [`io::ErrorKind::TimedOut`] or
+    /// [`io::ErrorKind::WouldBlock`].
+    ///
+    /// # Errors
+    /// What the operating system says.
+    fn limit_reads(&mut self, to: Duration) -> io::Result<()>;
+}
+
+impl Wire for TcpStream {
+    fn limit_reads(&mut self, to: Duration) -> io::Result<()> {
+        // Zero would mean to wait for ever.
+        self.set_read_timeout(Some(to.max(Duration::from_micros(1))))
+    }
+}
+
+/// A connection of two halves, such as pipes or buffers. Its reads wait as long as its reader does.
+#[derive(Clone, Debug)]
+pub struct Pair<R, W> {
+    /// From the robot.
+    pub reader: R,
+    /// To the robot.
+    pub writer: W,
+}
+
+impl<R: Read, W> Read for Pair<R, W> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.reader.read(bytes)
+    }
+}
+
+impl<R, W: Write> Write for Pair<R, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+impl<R: Read, W: Write> Wire for Pair<R, W> {
+    fn limit_reads(&mut self, _: Duration) -> io::Result<()> {
+        Ok(())
+    }
+}
