@@ -55,7 +55,7 @@ fn every_number_is_aligned_to_its_size_counted_from_behind_the_encapsulation() {
 #[test]
 fn an_empty_sequence_has_no_padding_and_an_empty_string_its_zero() {
     let empty = encoded(|e| {
-        e.sequence(0..0_u64, Encoder::u64);
+        e.sequence(std::iter::empty(), Encoder::u64);
         e.u32(5);
     });
     assert_eq!(empty, [0, 1, 0, 0, 0, 0, 0, 0, 5, 0, 0, 0]);

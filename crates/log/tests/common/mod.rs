@@ -12,9 +12,9 @@ use twintac_log::{
 use twintac_recording::{Control, Provenance};
 use twintac_shape::Pose;
 
-pub const NS_PER_S: u64 = 1_000_000_000;
+pub(crate) const NS_PER_S: u64 = 1_000_000_000;
 
-pub fn description(taxels: usize) -> Description {
+pub(crate) fn description(taxels: usize) -> Description {
     Description {
         sensor: "phystac".to_owned(),
         sensor_toml: "name = \"phystac\"\n# \"quoted\" µ\n".to_owned(),
@@ -41,7 +41,7 @@ pub fn description(taxels: usize) -> Description {
     }
 }
 
-pub fn taxel(counts: i32) -> Taxel {
+pub(crate) fn taxel(counts: i32) -> Taxel {
     Taxel {
         state: TaxelState::Good,
         read_us: 7,
@@ -51,7 +51,7 @@ pub fn taxel(counts: i32) -> Taxel {
     }
 }
 
-pub fn frame(time_ns: u64, taxels: usize) -> Message {
+pub(crate) fn frame(time_ns: u64, taxels: usize) -> Message {
     let step = (time_ns / 1_000_000) as i32;
     let counts = |taxel: usize| 3_242_400 + step % 1000 + 10 * taxel as i32;
     let mut taxels: Vec<Taxel> = (0..taxels).map(|index| taxel(counts(index))).collect();
@@ -68,7 +68,7 @@ pub fn frame(time_ns: u64, taxels: usize) -> Message {
     }
 }
 
-pub fn wrench(time_ns: u64, force_n: f64) -> Message {
+pub(crate) fn wrench(time_ns: u64, force_n: f64) -> Message {
     Message {
         bench_ns: time_ns,
         body: Body::Wrench(WrenchReading {
@@ -83,7 +83,7 @@ pub fn wrench(time_ns: u64, force_n: f64) -> Message {
 }
 
 /// The tip at a height over the gel's frame, over its origin.
-pub fn pose(time_ns: u64, height_mm: f64) -> Message {
+pub(crate) fn pose(time_ns: u64, height_mm: f64) -> Message {
     Message {
         bench_ns: time_ns,
         body: Body::Pose(PoseReading {
@@ -94,14 +94,14 @@ pub fn pose(time_ns: u64, height_mm: f64) -> Message {
     }
 }
 
-pub fn event(time_ns: u64, event: Event) -> Message {
+pub(crate) fn event(time_ns: u64, event: Event) -> Message {
     Message {
         bench_ns: time_ns,
         body: Body::Event(event),
     }
 }
 
-pub fn begun(name: &str) -> Event {
+pub(crate) fn begun(name: &str) -> Event {
     Event::PressBegun {
         name: name.to_owned(),
         indenter: "sphere".to_owned(),
@@ -109,14 +109,14 @@ pub fn begun(name: &str) -> Event {
     }
 }
 
-pub fn ended(name: &str) -> Event {
+pub(crate) fn ended(name: &str) -> Event {
     Event::PressEnded {
         name: name.to_owned(),
     }
 }
 
 /// Streams at their rates, Hz, in order of time.
-pub fn bench(seconds: u64, taxels: usize, [tactile_hz, wrench_hz, pose_hz]: [u64; 3]) -> Vec<Message> {
+pub(crate) fn bench(seconds: u64, taxels: usize, [tactile_hz, wrench_hz, pose_hz]: [u64; 3]) -> Vec<Message> {
     let times = |hz: u64, at: u64| (0..seconds * hz).map(move |step| step * NS_PER_S / hz + at);
     let mut messages: Vec<Message> = times(tactile_hz, 3)
         .map(|time_ns| frame(time_ns, taxels))
@@ -133,7 +133,7 @@ pub fn bench(seconds: u64, taxels: usize, [tactile_hz, wrench_hz, pose_hz]: [u64
 }
 
 /// A whole log in memory.
-pub fn log(description: &Description, messages: &[Message]) -> Vec<u8> {
+pub(crate) fn log(description: &Description, messages: &[Message]) -> Vec<u8> {
     let mut writer = LogWriter::new(Vec::new(), description).unwrap();
     for message in messages {
         writer.write(message).unwrap();
@@ -141,6 +141,6 @@ pub fn log(description: &Description, messages: &[Message]) -> Vec<u8> {
     writer.finish().unwrap()
 }
 
-pub fn reader(bytes: &[u8]) -> LogReader<&[u8]> {
+pub(crate) fn reader(bytes: &[u8]) -> LogReader<&[u8]> {
     LogReader::new(bytes, "test.mcap").unwrap()
 }
