@@ -45,8 +45,8 @@ pub struct LogFile {
     file: File,
     path: PathBuf,
     partial: PathBuf,
-    /// Whether every chunk survives a loss of power, or only the whole.
-    syncs: bool,
+    /// Whether it can be made again: then only the whole needs to survive a loss of power, and half of it is worth nothing.
+    is_remade: bool,
 }
 
 impl LogFile {
@@ -73,7 +73,7 @@ impl LogFile {
             file,
             path,
             partial,
-            syncs: true,
+            is_remade: false,
         })
     }
 
@@ -88,7 +88,7 @@ impl LogFile {
             file: File::create(&partial).map_err(|source| LogError::write(&partial, source))?,
             path: path.to_owned(),
             partial,
-            syncs: false,
+            is_remade: true,
         })
     }
 }
@@ -105,7 +105,7 @@ impl Write for LogFile {
 
 impl Sink for LogFile {
     fn sync(&mut self) -> io::Result<()> {
-        if self.syncs {
+        if !self.is_remade {
             self.file.sync_data()?;
         }
         Ok(())
@@ -120,6 +120,15 @@ impl Sink for LogFile {
 
     fn name(&self) -> String {
         self.partial.display().to_string()
+    }
+}
+
+/// What stayed partial is kept, unless it can be made again.
+impl Drop for LogFile {
+    fn drop(&mut self) {
+        if self.is_remade {
+            let _ = std::fs::remove_file(&self.partial); // has its own name if it is whole
+        }
     }
 }
 

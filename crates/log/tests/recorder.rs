@@ -13,9 +13,11 @@ use std::time::{Duration, Instant};
 use common::{begun, bench, description, event, reader, wrench};
 use twintac_log::{Body, Event, LogError, LogReader, Message, Recorder, Sink, Stream, recover};
 
+type Bytes = Arc<Mutex<Vec<u8>>>;
+
 /// A disk that the test looks at, and that waits for it before each sync when it is told to.
 struct Disk {
-    bytes: Arc<Mutex<Vec<u8>>>,
+    bytes: Bytes,
     gate: Option<Receiver<io::Result<()>>>,
 }
 
@@ -48,7 +50,7 @@ impl Sink for Disk {
 }
 
 /// A recorder whose disk syncs once for the description, and then whenever the test says so.
-fn gated(capacity: usize) -> (Recorder, Arc<Mutex<Vec<u8>>>, SyncSender<io::Result<()>>) {
+fn gated(capacity: usize) -> (Recorder, Bytes, SyncSender<io::Result<()>>) {
     let bytes = Arc::new(Mutex::new(Vec::new()));
     let (open, gate) = sync_channel(100);
     open.send(Ok(())).unwrap();

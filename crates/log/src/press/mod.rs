@@ -52,6 +52,7 @@ pub struct ReadBack {
 ///   without wrenches.
 /// - `taxels_raw` are counts, or Pa of a taxel that does not count. `taxels_kpa` are above the mean of the last second before the press in
 ///   which no other press was on; a taxel without a value then is invalid for the whole press. What is missing is 0 and invalid.
+/// - Memory grows with the log: a reading takes about 100 bytes.
 /// - A press that was not ended goes on until the next one begins or the log ends. A name that is there twice gets a number.
 ///
 /// # Errors
