@@ -1,9 +1,10 @@
 //! Records what a bench streams, as it happens, and reads it back as presses.
 //!
-//! A log is an MCAP file with ROS 2 messages, which Foxglove, Rerun and `ros2 bag` open: tactile frames, wrenches, robot poses and events, all
-//! stamped on one bench clock, beside each source's own. It is flushed at least every second: a file that was cut anywhere is readable up to
-//! there, and [`recover`] makes it whole. [`Recorder`] writes it on a thread of its own, [`LogReader`] reads it, and [`read_presses`] makes a
-//! [`Recording`](twintac_recording::Recording) of it, to be stored as Parquet and learned from.
+//! A log is an MCAP file with ROS 2 messages, which Foxglove, Rerun and `ros2 bag` open: tactile frames, wrenches, robot poses
+//! and events, all stamped on one bench clock, beside each source's own. It is flushed at least every second: a file that was
+//! cut anywhere is readable up to there, and [`recover`] makes it whole. [`Recorder`] writes it on a thread of its own,
+//! [`LogReader`] reads it, and [`read_presses`] makes a [`Recording`](twintac_recording::Recording) of it, to be stored as
+//! Parquet and learned from.
 
 mod cdr;
 mod description;

@@ -8,8 +8,8 @@ use crate::Event;
 /// Something that happened on the bench, and when.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
-    /// When, on the bench's clock, ns since [`Description::start_unix_ns`](crate::Description::start_unix_ns). For a tactile frame: when its
-    /// taxels were triggered.
+    /// When, on the bench's clock, ns since [`Description::start_unix_ns`](crate::Description::start_unix_ns). For a tactile
+    /// frame: when its taxels were triggered.
     pub bench_ns: u64,
     /// What.
     pub body: Body,
@@ -58,7 +58,8 @@ impl std::fmt::Display for Stream {
 }
 
 impl Message {
-    /// A message at a time of the bench's clock, s since its start, as [`BenchClock`](twintac_rig::BenchClock) has it; to the nearest ns.
+    /// A message at a time of the bench's clock, s since its start, as [`BenchClock`](twintac_rig::BenchClock) has it; to the
+    /// nearest ns.
     #[must_use]
     pub fn at_s(bench_s: f64, body: Body) -> Self {
         Self {

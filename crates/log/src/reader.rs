@@ -21,8 +21,8 @@ pub enum Ending {
 
 /// Reads a log from its start, whole or cut: an iterator over its messages, in the order in which they were written.
 ///
-/// Messages that were damaged on the disk become an [`Event::Gap`] in all streams. Channels of others are passed over. Memory does not grow with
-/// the file.
+/// Messages that were damaged on the disk become an [`Event::Gap`] in all streams. Channels of others are passed over. Memory
+/// does not grow with the file.
 #[derive(Debug)]
 pub struct LogReader<R> {
     scanner: Scanner<R>,

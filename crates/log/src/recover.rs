@@ -18,7 +18,8 @@ pub struct Recovered {
 
 /// Writes all that can be read of a log into a whole one beside it, through a temporary name; the old file stays.
 ///
-/// The whole one of `<name>.partial` is `<name>`, that of any other file `<stem>.recovered.mcap`. What was damaged on the disk becomes a gap.
+/// The whole one of `<name>.partial` is `<name>`, that of any other file `<stem>.recovered.mcap`. What was damaged on the disk
+/// becomes a gap.
 ///
 /// # Errors
 /// A file that cannot be read or is no log; a whole one that exists already or cannot be written.

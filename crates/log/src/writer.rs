@@ -76,8 +76,9 @@ impl<S: Sink> LogWriter<S> {
     /// Adds a message, and flushes those before it when they are half a second older or many.
     ///
     /// # Errors
-    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that is no JSON, or a time beyond 64 bits; nothing was added and
-    /// the next message can be written. [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no more, for good.
+    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that is no JSON, or a time beyond 64 bits; nothing
+    /// was added and the next message can be written. [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no
+    /// more, for good.
     pub fn write(&mut self, message: &Message) -> Result<(), LogError> {
         let unix_ns = self.check(message)?;
         let is_due = self

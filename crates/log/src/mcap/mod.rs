@@ -1,9 +1,10 @@
 //! The container: MCAP, without compression.
 //!
-//! Source: the MCAP format specification, <https://mcap.dev/spec>. A file is `magic | records | magic`, a record its kind, its length and
-//! its content. Messages stand in chunks, whose checksum tells whether they are whole.
+//! Source: the MCAP format specification, <https://mcap.dev/spec>. A file is `magic | records | magic`, a record its kind, its
+//! length and its content. Messages stand in chunks, whose checksum tells whether they are whole.
 //!
-//! Writing here gives the same bytes for the same messages, and one call for each chunk, so that a file that was cut is whole up to a chunk.
+//! Writing here gives the same bytes for the same messages, and one call for each chunk, so that a file that was cut is whole
+//! up to a chunk.
 
 mod chunk;
 mod record;

@@ -57,8 +57,8 @@ impl Summary {
         chunk.finish(offset, out, &mut self.chunk_indexes);
     }
 
-    /// All that comes behind the last chunk, which ends at `offset`: `checksum` is that of the file so far, `declarations` repeat its schemas
-    /// and channels.
+    /// All that comes behind the last chunk, which ends at `offset`: `checksum` is that of the file so far, `declarations`
+    /// repeat its schemas and channels.
     pub(crate) fn close(&self, offset: u64, checksum: u32, declarations: &[(u8, Records)]) -> Vec<u8> {
         let mut out = Records::default();
         out.put(op::DATA_END, |r| r.u32(checksum));

@@ -3,7 +3,8 @@
 use super::collect::{Collected, Span};
 use crate::{Taxel, TaxelState};
 
-/// Pressure of each taxel, Pa: the mean over `window_ns` before a press, as far as no press was on; `None` for a taxel without a value then.
+/// Pressure of each taxel, Pa: the mean over `window_ns` before a press, as far as no press was on; `None` for a taxel without
+/// a value then.
 pub(super) fn baseline_pa(
     collected: &Collected,
     place: usize,

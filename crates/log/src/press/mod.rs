@@ -46,12 +46,13 @@ pub struct ReadBack {
 
 /// Reads the presses of a log, whole or cut, at the times of its tactile frames (when they were triggered).
 ///
-/// - Force and pose are interpolated linearly (rotations along the shortest arc). Where they cannot be, next to a gap or before the first
-///   reading, the frame's readings are all invalid and force and pose those of the nearest reading.
-/// - `force_n` is the last tare's change of the wrench along [`Description::force_axis`](crate::Description::force_axis); there is none in a log
-///   without wrenches.
-/// - `taxels_raw` are counts, or Pa of a taxel that does not count. `taxels_kpa` are above the mean of the last second before the press in
-///   which no other press was on; a taxel without a value then is invalid for the whole press. What is missing is 0 and invalid.
+/// - Force and pose are interpolated linearly (rotations along the shortest arc). Where they cannot be, next to a gap or before
+///   the first reading, the frame's readings are all invalid and force and pose those of the nearest reading.
+/// - `force_n` is the wrench, less the last tare, along [`Description::force_axis`](crate::Description::force_axis); there is
+///   none in a log without wrenches.
+/// - `taxels_raw` are counts, or Pa of a taxel that does not count. `taxels_kpa` are above the mean of the last second before
+///   the press, as far as no other press was on; a taxel without a value then is invalid for the whole press. What is missing is
+///   0 and invalid.
 /// - Memory grows with the log: a reading takes about 100 bytes.
 /// - A press that was not ended goes on until the next one begins or the log ends. A name that is there twice gets a number.
 ///
