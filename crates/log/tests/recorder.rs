@@ -229,6 +229,37 @@ fn many_threads_send_and_nothing_is_lost_in_silence() {
 }
 
 #[test]
+fn what_was_taken_while_the_log_is_finished_is_in_it() {
+    for _ in 0..20 {
+        let disk = Disk {
+            bytes: Arc::default(),
+            gate: None,
+        };
+        let recorder = Recorder::start(disk, &description(2), 64).unwrap();
+        let threads: Vec<_> = (0..3_u64)
+            .map(|thread| {
+                let sender = recorder.sender();
+                std::thread::spawn(move || {
+                    let mut taken = 0;
+                    for step in 0.. {
+                        match sender.send(wrench(4 * step * 1000 + thread, 1.0)) {
+                            Ok(()) => taken += 1,
+                            Err(LogError::Behind { .. }) => {}
+                            Err(_) => break,
+                        }
+                    }
+                    taken
+                })
+            })
+            .collect();
+        sleep(Duration::from_millis(5));
+        let recorded = recorder.finish().unwrap();
+        let taken: u64 = threads.into_iter().map(|thread| thread.join().unwrap()).sum();
+        assert_eq!(recorded.messages, taken);
+    }
+}
+
+#[test]
 fn recovering_makes_a_whole_file_and_keeps_the_old_one() {
     let folder = tempfile::tempdir().unwrap();
     let sent = bench(3, 2, [50, 50, 50]);

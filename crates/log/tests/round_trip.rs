@@ -103,15 +103,26 @@ fn every_checksum_holds_by_the_formats_own_library() {
         .with_validate_summary_section_crc(true);
     let mut reader = mcap::sans_io::LinearReader::new_with_options(options);
     let mut rest = &bytes[..];
+    let mut checksums = Vec::new();
     while let Some(event) = reader.next_event() {
-        if let mcap::sans_io::LinearReadEvent::ReadRequest(wanted) = event.unwrap() {
-            let given = wanted.min(rest.len());
-            reader.insert(given).copy_from_slice(&rest[..given]);
-            reader.notify_read(given);
-            rest = &rest[given..];
+        match event.unwrap() {
+            mcap::sans_io::LinearReadEvent::ReadRequest(wanted) => {
+                let given = wanted.min(rest.len());
+                reader.insert(given).copy_from_slice(&rest[..given]);
+                reader.notify_read(given);
+                rest = &rest[given..];
+            }
+            // The footer's and that of the data are last in their records; 0 would stand for none.
+            mcap::sans_io::LinearReadEvent::Record { data, opcode } => {
+                if [mcap::records::op::DATA_END, mcap::records::op::FOOTER].contains(&opcode) {
+                    checksums.push(data[data.len() - 4..].to_vec());
+                }
+            }
         }
     }
     assert!(rest.is_empty());
+    assert_eq!(checksums.len(), 2);
+    assert!(!checksums.contains(&vec![0; 4]));
 }
 
 #[test]
@@ -141,7 +152,9 @@ fn what_cannot_be_written_is_refused_and_the_next_message_is_not() {
     ] {
         assert_eq!(writer.write(&message).unwrap_err().to_string(), words);
     }
-    writer.write(&common::frame(0, 2)).unwrap();
+    let late = twintac_log::Message::at_s(1.5, common::frame(0, 2).body);
+    assert_eq!(late.bench_ns, 1_500_000_000);
+    writer.write(&late).unwrap();
     assert_eq!(reader(&writer.finish().unwrap()).count(), 1);
 }
 

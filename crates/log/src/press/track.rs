@@ -86,6 +86,8 @@ impl<T: Interpolate> Track<T> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn track() -> Track<f64> {
@@ -122,6 +124,36 @@ mod tests {
             let mut track = track();
             track.break_between(from_ns, to_ns);
             assert_eq!(track.at(15).is_some(), is_known, "{from_ns} to {to_ns}");
+        }
+    }
+
+    proptest! {
+        /// A value is known at points, and between two of them that are near enough and have no gap between them or at their own times.
+        #[test]
+        fn a_value_is_known_just_where_nothing_is_missing(
+            times_ns in prop::collection::btree_set(0..100_u64, 0..20),
+            gaps_ns in prop::collection::vec((0..100_u64, 0..10_u64), 0..4),
+            longest_ns in 0..40_u64,
+        ) {
+            let points = times_ns.iter().map(|time_ns| (*time_ns, *time_ns as f64, false));
+            let mut track = Track::new(points.rev().collect(), longest_ns);
+            for (from_ns, length_ns) in &gaps_ns {
+                track.break_between(*from_ns, from_ns + length_ns);
+            }
+            for time_ns in 0..101 {
+                let before = times_ns.range(..time_ns).next_back();
+                let next = times_ns.range(time_ns..).next();
+                let is_known = times_ns.contains(&time_ns)
+                    || before.zip(next).is_some_and(|(before, next)| {
+                        let is_gap = |(from_ns, length_ns): &(u64, u64)| {
+                            from_ns <= next && from_ns + length_ns >= *before
+                        };
+                        next - before <= longest_ns && !gaps_ns.iter().any(is_gap)
+                    });
+                let found = track.at(time_ns);
+                prop_assert_eq!(found.is_some(), is_known, "at {}", time_ns);
+                prop_assert!(found.is_none_or(|found| (found - time_ns as f64).abs() < 1e-9));
+            }
         }
     }
 
