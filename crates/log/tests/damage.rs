@@ -23,7 +23,7 @@ fn log_with_progress(messages: &[Message]) -> (Vec<u8>, Vec<u64>) {
 
 #[test]
 fn a_log_cut_at_any_byte_has_all_that_was_flushed() {
-    let messages = bench(6, 2, [10, 20, 5]);
+    let messages = bench(5, 2, [5, 10, 3]);
     let (bytes, progress) = log_with_progress(&messages);
     let start = (0..bytes.len())
         .find(|&end| LogReader::new(&bytes[..end], "cut").is_ok())
@@ -164,7 +164,7 @@ fn fill(disk: &mut Full, messages: &[Message]) -> Result<(), LogError> {
 
 #[test]
 fn a_disk_that_is_full_at_any_byte_is_an_error_and_keeps_what_it_has() {
-    let messages = bench(3, 2, [10, 10, 5]);
+    let messages = bench(3, 2, [4, 6, 3]);
     let whole = log(&description(2), &messages);
     for room in 0..whole.len() {
         let mut disk = Full {
