@@ -1,0 +1,102 @@
+//! The folder of a run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use twintac_protocol::PressPlan;
+
+use crate::PressError;
+
+const PROGRESS: &str = "progress.json";
+
+/// A run's folder: a log for each press, and which of them are done.
+#[derive(Debug)]
+pub(crate) struct Folder {
+    path: PathBuf,
+    state: State,
+}
+
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct State {
+    plans: Vec<PressPlan>,
+    /// Whether each press is done.
+    done: Vec<bool>,
+}
+
+impl Folder {
+    /// Opens a folder for these presses, or makes it.
+    pub(crate) fn open(path: &Path, plans: &[PressPlan]) -> Result<Self, PressError> {
+        fs::create_dir_all(path).map_err(|source| PressError::file(path, source))?;
+        let file = path.join(PROGRESS);
+        let other = |problem: String| PressError::OtherRun {
+            folder: path.display().to_string(),
+            problem,
+        };
+        let state = match fs::read_to_string(&file) {
+            Ok(text) => {
+                let state: State =
+                    serde_json::from_str(&text).map_err(|found| other(format!("{PROGRESS}: {found}")))?;
+                if state.plans != plans || state.done.len() != plans.len() {
+                    return Err(other(format!("{PROGRESS} lists {}", state.plans.len())));
+                }
+                state
+            }
+            Err(found) if found.kind() == std::io::ErrorKind::NotFound => State {
+                plans: plans.to_vec(),
+                done: vec![false; plans.len()],
+            },
+            Err(source) => return Err(PressError::file(&file, source)),
+        };
+        let folder = Self {
+            path: path.to_owned(),
+            state,
+        };
+        folder.store()?;
+        Ok(folder)
+    }
+
+    pub(crate) fn is_done(&self, index: usize) -> bool {
+        self.state.done.get(index).copied().unwrap_or(false)
+    }
+
+    /// Where a press is recorded. What an earlier try left there is set aside.
+    pub(crate) fn log(&self, index: usize) -> Result<PathBuf, PressError> {
+        let log = self.path.join(format!("press-{:04}.mcap", index + 1));
+        self.set_aside(&log)?;
+        self.set_aside(&log.with_extension("mcap.partial"))?;
+        Ok(log)
+    }
+
+    /// Gives a file another name, if it is there: no recording is ever thrown away. Its new name.
+    pub(crate) fn set_aside(&self, file: &Path) -> Result<PathBuf, PressError> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let stem = name.split('.').next().unwrap_or_default();
+        let end = name.strip_prefix(stem).unwrap_or_default();
+        let free = (1..)
+            .map(|number| self.path.join(format!("{stem}.try-{number}{end}")))
+            .find(|path| !path.exists())
+            .unwrap_or_default();
+        match fs::rename(file, &free) {
+            Ok(()) => Ok(free),
+            Err(found) if found.kind() == std::io::ErrorKind::NotFound => Ok(free),
+            Err(source) => Err(PressError::file(file, source)),
+        }
+    }
+
+    pub(crate) fn set_done(&mut self, index: usize) -> Result<(), PressError> {
+        self.state.done[index] = true;
+        self.store()
+    }
+
+    fn store(&self) -> Result<(), PressError> {
+        let file = self.path.join(PROGRESS);
+        let partial = self.path.join(format!("{PROGRESS}.partial"));
+        let text = serde_json::to_string_pretty(&self.state)
+            .map_err(|found| PressError::file(&file, std::io::Error::other(found)))?;
+        fs::write(&partial, text + "\n")
+            .and_then(|()| fs::rename(&partial, &file))
+            .map_err(|source| PressError::file(&file, source))
+    }
+}

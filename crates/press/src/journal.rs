@@ -1,0 +1,146 @@
+//! What goes into a press's log.
+
+use twintac_log::{Body, Event, LogError, LogSender, Message, PoseReading, Stream, TactileFrame, WrenchReading};
+use twintac_rig::{Stamp, TcpPose, WrenchSample};
+
+/// Hands messages to a log, and marks what is missing between them.
+#[derive(Debug)]
+pub(crate) struct Journal {
+    log: LogSender,
+    frames: Continuity,
+    reports: Continuity,
+    wrench_s: Option<f64>,
+    /// Tactile frames, wrenches and poses that were handed over.
+    pub(crate) handed: u64,
+    taxels: Vec<twintac_log::TaxelState>,
+}
+
+/// Whether a stream goes on without a gap.
+#[derive(Debug)]
+struct Continuity {
+    stream: Stream,
+    longest_s: f64,
+    last_s: Option<f64>,
+    /// The shortest interval so far, s: what is missing in a gap is counted by it.
+    usual_s: f64,
+    problem: Option<String>,
+}
+
+impl Journal {
+    pub(crate) fn new(log: LogSender, frame_gap_s: f64, report_gap_s: f64) -> Self {
+        Self {
+            log,
+            frames: Continuity::new(Stream::Tactile, frame_gap_s),
+            reports: Continuity::new(Stream::Pose, report_gap_s),
+            wrench_s: None,
+            handed: 0,
+            taxels: Vec::new(),
+        }
+    }
+
+    /// What the log does not take because it is behind is marked by the log itself.
+    fn send(&mut self, bench_s: f64, body: Body) -> Result<(), LogError> {
+        if !matches!(body, Body::Event(_)) {
+            self.handed += 1;
+        }
+        match self.log.send(Message::at_s(bench_s, body)) {
+            Err(LogError::Behind { .. }) | Ok(()) => Ok(()),
+            Err(other) => Err(other),
+        }
+    }
+
+    pub(crate) fn event(&mut self, bench_s: f64, event: Event) -> Result<(), LogError> {
+        self.send(bench_s, Body::Event(event))
+    }
+
+    pub(crate) fn frame(&mut self, bench_s: f64, frame: TactileFrame) -> Result<(), LogError> {
+        if let Some(gap) = self.frames.go_on(bench_s) {
+            self.event(bench_s, gap)?;
+        }
+        let states: Vec<_> = frame.taxels.iter().map(|taxel| taxel.state).collect();
+        if !self.taxels.is_empty() && states != self.taxels {
+            let changed = (0..).zip(&states).zip(&self.taxels);
+            let changes: Vec<String> = changed
+                .filter(|((_, now), before)| now != before)
+                .map(|((taxel, now), _)| format!("taxel {taxel} is {now:?}"))
+                .collect();
+            let text = changes.join(", ");
+            self.event(bench_s, Event::Note { text })?;
+        }
+        self.taxels = states;
+        self.send(bench_s, Body::Tactile(frame))
+    }
+
+    /// Why the next gap in the tactile frames is there.
+    pub(crate) fn no_frame(&mut self, problem: String) {
+        self.frames.problem.get_or_insert(problem);
+    }
+
+    pub(crate) fn wrench(&mut self, sample: &WrenchSample) -> Result<(), LogError> {
+        let now_s = sample.stamp.bench_s;
+        if sample.lost_before > 0 {
+            let gap = Event::Gap {
+                stream: Some(Stream::Wrench),
+                cause: "readings did not arrive in time".to_owned(),
+                from_ns: ns(self.wrench_s.unwrap_or(now_s)),
+                to_ns: ns(now_s),
+                lost: Some(sample.lost_before.into()),
+            };
+            self.event(now_s, gap)?;
+        }
+        self.wrench_s = Some(now_s);
+        self.send(now_s, Body::Wrench(WrenchReading::from(sample)))
+    }
+
+    pub(crate) fn pose(&mut self, bench_s: f64, pose: &TcpPose) -> Result<(), LogError> {
+        if let Some(gap) = self.reports.go_on(bench_s) {
+            self.event(bench_s, gap)?;
+        }
+        let stamp = Stamp {
+            bench_s,
+            source_s: None,
+        };
+        self.send(bench_s, Body::Pose(PoseReading::new(pose, stamp)))
+    }
+
+    /// The log ends: streams that fell silent before have a gap up to here.
+    pub(crate) fn end(&mut self, bench_s: f64) -> Result<(), LogError> {
+        let gaps = [self.frames.go_on(bench_s), self.reports.go_on(bench_s)];
+        gaps.into_iter()
+            .flatten()
+            .try_for_each(|gap| self.event(bench_s, gap))
+    }
+}
+
+impl Continuity {
+    fn new(stream: Stream, longest_s: f64) -> Self {
+        Self {
+            stream,
+            longest_s,
+            last_s: None,
+            usual_s: f64::INFINITY,
+            problem: None,
+        }
+    }
+
+    /// The gap that ends now, if there is one.
+    fn go_on(&mut self, now_s: f64) -> Option<Event> {
+        let last_s = self.last_s.replace(now_s)?;
+        let interval_s = now_s - last_s;
+        let problem = self.problem.take();
+        if interval_s > 0.0 {
+            self.usual_s = self.usual_s.min(interval_s);
+        }
+        (interval_s > self.longest_s).then(|| Event::Gap {
+            stream: Some(self.stream),
+            cause: problem.unwrap_or_else(|| "nothing came in time".to_owned()),
+            from_ns: ns(last_s),
+            to_ns: ns(now_s),
+            lost: (self.usual_s < interval_s).then(|| (interval_s / self.usual_s).round() as u64 - 1),
+        })
+    }
+}
+
+fn ns(bench_s: f64) -> u64 {
+    (bench_s * 1e9).round() as u64
+}

@@ -1,0 +1,241 @@
+//! One press, one servo period after the other.
+
+use twintac_log::{Event as LogEvent, LogError};
+use twintac_protocol::PressPlan;
+use twintac_recording::Control;
+use twintac_rig::{
+    Cause, Decision, Event, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench,
+};
+
+use crate::journal::Journal;
+use crate::touch::Touch;
+use crate::{Arm, Heard, Motion, Phase, PressError, PressSettings, Source, What};
+
+/// Periods that a retreat may wait for the force to be steady.
+const RETREAT_WAITS: u32 = 3;
+
+/// How a press stands after a period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Standing {
+    Going,
+    /// Every pose went out.
+    Done,
+    /// It was stopped, and the robot has gone back as far as that is safe.
+    Stopped,
+}
+
+/// A press under way.
+#[derive(Debug)]
+pub(crate) struct Press<'a> {
+    settings: PressSettings,
+    plan: PressPlan,
+    motion: Motion,
+    supervisor: Supervisor,
+    tactile: StreamId,
+    journal: &'a mut Journal,
+    tare: Wrench,
+    touch: Touch,
+    measured: TcpPose,
+    goal: TcpPose,
+    phase: Option<Phase>,
+    has_begun: bool,
+    waits: u32,
+    /// From the arrival of what stopped the press to its stop, s.
+    pub(crate) stop_latency_s: Option<f64>,
+}
+
+impl<'a> Press<'a> {
+    /// A press that begins where the robot is, with a wrench that is no load.
+    pub(crate) fn new(
+        settings: &PressSettings,
+        sensor: &SensorLimits,
+        plan: &PressPlan,
+        journal: &'a mut Journal,
+        start: Start,
+        tare: Wrench,
+    ) -> Result<Self, PressError> {
+        let motion = Motion::new(settings, plan, &start.pose)?;
+        let setup = settings.setup(motion.at_surface().position_mm);
+        let mut supervisor = Supervisor::new(setup, sensor, start)?;
+        let tactile = supervisor.watch("the tactile sensor", settings.tactile_silence_s, start.now_s);
+        Ok(Self {
+            settings: settings.clone(),
+            plan: plan.clone(),
+            supervisor,
+            tactile,
+            journal,
+            tare,
+            touch: Touch::new(settings.touch_window_s, settings.touch_force_n),
+            measured: start.pose,
+            goal: start.pose,
+            phase: motion.phase(),
+            motion,
+            has_begun: false,
+            waits: 0,
+            stop_latency_s: None,
+        })
+    }
+
+    /// Why it was stopped.
+    pub(crate) fn cause(&self) -> Option<&Cause> {
+        self.supervisor.cause()
+    }
+
+    /// One servo period: first what was heard, then at most one pose.
+    pub(crate) fn period(
+        &mut self,
+        now_s: f64,
+        heard: impl Iterator<Item = Heard>,
+        is_interrupted: bool,
+        arm: &mut impl Arm,
+    ) -> Result<Standing, LogError> {
+        for Heard { bench_s, what } in heard {
+            self.hear(now_s, bench_s, what)?;
+        }
+        if is_interrupted {
+            self.observe(now_s, now_s, Event::OperatorStop);
+        }
+        let was_stopped = self.cause().is_some();
+        let goal = if was_stopped { Some(self.goal) } else { self.next_goal(now_s)? };
+        let Some(goal) = goal else {
+            return Ok(Standing::Done);
+        };
+        match self.supervisor.decide(now_s, &goal) {
+            Decision::Go(pose) => {
+                self.goal = pose;
+                self.send(arm, pose, now_s);
+                Ok(Standing::Going)
+            }
+            Decision::Retreat(pose) => {
+                self.waits = RETREAT_WAITS; // one that ends has ended
+                match arm.servo(&pose) {
+                    Ok(()) => Ok(Standing::Going),
+                    Err(_) => self.stop(now_s, arm),
+                }
+            }
+            Decision::Stop => {
+                self.stop_latency_s.get_or_insert(0.0); // found in this period: a silence, or a goal
+                let robot_fails = matches!(self.cause(), Some(Cause::RobotInError));
+                if robot_fails || self.waits >= RETREAT_WAITS {
+                    return self.stop(now_s, arm);
+                }
+                self.waits += 1;
+                Ok(Standing::Going)
+            }
+        }
+    }
+
+    fn send(&mut self, arm: &mut impl Arm, pose: TcpPose, now_s: f64) {
+        if let Err(error) = arm.servo(&pose) {
+            let (stream, problem) = (StreamId::ROBOT, error.to_string());
+            self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+        }
+    }
+
+    fn stop(&mut self, now_s: f64, arm: &mut impl Arm) -> Result<Standing, LogError> {
+        if let Err(error) = arm.stop() {
+            let text = format!("the robot does not confirm its stop: {error}");
+            self.journal.event(now_s, LogEvent::Note { text })?;
+        }
+        if let Some(cause) = self.cause() {
+            let cause = cause.to_string();
+            self.journal.event(now_s, LogEvent::Stopped { cause })?;
+        }
+        Ok(Standing::Stopped)
+    }
+
+    /// Tells the supervisor first; what arrived, if anything, arrived at `arrived_s`.
+    fn observe(&mut self, now_s: f64, arrived_s: f64, event: Event) {
+        let was_stopped = self.cause().is_some();
+        let is_stopped = self.supervisor.observe(now_s, event).is_some();
+        if is_stopped && !was_stopped {
+            self.stop_latency_s = Some(now_s - arrived_s);
+        }
+    }
+
+    fn hear(&mut self, now_s: f64, bench_s: f64, what: What) -> Result<(), LogError> {
+        match what {
+            What::Wrench(sample) => {
+                if sample.lost_before > self.settings.tolerated_loss {
+                    let (stream, records) = (StreamId::FORCE, sample.lost_before.into());
+                    self.observe(now_s, bench_s, Event::DataLost { stream, records });
+                }
+                let force_n = sample.wrench.force_n - self.tare.force_n;
+                self.observe(now_s, bench_s, Event::Force(force_n));
+                self.touch
+                    .hear(bench_s, force_n.dot(self.settings.placement.force_axis));
+                self.journal.wrench(&sample)
+            }
+            What::Robot { pose, in_error } => {
+                self.observe(now_s, bench_s, Event::Robot { pose, in_error });
+                self.measured = pose;
+                self.journal.pose(bench_s, &pose)
+            }
+            What::Frame(frame) => {
+                self.observe(now_s, bench_s, Event::Heard(self.tactile));
+                self.journal.frame(bench_s, frame)
+            }
+            What::NoFrame { problem } => {
+                self.journal.no_frame(problem);
+                Ok(())
+            }
+            What::Failed { source, problem } => {
+                let stream = match source {
+                    Source::Force => StreamId::FORCE,
+                    Source::Robot => StreamId::ROBOT,
+                    Source::Tactile => self.tactile,
+                };
+                self.observe(now_s, bench_s, Event::DeviceError { stream, problem });
+                Ok(())
+            }
+        }
+    }
+
+    /// The next pose of the motion; `None` at its end. An approach without touch is a cause to stop.
+    fn next_goal(&mut self, now_s: f64) -> Result<Option<TcpPose>, LogError> {
+        let before = self.motion.phase();
+        if before == Some(Phase::Approach) && self.touch.is_touching() {
+            let height_mm = self.settings.placement.indenter(&self.measured).position_mm.z;
+            self.motion.touch(height_mm);
+            let text = format!("first touch {height_mm:.3} mm above the described surface");
+            self.journal.event(now_s, LogEvent::Note { text })?;
+        }
+        let is_approach = self.motion.phase() == Some(Phase::Approach);
+        let mut goal = self.motion.next_pose();
+        if is_approach && goal.is_none() {
+            let problem = format!(
+                "no touch down to {} mm below the described surface",
+                self.settings.search_mm
+            );
+            let stream = StreamId::FORCE;
+            self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+            goal = Some(self.goal);
+        }
+        let phase = self.motion.phase();
+        if phase != self.phase {
+            self.phase = phase;
+            self.mark(now_s)?;
+        }
+        Ok(goal)
+    }
+
+    /// Begins and ends the press in the log.
+    fn mark(&mut self, now_s: f64) -> Result<(), LogError> {
+        let name = self.plan.name.clone();
+        match self.phase {
+            Some(Phase::Approach) => {
+                self.has_begun = true;
+                let event = LogEvent::PressBegun {
+                    name,
+                    indenter: self.plan.indenter.clone(),
+                    control: Control::Pose,
+                };
+                self.journal.event(now_s, event)
+            }
+            Some(Phase::Travel) | None if std::mem::take(&mut self.has_begun) => {
+                self.journal.event(now_s, LogEvent::PressEnded { name })
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Press after press.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use glam::DVec3;
+use twintac_log::{Description, Event, Recorder};
+use twintac_protocol::PressPlan;
+use twintac_rig::{Cause, SensorLimits, Start, Wrench};
+
+use crate::audit::audit;
+use crate::folder::Folder;
+use crate::journal::Journal;
+use crate::press::{Press, Standing};
+use crate::{Arm, Heard, PressError, PressSettings, Source, Streams, What};
+
+/// How long devices may take to be heard at all, before a press, s.
+const FIRST_WORDS_S: f64 = 2.0;
+
+/// A robot in servo mode, and what hears all devices.
+#[derive(Debug)]
+pub struct Bench<A> {
+    /// The robot.
+    pub arm: A,
+    /// What hears it, and the sensors.
+    pub streams: Streams,
+}
+
+/// Carries out presses.
+#[derive(Clone, Debug)]
+pub struct Runner {
+    /// How.
+    pub settings: PressSettings,
+    /// What the sensor stands.
+    pub sensor: SensorLimits,
+    /// What the logs are about. Placement and start of the clock are set by the run.
+    pub description: Description,
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress<'a> {
+    /// Another indenter is to be mounted: the run goes on when this returns.
+    Mount {
+        /// Name of the indenter.
+        indenter: &'a str,
+    },
+    /// A press begins.
+    Press {
+        /// Its number, from 0.
+        index: usize,
+        /// The press.
+        plan: &'a PressPlan,
+    },
+}
+
+/// What came of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunSummary {
+    /// Tactile frames a second, over the time that was recorded, Hz.
+    pub rate_hz: f64,
+    /// Tactile frames in this run's logs.
+    pub frames: u64,
+    /// Readings that are missing in the logs without a mark, as found by reading them again.
+    pub lost_unmarked: u64,
+    /// Presses that are done, those of earlier runs included.
+    pub presses_done: usize,
+    /// Why the run was stopped.
+    pub stopped: Option<Cause>,
+    /// From the arrival of what stopped it to the stop, in servo periods.
+    pub stop_latency_periods: Option<f64>,
+}
+
+/// The bench at rest before a press.
+struct Rest {
+    start: Start,
+    tare: Wrench,
+}
+
+impl Runner {
+    /// Carries out the presses that the folder does not hold yet, one log each, until all are done, something is wrong, or `interrupt` is
+    /// set. `tell` is called between presses, with the robot at rest.
+    ///
+    /// # Errors
+    /// Settings or plans that cannot be carried out, a folder of another run, a disk that fails. The robot is stopped then.
+    pub fn run<A: Arm>(
+        &self,
+        bench: &mut Bench<A>,
+        plans: &[PressPlan],
+        out: &Path,
+        interrupt: &AtomicBool,
+        tell: &mut dyn FnMut(Progress<'_>),
+    ) -> Result<RunSummary, PressError> {
+        let run = self.run_presses(bench, plans, out, interrupt, tell);
+        if run.is_err() {
+            // The error is the one that is told.
+            let _ = bench.arm.stop();
+        }
+        run
+    }
+
+    fn run_presses<A: Arm>(
+        &self,
+        bench: &mut Bench<A>,
+        plans: &[PressPlan],
+        out: &Path,
+        interrupt: &AtomicBool,
+        tell: &mut dyn FnMut(Progress<'_>),
+    ) -> Result<RunSummary, PressError> {
+        let mut folder = Folder::open(out, plans)?;
+        let description = self.describe(&bench.streams);
+        let mut summary = RunSummary {
+            rate_hz: 0.0,
+            frames: 0,
+            lost_unmarked: 0,
+            presses_done: 0,
+            stopped: None,
+            stop_latency_periods: None,
+        };
+        let (mut frames_s, mut intervals) = (0.0, 0);
+        let mut mounted = None;
+        for (index, plan) in plans.iter().enumerate() {
+            if folder.is_done(index) {
+                summary.presses_done += 1;
+                continue;
+            }
+            if mounted.replace(&plan.indenter) != Some(&plan.indenter) {
+                tell(Progress::Mount {
+                    indenter: &plan.indenter,
+                });
+            }
+            tell(Progress::Press { index, plan });
+            let log = folder.log(index)?;
+            let recorder = Recorder::create(&log, &description)?;
+            let settings = &self.settings;
+            let mut journal = Journal::new(recorder.sender(), settings.frame_gap_s, settings.report_gap_s);
+            let _ = bench.streams.heard().count(); // what is older than this log
+            let (stopped, latency_s) = match self.rest(&bench.streams, &mut journal, interrupt)? {
+                Ok(rest) => self.press(bench, plan, &mut journal, rest, interrupt)?,
+                Err(cause) => {
+                    let event = Event::Stopped {
+                        cause: cause.to_string(),
+                    };
+                    journal.event(bench.streams.clock().now_s(), event)?;
+                    // Nothing moves: the robot was not sent a pose since the last press.
+                    let _ = bench.arm.stop();
+                    (Some(cause), None)
+                }
+            };
+            journal.end(bench.streams.clock().now_s())?;
+            let handed = journal.handed;
+            let recorded = recorder.finish()?;
+            let found = audit(&log, settings.frame_gap_s, settings.report_gap_s)?;
+            summary.frames += found.frames;
+            // What the log refused, it has marked.
+            summary.lost_unmarked += found.lost_unmarked + handed.saturating_sub(found.readings + recorded.lost);
+            frames_s += found.frames_s;
+            intervals += found.frames.saturating_sub(1);
+            if stopped.is_some() {
+                folder.set_aside(&log)?;
+                summary.stopped = stopped;
+                summary.stop_latency_periods = latency_s.map(|latency_s| latency_s / settings.servo_period_s);
+                break;
+            }
+            folder.set_done(index)?;
+            summary.presses_done += 1;
+        }
+        if frames_s > 0.0 {
+            summary.rate_hz = intervals as f64 / frames_s;
+        }
+        Ok(summary)
+    }
+
+    /// The description of this run's logs.
+    fn describe(&self, streams: &Streams) -> Description {
+        let unix_ns = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .map_or(0, |since| since.as_nanos() as u64); // until the year 2554
+        let bench_ns = (streams.clock().now_s() * 1e9) as u64;
+        let placement = &self.settings.placement;
+        Description {
+            base_from_gel: placement.base_from_gel,
+            tool_from_indenter: placement.tool_from_indenter,
+            force_axis: placement.force_axis,
+            start_unix_ns: unix_ns.saturating_sub(bench_ns),
+            ..self.description.clone()
+        }
+    }
+
+    /// Listens while nothing moves: where the robot is, and the mean wrench, which is no load.
+    fn rest(
+        &self,
+        streams: &Streams,
+        journal: &mut Journal,
+        interrupt: &AtomicBool,
+    ) -> Result<Result<Rest, Cause>, PressError> {
+        let settings = &self.settings;
+        let begun_s = streams.clock().now_s();
+        let (mut sum, mut n) = (Wrench::ZERO, 0_u32);
+        let (mut pose, mut frames, mut last_n) = (None, 0_u32, DVec3::ZERO);
+        loop {
+            std::thread::sleep(Duration::from_secs_f64(settings.servo_period_s));
+            for Heard { bench_s, what } in streams.heard() {
+                match what {
+                    What::Wrench(sample) => {
+                        journal.wrench(&sample)?;
+                        last_n = sample.wrench.force_n;
+                        sum.force_n += sample.wrench.force_n;
+                        sum.torque_n_mm += sample.wrench.torque_n_mm;
+                        n += 1;
+                    }
+                    What::Robot { in_error: true, .. } => return Ok(Err(Cause::RobotInError)),
+                    What::Robot { pose: now, .. } => {
+                        journal.pose(bench_s, &now)?;
+                        pose = Some(now);
+                    }
+                    What::Frame(frame) => {
+                        journal.frame(bench_s, frame)?;
+                        frames += 1;
+                    }
+                    What::NoFrame { problem } => journal.no_frame(problem),
+                    What::Failed { source, problem } => {
+                        let stream = name(source).to_owned();
+                        return Ok(Err(Cause::DeviceError { stream, problem }));
+                    }
+                }
+            }
+            if interrupt.load(Ordering::Relaxed) {
+                return Ok(Err(Cause::Operator));
+            }
+            let now_s = streams.clock().now_s();
+            let silent = [
+                (n == 0, Source::Force),
+                (pose.is_none(), Source::Robot),
+                (frames == 0, Source::Tactile),
+            ];
+            let silent = silent.iter().find(|(is_silent, _)| *is_silent);
+            if let Some((_, source)) = silent
+                && now_s - begun_s > FIRST_WORDS_S
+            {
+                return Ok(Err(Cause::StreamSilent {
+                    stream: name(*source).to_owned(),
+                    silence_s: now_s - begun_s,
+                    longest_silence_s: FIRST_WORDS_S,
+                }));
+            }
+            let (Some(pose), None, true) = (pose, silent, now_s - begun_s >= settings.tare_s) else {
+                continue;
+            };
+            let tare = Wrench {
+                force_n: sum.force_n / f64::from(n),
+                torque_n_mm: sum.torque_n_mm / f64::from(n),
+            };
+            let found_n = tare.force_n.length();
+            let is_small = found_n <= settings.largest_tare_n;
+            if !is_small {
+                return Ok(Err(Cause::LimitExceeded {
+                    limit: "force without load",
+                    found: found_n,
+                    allowed: settings.largest_tare_n,
+                    unit: "N",
+                }));
+            }
+            let event = Event::Tare {
+                force_n: tare.force_n,
+                torque_n_mm: tare.torque_n_mm,
+            };
+            journal.event(now_s, event)?;
+            let start = Start {
+                now_s,
+                pose,
+                force_n: last_n - tare.force_n,
+            };
+            return Ok(Ok(Rest { start, tare }));
+        }
+    }
+
+    /// One press; why it was stopped, and after how long, s.
+    fn press<A: Arm>(
+        &self,
+        bench: &mut Bench<A>,
+        plan: &PressPlan,
+        journal: &mut Journal,
+        rest: Rest,
+        interrupt: &AtomicBool,
+    ) -> Result<(Option<Cause>, Option<f64>), PressError> {
+        let Bench { arm, streams } = bench;
+        let clock = streams.clock();
+        let mut press = Press::new(&self.settings, &self.sensor, plan, journal, rest.start, rest.tare)?;
+        let period_s = self.settings.servo_period_s;
+        let mut due_s = clock.now_s();
+        loop {
+            // A period that came late is not caught up with.
+            due_s = (due_s + period_s).max(clock.now_s());
+            std::thread::sleep(Duration::from_secs_f64((due_s - clock.now_s()).max(0.0)));
+            let is_interrupted = interrupt.load(Ordering::Relaxed);
+            match press.period(clock.now_s(), streams.heard(), is_interrupted, arm)? {
+                Standing::Going => {}
+                Standing::Done => return Ok((None, None)),
+                Standing::Stopped => return Ok((press.cause().cloned(), press.stop_latency_s)),
+            }
+        }
+    }
+}
+
+fn name(source: Source) -> &'static str {
+    match source {
+        Source::Force => "the force sensor",
+        Source::Robot => "the robot",
+        Source::Tactile => "the tactile sensor",
+    }
+}

@@ -1,0 +1,121 @@
+//! The bench settings that people write.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use twintac_config::{ConfigError, Document};
+use twintac_rig::{Limits, Retreat, Setup};
+
+use crate::Placement;
+
+/// How presses are carried out on a bench.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PressSettings {
+    /// Where gel and indenter stand.
+    pub placement: Placement,
+    /// Time from one pose to the next, s: 0.004 to 0.02.
+    pub servo_period_s: f64,
+    /// Height above the gel at which the indenter travels, mm.
+    pub travel_height_mm: f64,
+    /// Speed above the gel, at its highest, mm/s.
+    pub travel_speed_mm_per_s: f64,
+    /// Speed of turning above the gel, at its highest, rad/s.
+    pub turn_speed_rad_per_s: f64,
+    /// Height above the gel at which the slow approach begins, if the protocol's clearance is no larger, mm.
+    pub approach_height_mm: f64,
+    /// Speed of the approach, mm/s.
+    pub approach_speed_mm_per_s: f64,
+    /// How far below the described surface first touch is looked for, mm.
+    pub search_mm: f64,
+    /// Mean force along the press that is first touch, N.
+    pub touch_force_n: f64,
+    /// Time over which that mean is taken, s.
+    pub touch_window_s: f64,
+    /// Time over which the force without load is averaged before each press, s.
+    pub tare_s: f64,
+    /// Largest force that may count as no load, N.
+    pub largest_tare_n: f64,
+    /// The supervisor's limits.
+    pub limits: Limits,
+    /// Longest silence of the force sensor, s.
+    pub force_silence_s: f64,
+    /// Longest silence of the robot's reports, s.
+    pub robot_silence_s: f64,
+    /// Longest silence of the tactile sensor, s.
+    pub tactile_silence_s: f64,
+    /// Longest time between two tactile frames that is no gap, s.
+    pub frame_gap_s: f64,
+    /// Longest time between two of the robot's reports that is no gap, s.
+    pub report_gap_s: f64,
+    /// Readings of the force sensor that may be lost in a row without a stop.
+    pub tolerated_loss: u32,
+    /// How to go back after a stop.
+    pub retreat: Retreat,
+}
+
+impl PressSettings {
+    /// Reads settings from the text of a TOML file.
+    ///
+    /// # Errors
+    /// The first field that is wrong, with file and line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
+        let document = twintac_config::parse::<Self>(file, text)?;
+        document.value.check(&document)?;
+        Ok(document.value)
+    }
+
+    fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
+        for (field, value) in [
+            ("travel_height_mm", self.travel_height_mm),
+            ("travel_speed_mm_per_s", self.travel_speed_mm_per_s),
+            ("turn_speed_rad_per_s", self.turn_speed_rad_per_s),
+            ("approach_height_mm", self.approach_height_mm),
+            ("approach_speed_mm_per_s", self.approach_speed_mm_per_s),
+            ("search_mm", self.search_mm),
+            ("touch_force_n", self.touch_force_n),
+            ("touch_window_s", self.touch_window_s),
+            ("tare_s", self.tare_s),
+            ("largest_tare_n", self.largest_tare_n),
+            ("tactile_silence_s", self.tactile_silence_s),
+            ("frame_gap_s", self.frame_gap_s),
+            ("report_gap_s", self.report_gap_s),
+        ] {
+            if value <= 0.0 {
+                return Err(document.error(field, format!("is {value}"), "give a number above zero"));
+            }
+        }
+        if !(0.004..=0.02).contains(&self.servo_period_s) {
+            let problem = format!("is {}", self.servo_period_s);
+            return Err(document.error("servo_period_s", problem, "give 0.004 to 0.02"));
+        }
+        for (field, rotation) in [
+            ("placement.base_from_gel", self.placement.base_from_gel.rotation),
+            (
+                "placement.tool_from_indenter",
+                self.placement.tool_from_indenter.rotation,
+            ),
+        ] {
+            if (rotation.length() - 1.0).abs() > 1e-6 {
+                return Err(document.error(field, "has no unit quaternion", "normalise its rotation"));
+            }
+        }
+        if (self.placement.force_axis.length() - 1.0).abs() > 1e-6 {
+            let problem = format!("is {}", self.placement.force_axis);
+            return Err(document.error("placement.force_axis", problem, "give a unit vector"));
+        }
+        Ok(())
+    }
+
+    /// What the supervisor is set up with for a press whose indenter touches the gel with the tool at `surface_mm`, in the base's frame.
+    pub(crate) fn setup(&self, surface_mm: DVec3) -> Setup {
+        Setup {
+            limits: self.limits,
+            surface_mm,
+            approach: self.placement.approach(),
+            servo_period_s: self.servo_period_s,
+            force_silence_s: self.force_silence_s,
+            robot_silence_s: self.robot_silence_s,
+            retreat: self.retreat,
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Hears all devices.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::i2c::I2c;
+use phystac::{Error, PhysTac, Transfer};
+use twintac_log::TactileFrame;
+use twintac_rig::xarm::{MotionState, Report, ReportReader, Wire};
+use twintac_rig::{BenchClock, TcpPose, WrenchSample, WrenchSource};
+
+use crate::PressError;
+
+/// How long a thread waits before it looks whether it is to end.
+const WAIT: Duration = Duration::from_millis(50);
+/// Rest after a frame that failed: a bus that fails at once would keep a core busy.
+const AFTER_FAILURE_US: u32 = 1000;
+
+/// A device that streams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The force/torque sensor.
+    Force,
+    /// The robot's reports.
+    Robot,
+    /// The tactile sensor.
+    Tactile,
+}
+
+/// What a device said, and when it arrived.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heard {
+    /// Time on the bench's clock, s; of a tactile frame: when its taxels were triggered.
+    pub bench_s: f64,
+    /// What.
+    pub what: What,
+}
+
+/// What a device said.
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// All taxels were read.
+    Frame(TactileFrame),
+    /// A frame failed.
+    NoFrame {
+        /// Why.
+        problem: String,
+    },
+    /// The force/torque sensor was read.
+    Wrench(WrenchSample),
+    /// The robot reported.
+    Robot {
+        /// Where its tool is.
+        pose: TcpPose,
+        /// Whether it is in error, or stopped.
+        in_error: bool,
+    },
+    /// A stream has ended.
+    Failed {
+        /// Whose.
+        source: Source,
+        /// Why.
+        problem: String,
+    },
+}
+
+/// Threads that hear a device each. They end when this is dropped.
+#[derive(Debug)]
+pub struct Streams {
+    clock: BenchClock,
+    sender: Sender<Heard>,
+    receiver: Receiver<Heard>,
+    is_over: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// What a thread has.
+struct Ear {
+    clock: BenchClock,
+    sender: Sender<Heard>,
+    is_over: Arc<AtomicBool>,
+}
+
+impl Streams {
+    /// Hears nothing yet.
+    #[must_use]
+    pub fn new(clock: BenchClock) -> Self {
+        let (sender, receiver) = channel();
+        Self {
+            clock,
+            sender,
+            receiver,
+            is_over: Arc::default(),
+            threads: Vec::new(),
+        }
+    }
+
+    /// The bench's clock.
+    #[must_use]
+    pub fn clock(&self) -> BenchClock {
+        self.clock
+    }
+
+    /// Hears a force/torque sensor, whose samples are stamped on this bench's clock.
+    ///
+    /// # Errors
+    /// No thread.
+    pub fn hear_force(&mut self, mut source: impl WrenchSource + Send + 'static) -> Result<(), PressError> {
+        self.start("the force sensor", move |ear| {
+            while ear.goes_on() {
+                match source.next_sample(WAIT) {
+                    Ok(Some(sample)) => ear.say(sample.stamp.bench_s, What::Wrench(sample)),
+                    Ok(None) => {}
+                    Err(error) => return ear.fail(Source::Force, &error.to_string()),
+                }
+            }
+        })
+    }
+
+    /// Hears a robot's reports.
+    ///
+    /// # Errors
+    /// No thread.
+    pub fn hear_robot<W: Wire + Send + 'static>(
+        &mut self,
+        mut reader: ReportReader<W>,
+    ) -> Result<(), PressError> {
+        self.start("the robot's reports", move |ear| {
+            while ear.goes_on() {
+                match reader.next_report(WAIT) {
+                    Ok(Some(report)) => {
+                        let in_error = is_in_error(&report);
+                        let pose = report.pose;
+                        ear.say(ear.clock.now_s(), What::Robot { pose, in_error });
+                    }
+                    Ok(None) => {}
+                    Err(error) => return ear.fail(Source::Robot, &error.to_string()),
+                }
+            }
+        })
+    }
+
+    /// Hears a tactile sensor, which is read as fast as its bus lets it. `free` frees a bus that hangs; its channels are looked into anew.
+    ///
+    /// # Errors
+    /// No thread.
+    pub fn hear_taxels<I, D, const N: usize>(
+        &mut self,
+        i2c: I,
+        delay: D,
+        settings: phystac::Settings<N>,
+        transfer: Transfer,
+        mut free: impl FnMut(&mut I, &mut D) + Send + 'static,
+    ) -> Result<(), PressError>
+    where
+        I: I2c + Send + 'static,
+        D: DelayNs + Clone + Send + 'static,
+    {
+        let clock = self.clock;
+        let now_us = move || (clock.now_s() * 1e6) as u64;
+        let mut rest = delay.clone();
+        let mut sensor = PhysTac::new(i2c, delay, now_us, settings);
+        self.start("the tactile sensor", move |ear| {
+            while ear.goes_on() {
+                match sensor.frame() {
+                    Ok(frame) => {
+                        // The barometers convert while the frame is handed on. An error is found again by the next frame.
+                        let _ = sensor.trigger();
+                        let frame_s = frame.triggered_us as f64 * 1e-6;
+                        ear.say(frame_s, What::Frame(TactileFrame::from_driver(&frame, &transfer)));
+                    }
+                    Err(error) => {
+                        let problem = error.to_string();
+                        ear.say(ear.clock.now_s(), What::NoFrame { problem });
+                        if matches!(error, Error::BusHung { .. }) {
+                            sensor.recover(&mut free);
+                        }
+                        rest.delay_us(AFTER_FAILURE_US);
+                    }
+                }
+            }
+        })
+    }
+
+    /// What was heard since the last call, in the order of arrival.
+    pub fn heard(&self) -> impl Iterator<Item = Heard> {
+        self.receiver.try_iter()
+    }
+
+    fn start(
+        &mut self,
+        what: &'static str,
+        body: impl FnOnce(&Ear) + Send + 'static,
+    ) -> Result<(), PressError> {
+        let ear = Ear {
+            clock: self.clock,
+            sender: self.sender.clone(),
+            is_over: Arc::clone(&self.is_over),
+        };
+        let thread = std::thread::Builder::new()
+            .name(what.to_owned())
+            .spawn(move || body(&ear))
+            .map_err(|source| PressError::Thread { what, source })?;
+        self.threads.push(thread);
+        Ok(())
+    }
+}
+
+impl Drop for Streams {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        for thread in self.threads.drain(..) {
+            let _ = thread.join(); // one that panicked has said so
+        }
+    }
+}
+
+impl Ear {
+    fn goes_on(&self) -> bool {
+        !self.is_over.load(Ordering::Relaxed)
+    }
+
+    fn say(&self, bench_s: f64, what: What) {
+        // Nobody hears it any more when the bench is gone.
+        let _ = self.sender.send(Heard { bench_s, what });
+    }
+
+    fn fail(&self, source: Source, problem: &str) {
+        let problem = problem.to_owned();
+        self.say(self.clock.now_s(), What::Failed { source, problem });
+    }
+}
+
+/// Development reports have no error's code; in an error, the state is another.
+fn is_in_error(report: &Report) -> bool {
+    let is_moving = matches!(report.state, MotionState::Ready | MotionState::Moving);
+    report.status.is_some_and(|status| status.error != 0) || !is_moving
+}
