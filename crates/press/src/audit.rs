@@ -64,12 +64,17 @@ pub(crate) fn audit(path: &Path, frame_gap_s: f64, report_gap_s: f64) -> Result<
         .collect();
     let usual_us = median(intervals.iter().copied().flatten().collect()).max(1);
     for (pair, interval_us) in wrenches.windows(2).zip(intervals) {
-        let missing = interval_us.map_or(0, |us| (us + usual_us / 2) / usual_us).saturating_sub(1);
+        let missing = interval_us
+            .map_or(0, |us| (us + usual_us / 2) / usual_us)
+            .saturating_sub(1);
         if missing > u64::from(pair[1].1.lost_before) && !is_marked(Stream::Wrench, pair[0].0, pair[1].0) {
             lost_unmarked += missing;
         }
     }
-    let span_ns = frames.last().zip(frames.first()).map_or(0, |(last, first)| last - first);
+    let span_ns = frames
+        .last()
+        .zip(frames.first())
+        .map_or(0, |(last, first)| last - first);
     Ok(Audit {
         frames: frames.len() as u64,
         frames_s: span_ns as f64 * 1e-9,

@@ -43,11 +43,7 @@ pub struct PlannedPose {
 ///
 /// # Errors
 /// As [`Motion::new`].
-pub fn dry_run(
-    settings: &PressSettings,
-    plans: &[PressPlan],
-    start: &TcpPose,
-) -> Result<DryRun, PressError> {
+pub fn dry_run(settings: &PressSettings, plans: &[PressPlan], start: &TcpPose) -> Result<DryRun, PressError> {
     let (mut time_s, mut tool) = (0.0, *start);
     let mut presses = Vec::with_capacity(plans.len());
     for plan in plans {
@@ -64,7 +60,8 @@ pub fn dry_run(
                 is_above,
                 tool,
             });
-            if motion.phase() == Some(Phase::Approach) && settings.placement.indenter(&tool).position_mm.z <= 0.0
+            if motion.phase() == Some(Phase::Approach)
+                && settings.placement.indenter(&tool).position_mm.z <= 0.0
             {
                 motion.touch(0.0);
             }

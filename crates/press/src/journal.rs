@@ -1,6 +1,8 @@
 //! What goes into a press's log.
 
-use twintac_log::{Body, Event, LogError, LogSender, Message, PoseReading, Stream, TactileFrame, WrenchReading};
+use twintac_log::{
+    Body, Event, LogError, LogSender, Message, PoseReading, Stream, TactileFrame, WrenchReading,
+};
 use twintac_rig::{Stamp, TcpPose, WrenchSample};
 
 /// Hands messages to a log, and marks what is missing between them.

@@ -82,6 +82,9 @@ mod tests {
             ..placement
         };
         let tool = level.tool(&Pose::IDENTITY);
-        assert!(tool.position_mm.distance(DVec3::new(299.0, 20.0, 100.0)) < 1e-9, "{tool:?}");
+        assert!(
+            tool.position_mm.distance(DVec3::new(299.0, 20.0, 100.0)) < 1e-9,
+            "{tool:?}"
+        );
     }
 }

@@ -3,9 +3,7 @@
 use twintac_log::{Event as LogEvent, LogError};
 use twintac_protocol::PressPlan;
 use twintac_recording::Control;
-use twintac_rig::{
-    Cause, Decision, Event, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench,
-};
+use twintac_rig::{Cause, Decision, Event, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench};
 
 use crate::journal::Journal;
 use crate::touch::Touch;
@@ -96,7 +94,11 @@ impl<'a> Press<'a> {
             self.observe(now_s, now_s, Event::OperatorStop);
         }
         let was_stopped = self.cause().is_some();
-        let goal = if was_stopped { Some(self.goal) } else { self.next_goal(now_s)? };
+        let goal = if was_stopped {
+            Some(self.goal)
+        } else {
+            self.next_goal(now_s)?
+        };
         let Some(goal) = goal else {
             return Ok(Standing::Done);
         };
@@ -239,3 +241,7 @@ impl<'a> Press<'a> {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "press_tests.rs"]
+mod tests;

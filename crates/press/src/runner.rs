@@ -154,7 +154,8 @@ impl Runner {
             let found = audit(&log, settings.frame_gap_s, settings.report_gap_s)?;
             summary.frames += found.frames;
             // What the log refused, it has marked.
-            summary.lost_unmarked += found.lost_unmarked + handed.saturating_sub(found.readings + recorded.lost);
+            summary.lost_unmarked +=
+                found.lost_unmarked + handed.saturating_sub(found.readings + recorded.lost);
             frames_s += found.frames_s;
             intervals += found.frames.saturating_sub(1);
             if stopped.is_some() {

@@ -119,3 +119,33 @@ impl PressSettings {
         }
     }
 }
+
+#[cfg(test)]
+pub(crate) fn example() -> PressSettings {
+    PressSettings::parse("bench.toml", include_str!("../tests/bench.toml")).unwrap()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mistakes_are_named_with_their_line() {
+        let text = include_str!("../tests/bench.toml");
+        let wrong = |old: &str, new: &str| {
+            assert!(text.contains(old), "{old}");
+            PressSettings::parse("bench.toml", &text.replace(old, new))
+                .unwrap_err()
+                .field
+        };
+        assert_eq!(wrong("search_mm = ", "search_mm = -"), "search_mm");
+        assert_eq!(
+            wrong("servo_period_s = 0.008", "servo_period_s = 0.5"),
+            "servo_period_s"
+        );
+        assert_eq!(
+            wrong("force_axis = [0.0, 0.0, -1.0]", "force_axis = [0.0, 0.0, -2.0]"),
+            "placement.force_axis"
+        );
+    }
+}
