@@ -88,15 +88,17 @@ fn the_drivers_stand_alone() {
 
 #[test]
 fn the_bench_waits_for_nobody() {
-    let reached = reached_from("twintac-rig");
-    for other in [
-        "twintac-lab",
-        "twintac-emulate",
-        "digitac",
-        "twintac-softbody",
-        "twintac-simulate",
-    ] {
-        assert!(!reached.contains(other), "twintac-rig reaches {other}");
+    for own in ["twintac-rig", "twintac-press"] {
+        let reached = reached_from(own);
+        for other in [
+            "twintac-lab",
+            "twintac-emulate",
+            "digitac",
+            "twintac-softbody",
+            "twintac-simulate",
+        ] {
+            assert!(!reached.contains(other), "{own} reaches {other}");
+        }
     }
 }
 

@@ -7,6 +7,9 @@ use embedded_hal::delay::DelayNs;
 
 use crate::worker::locked;
 
+/// By how much a sleep may take too long: as long as a transaction on the bus, so that the rest of a wait is not slept through.
+const OVERSLEEP: Duration = Duration::from_micros(100);
+
 /// The lab's time, in real or in virtual seconds. Clones read the same clock.
 ///
 /// Real time passes by itself, and waiting takes as long as it says. Virtual time stands still until somebody waits: who waits
@@ -59,7 +62,11 @@ impl LabClock {
     pub fn wait_until_ns(&self, until_ns: u64) {
         match &*self.0 {
             Time::Real(_) => {
-                std::thread::sleep(Duration::from_nanos(until_ns.saturating_sub(self.now_ns())));
+                let left = Duration::from_nanos(until_ns.saturating_sub(self.now_ns()));
+                std::thread::sleep(left.saturating_sub(OVERSLEEP));
+                while self.now_ns() < until_ns {
+                    std::thread::yield_now();
+                }
             }
             Time::Virtual { now_ns, moved } => {
                 let mut now_ns = locked(now_ns);

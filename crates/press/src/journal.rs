@@ -23,8 +23,9 @@ struct Continuity {
     stream: Stream,
     longest_s: f64,
     last_s: Option<f64>,
-    /// The shortest interval so far, s: what is missing in a gap is counted by it.
-    usual_s: f64,
+    /// Time of all intervals that are no gaps, s, and their number: what is missing in a gap is counted by their mean.
+    whole_s: f64,
+    n_whole: u32,
     problem: Option<String>,
 }
 
@@ -120,7 +121,8 @@ impl Continuity {
             stream,
             longest_s,
             last_s: None,
-            usual_s: f64::INFINITY,
+            whole_s: 0.0,
+            n_whole: 0,
             problem: None,
         }
     }
@@ -130,15 +132,19 @@ impl Continuity {
         let last_s = self.last_s.replace(now_s)?;
         let interval_s = now_s - last_s;
         let problem = self.problem.take();
-        if interval_s > 0.0 {
-            self.usual_s = self.usual_s.min(interval_s);
+        if interval_s <= self.longest_s && problem.is_none() {
+            self.whole_s += interval_s;
+            self.n_whole += 1;
+            return None;
         }
-        (interval_s > self.longest_s).then(|| Event::Gap {
+        let usual_s = self.whole_s / f64::from(self.n_whole);
+        let lost = (interval_s / usual_s).round() - 1.0;
+        Some(Event::Gap {
             stream: Some(self.stream),
             cause: problem.unwrap_or_else(|| "nothing came in time".to_owned()),
             from_ns: ns(last_s),
             to_ns: ns(now_s),
-            lost: (self.usual_s < interval_s).then(|| (interval_s / self.usual_s).round() as u64 - 1),
+            lost: (self.n_whole > 0).then(|| lost.max(1.0) as u64),
         })
     }
 }

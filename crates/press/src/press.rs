@@ -116,7 +116,7 @@ impl<'a> Press<'a> {
                 }
             }
             Decision::Stop => {
-                self.stop_latency_s.get_or_insert(0.0); // found in this period: a silence, or a goal
+                self.note_latency(0.0); // found in this period
                 let robot_fails = matches!(self.cause(), Some(Cause::RobotInError));
                 if robot_fails || self.waits >= RETREAT_WAITS {
                     return self.stop(now_s, arm);
@@ -146,12 +146,25 @@ impl<'a> Press<'a> {
         Ok(Standing::Stopped)
     }
 
+    /// A silence counts from when it was too long; anything else from its arrival.
+    fn note_latency(&mut self, since_arrival_s: f64) {
+        let latency_s = match self.cause() {
+            Some(Cause::StreamSilent {
+                silence_s,
+                longest_silence_s,
+                ..
+            }) => silence_s - longest_silence_s,
+            _ => since_arrival_s,
+        };
+        self.stop_latency_s.get_or_insert(latency_s);
+    }
+
     /// Tells the supervisor first; what arrived, if anything, arrived at `arrived_s`.
     fn observe(&mut self, now_s: f64, arrived_s: f64, event: Event) {
         let was_stopped = self.cause().is_some();
         let is_stopped = self.supervisor.observe(now_s, event).is_some();
         if is_stopped && !was_stopped {
-            self.stop_latency_s = Some(now_s - arrived_s);
+            self.note_latency(now_s - arrived_s);
         }
     }
 

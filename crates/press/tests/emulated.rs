@@ -1,0 +1,330 @@
+//! Runs on the emulated bench, in real time and on its sockets: what is recorded, and each fault.
+
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
+use std::collections::BTreeMap;
+use std::net::TcpStream;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::{DQuat, DVec3};
+use phystac::Transfer;
+use phystac::recovery::{free_bus, reset_switch};
+use tempfile::TempDir;
+use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
+use twintac_log::{
+    Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Stream, read_presses,
+};
+use twintac_press::{Bench, PressError, PressSettings, RunSummary, Runner, Streams, dry_run};
+use twintac_protocol::PressPlan;
+use twintac_recording::Provenance;
+use twintac_rig::xarm::{Client, ReportPort, ReportReader};
+use twintac_rig::{BenchClock, Cause, NetFtSource, SensorLimits, netft};
+
+fn runner() -> Runner {
+    let settings = PressSettings::parse("bench.toml", include_str!("bench.toml")).unwrap();
+    Runner {
+        description: Description {
+            sensor: "test".to_owned(),
+            sensor_toml: String::new(),
+            provenance: Provenance::Emulated,
+            taxels: (0..8).map(|taxel| format!("S{taxel}")).collect(),
+            transfer: Some(CountTransfer::from_driver(&Transfer::per_pa(32), true)),
+            base_from_gel: settings.placement.base_from_gel,
+            tool_from_indenter: settings.placement.tool_from_indenter,
+            force_axis: settings.placement.force_axis,
+            start_unix_ns: 0,
+            versions: BTreeMap::new(),
+        },
+        settings,
+        sensor: SensorLimits {
+            force_n: 20.0,
+            depth_mm: 4.0,
+        },
+    }
+}
+
+fn plans(count: usize) -> Vec<PressPlan> {
+    let plan = |index: usize| PressPlan {
+        name: format!("ball#{index:03}"),
+        indenter: "ball".to_owned(),
+        x_mm: index as f64 - 1.0,
+        y_mm: 0.5,
+        rotation: DQuat::from_rotation_z(0.1 * index as f64),
+        clearance_mm: 0.5,
+        depth_mm: 1.0,
+        speed_mm_per_s: 6.0,
+        hold_s: 0.3,
+    };
+    (0..count).map(plan).collect()
+}
+
+/// The emulated devices, with faults, and their clients.
+fn bench(faults: Vec<Fault>) -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
+    let clock = LabClock::real();
+    let mut settings = Settings {
+        faults,
+        ..Settings::default()
+    };
+    settings.robot.first_pose.position_mm = DVec3::new(199.0, 0.0, 103.0);
+    settings.force.zero = [0.1, -0.1, 0.3, 0.0, 0.0, 0.0];
+    let devices = twintac_emulate::Bench::start(clock.clone(), Hertz::default(), &settings).unwrap();
+    let bench_clock = BenchClock::start();
+    let mut streams = Streams::new(bench_clock);
+    let configuration = netft::Client::read_configuration(&devices.force.page().to_string()).unwrap();
+    let mut force = netft::Client::connect(devices.force.requests(), configuration).unwrap();
+    force.start(false).unwrap();
+    streams.hear_force(NetFtSource::new(force, bench_clock)).unwrap();
+    let port = ReportPort::Development;
+    let reports = TcpStream::connect(devices.robot.reports(port)).unwrap();
+    streams.hear_robot(ReportReader::new(reports, port)).unwrap();
+    let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
+    let free = move |_: &mut _, delay: &mut LabClock| {
+        // A bus that stays hung fails the next frame as well.
+        let _ = reset_switch(&mut reset, delay);
+        let _ = free_bus(&mut scl, &mut sda, delay);
+    };
+    streams
+        .hear_taxels::<_, _, 8>(
+            devices.board.bus(),
+            clock,
+            phystac::Settings {
+                conversion_us: 5700, // what the emulated parts take
+                ..phystac::Settings::default()
+            },
+            Transfer::per_pa(32),
+            free,
+        )
+        .unwrap();
+    let mut arm = Client::connect(devices.robot.commands()).unwrap();
+    arm.enable().unwrap();
+    arm.begin_servo().unwrap();
+    (devices, Bench { arm, streams })
+}
+
+fn run(bench: &mut Bench<Client<TcpStream>>, count: usize, out: &Path) -> RunSummary {
+    let interrupt = AtomicBool::new(false);
+    runner()
+        .run(bench, &plans(count), out, &interrupt, &mut |_| {})
+        .unwrap()
+}
+
+/// The only whole log in a folder, with its gaps and the notes in it.
+fn log(out: &Path) -> (Vec<Event>, u64) {
+    let mut names: Vec<_> = std::fs::read_dir(out)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "mcap"))
+        .collect();
+    assert_eq!(names.len(), 1, "{names:?}");
+    let mut reader = LogReader::open(&names.remove(0)).unwrap();
+    let (mut events, mut frames) = (Vec::new(), 0);
+    for message in reader.by_ref() {
+        match message.unwrap().body {
+            Body::Event(event) => events.push(event),
+            Body::Tactile(_) => frames += 1,
+            _ => {}
+        }
+    }
+    assert_eq!(reader.ending(), Some(Ending::Whole));
+    (events, frames)
+}
+
+fn gaps(events: &[Event], of: Stream) -> usize {
+    let is_gap = |event: &&Event| matches!(event, Event::Gap { stream, .. } if *stream == Some(of));
+    events.iter().filter(is_gap).count()
+}
+
+#[test]
+fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
+    let folder = TempDir::new().unwrap();
+    let (devices, mut bench) = bench(Vec::new());
+    // The first run is interrupted when the second press begins.
+    let interrupt = AtomicBool::new(false);
+    let mut begun = 0;
+    let first = runner()
+        .run(
+            &mut bench,
+            &plans(2),
+            folder.path(),
+            &interrupt,
+            &mut |progress| {
+                if let twintac_press::Progress::Press { index, .. } = progress {
+                    begun += 1;
+                    interrupt.store(index == 1, Ordering::Relaxed);
+                }
+            },
+        )
+        .unwrap();
+    assert_eq!((first.presses_done, begun), (1, 2));
+    assert_eq!(first.stopped, Some(Cause::Operator));
+    bench.arm.enable().unwrap();
+    bench.arm.begin_servo().unwrap();
+    let second = run(&mut bench, 2, folder.path());
+    println!("{:.1} Hz, {first:?}, {second:?}", second.rate_hz);
+    assert_eq!((second.presses_done, &second.stopped), (2, &None));
+    assert_eq!((first.lost_unmarked, second.lost_unmarked), (0, 0));
+    assert!(second.frames > 30, "{second:?}");
+    assert!(
+        devices.scene().now().tool.position_mm.z > 102.0,
+        "it ends above the gel"
+    );
+
+    let file = folder.path().join("press-0002.mcap");
+    let read = read_presses(&file, &ReadOptions::default()).unwrap();
+    let press = &read.recording.presses[0];
+    assert_eq!(press.name, "ball#001");
+    assert!(
+        folder.path().join("press-0002.try-1.mcap").exists(),
+        "the first try is kept"
+    );
+
+    // A third run has nothing left to do, and other presses do not fit the folder.
+    assert_eq!(run(&mut bench, 2, folder.path()).frames, 0);
+    let other = runner().run(
+        &mut bench,
+        &plans(1),
+        folder.path(),
+        &AtomicBool::new(false),
+        &mut |_| {},
+    );
+    assert!(matches!(other, Err(PressError::OtherRun { .. })));
+}
+
+#[test]
+fn a_dry_run_ends_where_the_presses_do() {
+    let settings = runner().settings;
+    let start = Settings::default().robot.first_pose;
+    let dry = dry_run(&settings, &plans(3), &start).unwrap();
+    let lowest = |press: &twintac_press::PlannedPress| {
+        press
+            .poses
+            .iter()
+            .map(|pose| pose.tool.position_mm.z)
+            .fold(f64::INFINITY, f64::min)
+    };
+    for press in &dry.presses {
+        assert!(
+            (lowest(press) - 99.0).abs() < 6.0 * settings.servo_period_s,
+            "{}",
+            lowest(press)
+        );
+    }
+    let total_s: f64 = dry.presses.iter().map(|press| press.duration_s).sum();
+    assert!((total_s - dry.duration_s).abs() < 1e-9);
+    let last = dry.presses[2].poses.last().unwrap().tool.position_mm;
+    assert!(last.distance(DVec3::new(201.0, 0.5, 103.0)) < 0.1, "{last}");
+}
+
+/// What a fault leads to.
+enum End {
+    /// The press is done, and the log has gaps of this stream.
+    Gap(Stream),
+    /// The press is done, and the log notes that a taxel gives nothing.
+    Note(&'static str),
+    /// The press is done as if nothing had happened.
+    Nothing,
+    /// The run stops, with these words in its cause.
+    Stop(&'static str),
+}
+
+/// One press each, a fault at a time.
+#[test]
+fn each_fault_is_marked_or_stops_the_run() {
+    let (count, time) = (Moment::Count, Moment::TimeS);
+    let some = |n| Some(count(n));
+    let table = [
+        (
+            What::NoAcknowledge { channel: Some(2) },
+            time(1.0),
+            None,
+            End::Note("taxel 2 is Missing"),
+        ),
+        (
+            What::NoAcknowledge { channel: None },
+            time(1.2),
+            Some(time(0.1)),
+            End::Gap(Stream::Tactile),
+        ),
+        (
+            What::NoAcknowledge { channel: None },
+            time(1.2),
+            None,
+            End::Stop("the tactile sensor"),
+        ),
+        (
+            What::StuckBus { channel: None },
+            time(1.2),
+            None,
+            End::Gap(Stream::Tactile),
+        ),
+        (What::LostDatagrams, time(1.2), some(10), End::Gap(Stream::Wrench)),
+        (
+            What::LostDatagrams,
+            time(1.2),
+            None,
+            End::Stop("the force sensor"),
+        ),
+        (
+            What::LateDatagrams { by_s: 0.02 },
+            time(1.2),
+            some(10),
+            End::Gap(Stream::Wrench),
+        ),
+        (What::DoubledDatagrams, time(1.2), None, End::Nothing),
+        (
+            What::ReorderedDatagrams,
+            time(1.2),
+            some(10),
+            End::Gap(Stream::Wrench),
+        ),
+        (What::ConnectionReset, time(1.2), None, End::Stop("robot")),
+        (What::RobotError { code: 31 }, time(1.2), None, End::Stop("robot")),
+        (What::SaturatedForce, time(1.2), None, End::Stop("saturation")),
+    ];
+    // Few at a time: each bench runs in real time.
+    for few in table.chunks(3) {
+        std::thread::scope(|scope| {
+            for (what, begins, lasts, end) in few {
+                let (what, begins, lasts) = (*what, *begins, *lasts);
+                scope.spawn(move || check(Fault { what, begins, lasts }, end));
+            }
+        });
+    }
+}
+
+fn check(fault: Fault, end: &End) {
+    let what = fault.what;
+    let folder = TempDir::new().unwrap();
+    let (_devices, mut bench) = bench(vec![fault]);
+    let summary = run(&mut bench, 1, folder.path());
+    let (events, frames) = log(folder.path());
+    let cause = summary.stopped.as_ref().map(ToString::to_string);
+    println!(
+        "{what:?} {:?}: {cause:?}, {:?} periods",
+        fault.lasts, summary.stop_latency_periods
+    );
+    assert_eq!(summary.lost_unmarked, 0, "{what:?}: {summary:?}");
+    assert_eq!(summary.frames, frames, "{what:?}");
+    let cause = cause.as_deref();
+    match end {
+        End::Nothing => assert_eq!(cause, None, "{what:?}"),
+        End::Gap(stream) => {
+            assert_eq!(cause, None, "{what:?}");
+            assert!(gaps(&events, *stream) > 0, "{what:?}: {events:?}");
+        }
+        End::Note(words) => {
+            assert_eq!(cause, None, "{what:?}");
+            let is_there = |event: &Event| matches!(event, Event::Note { text } if text.contains(*words));
+            assert!(events.iter().any(is_there), "{what:?}: {events:?}");
+        }
+        End::Stop(words) => {
+            assert!(
+                cause.is_some_and(|cause| cause.contains(words)),
+                "{what:?}: {cause:?}"
+            );
+            assert!(events.iter().any(|event| matches!(event, Event::Stopped { .. })));
+            assert_eq!(summary.presses_done, 0, "{what:?}");
+        }
+    }
+}
