@@ -65,7 +65,7 @@ impl LabClock {
                 let left = Duration::from_nanos(until_ns.saturating_sub(self.now_ns()));
                 std::thread::sleep(left.saturating_sub(OVERSLEEP));
                 while self.now_ns() < until_ns {
-                    std::thread::yield_now();
+                    std::hint::spin_loop();
                 }
             }
             Time::Virtual { now_ns, moved } => {
