@@ -127,7 +127,8 @@ impl LogSender {
     /// Hands a message over, and never waits.
     ///
     /// # Errors
-    /// [`LogError::Invalid`]: this message cannot be written; see [`LogWriter::write`]. [`LogError::Behind`]: too many wait, and this one is lost; the next may be taken. [`LogError::Stopped`]: none is taken any more.
+    /// [`LogError::Invalid`]: this message cannot be written; see [`LogWriter::write`]. [`LogError::Behind`]: too many wait, and
+    /// this one is lost; the next may be taken. [`LogError::Stopped`]: none is taken any more.
     pub fn send(&self, message: Message) -> Result<(), LogError> {
         let _running = self.shared.running()?;
         self.accepts.check(&message)?;
