@@ -1,0 +1,53 @@
+//! Records what a bench streams, as it happens, and reads it back as presses.
+//!
+//! A log is an MCAP file with ROS 2 messages, which Foxglove, Rerun and `ros2 bag` open: tactile frames, wrenches, robot poses
+//! and events, all stamped on one bench clock, beside each source's own. It is flushed at least every second: a file that was
+//! cut anywhere is readable up to there, and [`recover`] makes it whole. [`Recorder`] writes it on a thread of its own,
+//! [`LogReader`] reads it, and [`read_presses`] makes a [`Recording`](twintac_recording::Recording) of it, to be stored as
+//! Parquet and learned from.
+//!
+//! ```
+//! # use std::path::Path;
+//! # use twintac_log::{Body, Description, Event, LogError, LogReader, Message, ReadOptions, Recorder, read_presses};
+//! # fn record(path: &Path, description: &Description) -> Result<(), LogError> {
+//! let recorder = Recorder::create(path, description)?;
+//! let sender = recorder.sender(); // threads have copies
+//! let text = "the gel was changed".to_owned();
+//! sender.send(Message::at_s(0.25, Body::Event(Event::Note { text })))?;
+//! recorder.finish()?;
+//!
+//! for message in LogReader::open(path)? {
+//!     println!("{:?}", message?);
+//! }
+//! let recording = read_presses(path, &ReadOptions::default())?.recording;
+//! # let _ = recording;
+//! # Ok(())
+//! # }
+//! ```
+
+mod accepts;
+mod cdr;
+mod description;
+mod devices;
+mod error;
+mod event;
+mod mcap;
+mod message;
+mod press;
+mod reader;
+mod recorder;
+mod recover;
+mod ros;
+mod sink;
+mod writer;
+
+pub use description::{CountTransfer, Description};
+pub use error::LogError;
+pub use event::Event;
+pub use message::{Body, Message, PoseReading, Stream, TactileFrame, Taxel, TaxelState, WrenchReading};
+pub use press::{ReadBack, ReadOptions, presses, read_presses};
+pub use reader::{Ending, LogReader};
+pub use recorder::{LogSender, Recorded, Recorder};
+pub use recover::{Recovered, recover};
+pub use sink::{LogFile, Sink};
+pub use writer::LogWriter;

@@ -1,0 +1,171 @@
+//! What a bench streams.
+
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::Event;
+
+/// Something that happened on the bench, and when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    /// When, on the bench's clock, ns since [`Description::start_unix_ns`](crate::Description::start_unix_ns). For a tactile
+    /// frame: when its taxels were triggered.
+    pub bench_ns: u64,
+    /// What.
+    pub body: Body,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// All taxels were read.
+    Tactile(TactileFrame),
+    /// The force/torque sensor was read.
+    Wrench(WrenchReading),
+    /// The robot said where its tool is.
+    Pose(PoseReading),
+    /// Something happened once.
+    Event(Event),
+}
+
+/// Where a message belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stream {
+    /// Tactile frames.
+    Tactile,
+    /// Wrench readings.
+    Wrench,
+    /// Robot poses.
+    Pose,
+    /// Events.
+    Event,
+}
+
+impl Stream {
+    pub(crate) const ALL: [Self; 4] = [Self::Tactile, Self::Wrench, Self::Pose, Self::Event];
+}
+
+impl std::fmt::Display for Stream {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Tactile => "tactile",
+            Self::Wrench => "wrench",
+            Self::Pose => "pose",
+            Self::Event => "event",
+        })
+    }
+}
+
+impl Message {
+    /// A message at a time of the bench's clock, s since its start, as [`BenchClock`](twintac_rig::BenchClock) has it; to the
+    /// nearest ns.
+    #[must_use]
+    pub fn at_s(bench_s: f64, body: Body) -> Self {
+        Self {
+            bench_ns: (bench_s * 1e9).round() as u64, // negative and NaN give 0, too large gives the largest
+            body,
+        }
+    }
+
+    /// Where it belongs.
+    #[must_use]
+    pub fn stream(&self) -> Stream {
+        match self.body {
+            Body::Tactile(_) => Stream::Tactile,
+            Body::Wrench(_) => Stream::Wrench,
+            Body::Pose(_) => Stream::Pose,
+            Body::Event(_) => Stream::Event,
+        }
+    }
+}
+
+/// One reading of all taxels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TactileFrame {
+    /// When the taxels were triggered, on the sensor's own clock, µs.
+    pub triggered_us: u64,
+    /// The taxels, in the order of [`Description::taxels`](crate::Description::taxels).
+    pub taxels: Vec<Taxel>,
+}
+
+/// What one taxel gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taxel {
+    /// Whether its pressure can be used, or why not.
+    pub state: TaxelState,
+    /// When it was read, on the sensor's own clock, µs.
+    pub read_us: u64,
+    /// What it counted, if it gave anything. `i32::MIN` is no count.
+    pub counts: Option<i32>,
+    /// Pressure, Pa, if it gave one.
+    pub pressure_pa: Option<f64>,
+    /// Temperature, °C, if it gave one.
+    pub temperature_c: Option<f64>,
+}
+
+/// Whether a taxel's pressure can be used. Numbers stand in files and stay as they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum TaxelState {
+    /// It can.
+    Good = 0,
+    /// Its barometer does not acknowledge.
+    Missing = 1,
+    /// Its conversion did not end in time.
+    Stuck = 2,
+    /// The bus failed with its channel open.
+    BusError = 3,
+    /// Its channel hung the bus and is kept closed.
+    Isolated = 4,
+    /// Its barometer does not keep its settings.
+    Refused = 5,
+    /// Its pressure is at an end of the range or beyond.
+    Saturated = 6,
+    /// Its value no longer changes.
+    Frozen = 7,
+}
+
+impl TaxelState {
+    pub(crate) fn from_code(code: u8) -> Option<Self> {
+        const ALL: [TaxelState; 8] = [
+            TaxelState::Good,
+            TaxelState::Missing,
+            TaxelState::Stuck,
+            TaxelState::BusError,
+            TaxelState::Isolated,
+            TaxelState::Refused,
+            TaxelState::Saturated,
+            TaxelState::Frozen,
+        ];
+        ALL.get(usize::from(code)).copied()
+    }
+}
+
+/// One reading of the force/torque sensor, as the sensor gives it: no tare is taken off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrenchReading {
+    /// When it was measured, on the source's own clock, s, if it has one.
+    pub source_s: Option<f64>,
+    /// The source's number of the reading, if it has one.
+    pub sequence: Option<u32>,
+    /// The source's status bits; 0 is healthy.
+    pub status: u32,
+    /// Readings lost between the one before and this one.
+    pub lost_before: u32,
+    /// Force, N, in the sensor's frame.
+    pub force_n: DVec3,
+    /// Torque about the sensor's origin, N mm, in the sensor's frame.
+    pub torque_n_mm: DVec3,
+}
+
+/// Where the robot's tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseReading {
+    /// When it was measured, on the robot's own clock, s, if it has one.
+    pub source_s: Option<f64>,
+    /// The tool's origin in the robot's base frame, mm.
+    pub position_mm: DVec3,
+    /// From the tool's to the base's frame, a unit quaternion.
+    pub base_from_tool: DQuat,
+}

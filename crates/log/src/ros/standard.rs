@@ -1,0 +1,27 @@
+//! Readings in the standard messages, in SI units (REP 103).
+
+use super::put_header;
+use super::sample::{put_quaternion, put_vector};
+use crate::cdr::Encoder;
+use crate::{PoseReading, WrenchReading};
+
+/// `sensor_msgs/FluidPressure` and `sensor_msgs/Temperature`, which are alike: a number and its variance, 0 where it is not known.
+pub(super) fn put_scalar(e: &mut Encoder<'_>, unix_ns: u64, frame: &str, number: f64) {
+    put_header(e, unix_ns, frame);
+    e.f64(number);
+    e.f64(0.0);
+}
+
+/// `geometry_msgs/WrenchStamped`: N and N m.
+pub(super) fn put_wrench(e: &mut Encoder<'_>, unix_ns: u64, reading: &WrenchReading) {
+    put_header(e, unix_ns, "wrench");
+    put_vector(e, reading.force_n);
+    put_vector(e, reading.torque_n_mm / 1000.0);
+}
+
+/// `geometry_msgs/PoseStamped`: m.
+pub(super) fn put_pose(e: &mut Encoder<'_>, unix_ns: u64, reading: &PoseReading) {
+    put_header(e, unix_ns, "base");
+    put_vector(e, reading.position_mm / 1000.0);
+    put_quaternion(e, reading.base_from_tool);
+}

@@ -1,0 +1,183 @@
+//! Messages in, an MCAP file out.
+
+use std::collections::BTreeMap;
+
+use crate::accepts::Accepts;
+use crate::cdr::Encoder;
+use crate::mcap::{Chunk, MAGIC, Records, Summary, number, op};
+use crate::ros::{DEFINITIONS, MESSAGE_ENCODING, SCHEMA_ENCODING, Topics};
+use crate::{Description, LogError, Message, Sink};
+
+/// Longest time of the bench that a message waits for being flushed, ns, while others follow it.
+pub(crate) const FLUSH_NS: u64 = 500_000_000;
+/// Size from which on a chunk is flushed.
+const CHUNK_BYTES: usize = 1 << 20;
+/// Name of the metadata that hold the description.
+pub(crate) const DESCRIPTION: &str = "twintac";
+
+/// Writes a log. What was flushed stays readable whatever happens later, also without [`finish`](Self::finish).
+///
+/// The same description and messages give the same bytes.
+#[derive(Debug)]
+pub struct LogWriter<S: Sink> {
+    sink: S,
+    topics: Topics,
+    accepts: Accepts,
+    chunk: Chunk,
+    /// Number of the next message of each channel.
+    sequences: Vec<u32>,
+    summary: Summary,
+    /// Bytes and their checksum that are written.
+    written: u64,
+    checksum: crc32fast::Hasher,
+    /// Why nothing can be written any more.
+    failure: Option<String>,
+    out: Records,
+}
+
+impl<S: Sink> LogWriter<S> {
+    /// Begins a log and flushes what it is about.
+    ///
+    /// # Errors
+    /// A description that contradicts itself; a sink that takes no more.
+    pub fn new(sink: S, description: &Description) -> Result<Self, LogError> {
+        let metadata = description.to_map()?;
+        let topics = Topics::new(&description.taxels);
+        let channels = topics.channels.len();
+        let mut writer = Self {
+            sink,
+            accepts: Accepts::new(description),
+            chunk: Chunk::new(channels),
+            sequences: vec![0; channels],
+            summary: Summary::new(channels, DEFINITIONS.len()),
+            written: 0,
+            checksum: crc32fast::Hasher::new(),
+            failure: None,
+            out: Records::default(),
+            topics,
+        };
+        let out = &mut writer.out;
+        out.bytes.extend(MAGIC);
+        out.header("ros2", concat!("twintac ", env!("CARGO_PKG_VERSION")));
+        for (_, records) in declarations(&writer.topics) {
+            out.bytes.extend(records.bytes);
+        }
+        let start = out.bytes.len();
+        out.metadata(DESCRIPTION, &metadata);
+        let length = out.bytes.len() - start;
+        writer
+            .summary
+            .add_metadata(DESCRIPTION, start as u64, length as u64);
+        writer.append()?;
+        Ok(writer)
+    }
+
+    /// Adds a message, and flushes those before it when they are half a second older or many.
+    ///
+    /// # Errors
+    /// [`LogError::Invalid`]: a frame with another number of taxels, an event that is no JSON, or a time beyond 64 bits; nothing
+    /// was added and the next message can be written. [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no
+    /// more, for good.
+    pub fn write(&mut self, message: &Message) -> Result<(), LogError> {
+        self.check_running()?;
+        let unix_ns = self.accepts.check(message)?;
+        let is_due = self
+            .chunk
+            .span_ns()
+            .is_some_and(|(earliest_ns, _)| unix_ns >= earliest_ns.saturating_add(FLUSH_NS));
+        if is_due || self.chunk.len_bytes() >= CHUNK_BYTES {
+            self.flush()?;
+        }
+        let (chunk, sequences) = (&mut self.chunk, &mut self.sequences);
+        self.topics.each(unix_ns, &message.body, |channel, put| {
+            let sequence = &mut sequences[channel];
+            chunk.add(channel, *sequence, unix_ns, |bytes| put(&mut Encoder::new(bytes)));
+            *sequence = sequence.wrapping_add(1);
+        });
+        Ok(())
+    }
+
+    /// Writes what waits and syncs it.
+    ///
+    /// # Errors
+    /// [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no more, for good.
+    pub fn flush(&mut self) -> Result<(), LogError> {
+        self.check_running()?;
+        if self.chunk.is_empty() {
+            return Ok(());
+        }
+        self.summary
+            .add_chunk(&mut self.chunk, self.written, &mut self.out);
+        self.append()
+    }
+
+    /// Flushes, writes the index of the whole log, and lets it take its place.
+    ///
+    /// # Errors
+    /// As [`flush`](Self::flush).
+    pub fn finish(mut self) -> Result<S, LogError> {
+        self.close()?;
+        Ok(self.sink)
+    }
+
+    pub(crate) fn close(&mut self) -> Result<(), LogError> {
+        self.flush()?;
+        let checksum = self.checksum.clone().finalize();
+        self.out.bytes = self
+            .summary
+            .close(self.written, checksum, &declarations(&self.topics));
+        self.append()?;
+        let completed = self.sink.complete();
+        self.latch(completed)
+    }
+
+    /// Bytes that were written, without what waits.
+    #[must_use]
+    pub fn written_bytes(&self) -> u64 {
+        self.written
+    }
+
+    fn check_running(&self) -> Result<(), LogError> {
+        match &self.failure {
+            Some(why) => Err(LogError::Stopped { why: why.clone() }),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes and syncs what stands in `out`.
+    fn append(&mut self) -> Result<(), LogError> {
+        let written = self
+            .sink
+            .write_all(&self.out.bytes)
+            .and_then(|()| self.sink.flush())
+            .and_then(|()| self.sink.sync());
+        self.checksum.update(&self.out.bytes);
+        self.written += self.out.bytes.len() as u64;
+        self.out.bytes.clear();
+        self.latch(written)
+    }
+
+    fn latch(&mut self, result: std::io::Result<()>) -> Result<(), LogError> {
+        result.map_err(|source| {
+            let file = self.sink.name();
+            let error = LogError::Write { file, source };
+            self.failure = Some(error.to_string());
+            error
+        })
+    }
+}
+
+/// Schemas and channels: at a file's start and in its summary.
+fn declarations(topics: &Topics) -> [(u8, Records); 2] {
+    let mut schemas = Records::default();
+    for (place, definition) in DEFINITIONS.iter().enumerate() {
+        schemas.schema(number(place), definition.name, SCHEMA_ENCODING, definition.text);
+    }
+    // What players of ROS look for: no quality of service was offered, as nobody published.
+    let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), String::new())]);
+    let mut channels = Records::default();
+    for (place, (topic, schema)) in topics.channels.iter().enumerate() {
+        channels.channel(number(place), number(*schema), topic, MESSAGE_ENCODING, &metadata);
+    }
+    [(op::SCHEMA, schemas), (op::CHANNEL, channels)]
+}
