@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use twintac_emulate::CHANNELS;
 use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
@@ -16,7 +17,7 @@ use crate::Reality;
 use crate::imperfect::Chance;
 
 /// Pressure of the air, kPa.
-const ATMOSPHERE_KPA: f64 = 101.325;
+pub(crate) const ATMOSPHERE_KPA: f64 = 101.325;
 
 /// Moments computed in a hold, as fractions of it: most happens early.
 const HOLD_FRACTIONS: [f64; 4] = [0.05, 0.2, 0.5, 1.0];
@@ -107,7 +108,7 @@ impl Bench {
         let mut chance = Chance::new(self.reality.seed, &plan.name);
         let (robot, readout) = (&self.reality.robot, &self.reality.readout);
         let place = self.true_place(plan, &mut chance)?;
-        let deeper_mm = robot.depth_offset_mm + chance.normal(robot.depth_deviation_mm);
+        let deeper_mm = self.depth_offset_mm(&mut chance);
 
         let schedule = plan.trajectory(self.drawing.readout.rate_hz);
         let keyframes = keyframes(&schedule, deeper_mm, self.reality.gel.depth_step_mm);
@@ -181,7 +182,41 @@ impl Bench {
         }
     }
 
-    fn true_place(&self, plan: &PressPlan, chance: &mut Chance) -> Result<PressPlace, LabError> {
+    pub(crate) fn reality(&self) -> &Reality {
+        &self.reality
+    }
+
+    /// The gel without what relaxes.
+    pub(crate) fn instantaneous(&self) -> Gel {
+        let material = Material {
+            prony: Vec::new(),
+            ..self.gel.material().clone()
+        };
+        self.gel.clone().with_material(material)
+    }
+
+    /// The taxels that have a channel of a switch, and it.
+    pub(crate) fn taxel_channels(&self) -> impl Iterator<Item = (usize, usize)> {
+        let channels = self.drawing.taxels.iter().map(|taxel| usize::from(taxel.channel));
+        channels.enumerate().filter(|&(_, channel)| channel < CHANNELS)
+    }
+
+    /// Gain and offset, kPa, of each channel; of one without a taxel, those of a perfect one.
+    pub(crate) fn channels(&self) -> ([f64; CHANNELS], [f64; CHANNELS]) {
+        let (mut gains, mut offsets_kpa) = ([1.0; CHANNELS], [0.0; CHANNELS]);
+        for (taxel, channel) in self.taxel_channels() {
+            (gains[channel], offsets_kpa[channel]) = (self.gains[taxel], self.offsets_kpa[taxel]);
+        }
+        (gains, offsets_kpa)
+    }
+
+    /// How much deeper than the robot believes the indenter is in a press, mm.
+    pub(crate) fn depth_offset_mm(&self, chance: &mut Chance) -> f64 {
+        let robot = &self.reality.robot;
+        robot.depth_offset_mm + chance.normal(robot.depth_deviation_mm)
+    }
+
+    pub(crate) fn true_place(&self, plan: &PressPlan, chance: &mut Chance) -> Result<PressPlace, LabError> {
         let indenter = self
             .drawing
             .indenters

@@ -4,10 +4,14 @@
 //! against it, and differs from it on purpose: a finer mesh, another material law with a memory, taxels that sit and amplify a little
 //! differently from the drawing, noise, quantization, late and jittery clocks, a robot that misses its place. All of that is in a
 //! [`Reality`], read from a TOML file. What it records is marked `emulated`.
+//!
+//! [`Bench::press`] records a planned press at once; [`Bench::live`] is felt by emulated devices (`twintac-emulate`) while a robot moves.
 
 mod bench;
 mod imperfect;
+mod live;
 mod reality;
 
 pub use bench::{Bench, LabError};
+pub use live::{LiveGel, Selector};
 pub use reality::{GelReality, ReadoutReality, Reality, RobotReality};

@@ -1,7 +1,7 @@
 //! How many messages a second a recorder writes, and how long handing one over takes at most.
 //!
-//! `cargo run --release -p twintac-log --example throughput -- <folder>` writes a minute of a bench (8 taxels at 100 Hz, a force sensor at 7 kHz,
-//! a robot at 100 Hz) into the folder as fast as the disk takes it, syncing twice for each second of the bench.
+//! `cargo run --release -p twintac-log --example throughput -- <folder>` writes a minute of a bench (8 taxels at 100 Hz,
+//! a force sensor at 7 kHz, a robot at 100 Hz) into the folder as fast as the disk takes it, syncing twice for each second.
 
 #![allow(clippy::print_stdout)] // its results
 

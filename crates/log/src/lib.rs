@@ -5,7 +5,27 @@
 //! cut anywhere is readable up to there, and [`recover`] makes it whole. [`Recorder`] writes it on a thread of its own,
 //! [`LogReader`] reads it, and [`read_presses`] makes a [`Recording`](twintac_recording::Recording) of it, to be stored as
 //! Parquet and learned from.
+//!
+//! ```
+//! # use std::path::Path;
+//! # use twintac_log::{Body, Description, Event, LogError, LogReader, Message, ReadOptions, Recorder, read_presses};
+//! # fn record(path: &Path, description: &Description) -> Result<(), LogError> {
+//! let recorder = Recorder::create(path, description)?;
+//! let sender = recorder.sender(); // threads have copies
+//! let text = "the gel was changed".to_owned();
+//! sender.send(Message::at_s(0.25, Body::Event(Event::Note { text })))?;
+//! recorder.finish()?;
+//!
+//! for message in LogReader::open(path)? {
+//!     println!("{:?}", message?);
+//! }
+//! let recording = read_presses(path, &ReadOptions::default())?.recording;
+//! # let _ = recording;
+//! # Ok(())
+//! # }
+//! ```
 
+mod accepts;
 mod cdr;
 mod description;
 mod devices;

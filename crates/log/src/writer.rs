@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::accepts::Accepts;
 use crate::cdr::Encoder;
 use crate::mcap::{Chunk, MAGIC, Records, Summary, number, op};
 use crate::ros::{DEFINITIONS, MESSAGE_ENCODING, SCHEMA_ENCODING, Topics};
-use crate::{Body, Description, LogError, Message, Sink};
+use crate::{Description, LogError, Message, Sink};
 
 /// Longest time of the bench that a message waits for being flushed, ns, while others follow it.
 pub(crate) const FLUSH_NS: u64 = 500_000_000;
@@ -21,8 +22,7 @@ pub(crate) const DESCRIPTION: &str = "twintac";
 pub struct LogWriter<S: Sink> {
     sink: S,
     topics: Topics,
-    taxels: usize,
-    start_unix_ns: u64,
+    accepts: Accepts,
     chunk: Chunk,
     /// Number of the next message of each channel.
     sequences: Vec<u32>,
@@ -46,8 +46,7 @@ impl<S: Sink> LogWriter<S> {
         let channels = topics.channels.len();
         let mut writer = Self {
             sink,
-            taxels: description.taxels.len(),
-            start_unix_ns: description.start_unix_ns,
+            accepts: Accepts::new(description),
             chunk: Chunk::new(channels),
             sequences: vec![0; channels],
             summary: Summary::new(channels, DEFINITIONS.len()),
@@ -80,7 +79,8 @@ impl<S: Sink> LogWriter<S> {
     /// was added and the next message can be written. [`LogError::Write`] and then [`LogError::Stopped`]: the sink takes no
     /// more, for good.
     pub fn write(&mut self, message: &Message) -> Result<(), LogError> {
-        let unix_ns = self.check(message)?;
+        self.check_running()?;
+        let unix_ns = self.accepts.check(message)?;
         let is_due = self
             .chunk
             .span_ns()
@@ -142,30 +142,6 @@ impl<S: Sink> LogWriter<S> {
             Some(why) => Err(LogError::Stopped { why: why.clone() }),
             None => Ok(()),
         }
-    }
-
-    /// The message's time on the wall clock, ns, if it can be written.
-    fn check(&self, message: &Message) -> Result<u64, LogError> {
-        self.check_running()?;
-        let invalid = |what, problem: String| Err(LogError::Invalid { what, problem });
-        match &message.body {
-            Body::Tactile(frame) if frame.taxels.len() != self.taxels => {
-                let found = frame.taxels.len();
-                let expected = self.taxels;
-                return invalid(
-                    "tactile frame",
-                    format!("has {found} taxels, expected {expected}"),
-                );
-            }
-            Body::Event(event) if !event.is_finite() => {
-                return invalid("event", "a number is not finite".to_owned());
-            }
-            _ => {}
-        }
-        let Some(unix_ns) = self.start_unix_ns.checked_add(message.bench_ns) else {
-            return invalid("bench_ns", "the time is beyond 64 bits".to_owned());
-        };
-        Ok(unix_ns)
     }
 
     /// Writes and syncs what stands in `out`.

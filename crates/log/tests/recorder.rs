@@ -82,6 +82,9 @@ fn a_file_has_its_name_only_when_it_is_whole() {
     let sender = recorder.sender();
     for message in &sent {
         sender.send(message.clone()).unwrap();
+        // What cannot be written is the sender's error, and not the log's end.
+        let wrong = sender.send(common::frame(0, 3)).unwrap_err();
+        assert!(matches!(wrong, LogError::Invalid { .. }), "{wrong}");
     }
     let recorded = recorder.finish().unwrap();
     assert!(path.exists() && !partial.exists());

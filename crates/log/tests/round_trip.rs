@@ -123,6 +123,13 @@ fn every_checksum_holds_by_the_formats_own_library() {
     assert!(rest.is_empty());
     assert_eq!(checksums.len(), 2);
     assert!(!checksums.contains(&vec![0; 4]));
+    // The summary's checksum runs from its first record to where it stands itself, in the footer, before the last magic.
+    let end = bytes.len() - 8 - 4;
+    let start = u64::from_le_bytes(bytes[end - 16..end - 8].try_into().unwrap()) as usize;
+    assert_eq!(
+        crc32fast::hash(&bytes[start..end]).to_le_bytes(),
+        bytes[end..end + 4]
+    );
 }
 
 #[test]

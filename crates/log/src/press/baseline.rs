@@ -12,13 +12,15 @@ pub(super) fn baseline_pa(
     window_ns: u64,
 ) -> Vec<Option<f64>> {
     let begun_ns = collected.spans[place].from_ns;
-    let others = &collected.spans[..place];
+    let from_ns = begun_ns.saturating_sub(window_ns);
+    // Presses follow each other: only the last ones can reach into the window.
+    let before = || collected.spans[..place].iter().rev();
     let is_untouched = |time_ns: u64| {
         let is_during = |span: &Span| (span.from_ns..=span.to_ns).contains(&time_ns);
-        !others.iter().rev().any(is_during)
+        !before().take_while(|span| span.to_ns >= from_ns).any(is_during)
     };
     let frames = &collected.frames;
-    let first = frames.partition_point(|(time_ns, _)| *time_ns < begun_ns.saturating_sub(window_ns));
+    let first = frames.partition_point(|(time_ns, _)| *time_ns < from_ns);
     let behind = frames.partition_point(|(time_ns, _)| *time_ns < begun_ns);
     let mut sums = vec![(0.0, 0_u32); taxels];
     for (_, frame) in frames[first..behind]

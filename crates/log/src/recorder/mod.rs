@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
+use crate::accepts::Accepts;
 use crate::sink::LogFile;
 use crate::{Description, LogError, LogWriter, Message, Sink, Stream};
 use shared::Shared;
@@ -31,6 +32,7 @@ pub struct Recorder {
 pub struct LogSender {
     commands: SyncSender<Command>,
     shared: Arc<Shared>,
+    accepts: Accepts,
     capacity: usize,
 }
 
@@ -78,6 +80,7 @@ impl Recorder {
         let sender = LogSender {
             commands,
             shared,
+            accepts: Accepts::new(description),
             capacity,
         };
         Ok(Self {
@@ -124,9 +127,11 @@ impl LogSender {
     /// Hands a message over, and never waits.
     ///
     /// # Errors
-    /// [`LogError::Behind`]: too many wait, and this one is lost; the next may be taken. [`LogError::Stopped`]: none is taken any more.
+    /// [`LogError::Invalid`]: this message cannot be written; see [`LogWriter::write`]. [`LogError::Behind`]: too many wait, and
+    /// this one is lost; the next may be taken. [`LogError::Stopped`]: none is taken any more.
     pub fn send(&self, message: Message) -> Result<(), LogError> {
         let _running = self.shared.running()?;
+        self.accepts.check(&message)?;
         let stream = message.stream();
         let room = match stream {
             Stream::Event => self.capacity + EVENT_ROOM,

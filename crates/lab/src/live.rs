@@ -1,0 +1,258 @@
+//! The emulated gel as the bench's devices feel it while a robot moves.
+//!
+//! Each place of a plan is computed before the robot moves, as a table over depth of the gel's instantaneous answer. What relaxes comes on top as
+//! a fading memory of what the table said, `σ(t) = (1 - Σ wᵢ) σₑ(t) + Σ wᵢ ∫ exp(-(t - s)/τᵢ) dσₑ(s)`: quasi-linear viscoelasticity (Fung,
+//! Biomechanics, 1981, section 7.6), which a robot may drive in whatever way it comes to.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+use twintac_emulate::{CHANNELS, Physics, Sensed};
+use twintac_protocol::PressPlan;
+use twintac_rig::{TcpPose, Wrench};
+use twintac_shape::Pose;
+use twintac_simulate::{Pchip, SweepFrame};
+
+use crate::bench::{ATMOSPHERE_KPA, Bench, LabError};
+use crate::imperfect::Chance;
+use crate::reality::Relaxation;
+
+/// Temperature of the barometers, °C.
+const TEMPERATURE_C: f64 = 25.0;
+
+/// How much deeper than planned the tables go, mm.
+const SPARE_MM: f64 = 0.5;
+
+/// Values that a table gives: the force, and the pressures at all channels.
+const VALUES: usize = 1 + CHANNELS;
+
+/// What the devices feel of one cast of a sensor, pressed at the places of a plan.
+pub struct LiveGel {
+    base_from_gel: Pose,
+    tables: Vec<Table>,
+    selected: Arc<AtomicUsize>,
+    relaxation: Vec<Relaxation>,
+    /// Of each channel.
+    gains: [f64; CHANNELS],
+    offsets_kpa: [f64; CHANNELS],
+    drift_kpa_per_sqrt_s: f64,
+    chance: Chance,
+    memory: Memory,
+}
+
+/// Tells the gel which press of its plan comes next: with which indenter, at which place.
+#[derive(Clone)]
+pub struct Selector {
+    names: Arc<Vec<String>>,
+    selected: Arc<AtomicUsize>,
+}
+
+/// The gel's instantaneous answer at one place.
+struct Table {
+    name: String,
+    /// Height of the indenter's origin at first touch, mm, in the gel's frame.
+    touch_mm: f64,
+    /// How much deeper than the robot believes the indenter is, mm.
+    deeper_mm: f64,
+    /// Over depth, mm; none for a channel without a taxel.
+    curves: [Option<Pchip>; VALUES],
+}
+
+/// What has been felt so far.
+struct Memory {
+    time_s: f64,
+    elastic: [f64; VALUES],
+    /// Of each term of the relaxation.
+    fading: Vec<[f64; VALUES]>,
+    walk_kpa: [f64; CHANNELS],
+}
+
+impl Bench {
+    /// Computes the gel's answers at the places of a plan, for a gel that stands somewhere in the robot's base frame. Says after each place that it
+    /// is done.
+    ///
+    /// # Errors
+    /// A place that can't be pressed, or not as deep as planned.
+    pub fn live(
+        &self,
+        plans: &[PressPlan],
+        base_from_gel: Pose,
+        done: &(dyn Fn() + Sync),
+    ) -> Result<(LiveGel, Selector), LabError> {
+        let tables = plans
+            .par_iter()
+            .map(|plan| {
+                let table = self.table(plan);
+                done();
+                table
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let reality = self.reality();
+        let selected = Arc::new(AtomicUsize::new(usize::MAX));
+        let selector = Selector {
+            names: Arc::new(tables.iter().map(|table| table.name.clone()).collect()),
+            selected: Arc::clone(&selected),
+        };
+        let (gains, offsets_kpa) = self.channels();
+        let gel = LiveGel {
+            base_from_gel,
+            tables,
+            selected,
+            memory: Memory {
+                time_s: 0.0,
+                elastic: [0.0; VALUES],
+                fading: vec![[0.0; VALUES]; reality.gel.relaxation.len()],
+                walk_kpa: [0.0; CHANNELS],
+            },
+            relaxation: reality.gel.relaxation.clone(),
+            gains,
+            offsets_kpa,
+            drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
+            chance: Chance::new(reality.seed, "live"),
+        };
+        Ok((gel, selector))
+    }
+
+    fn table(&self, plan: &PressPlan) -> Result<Table, LabError> {
+        let mut chance = Chance::new(self.reality().seed, &plan.name);
+        let place = self.true_place(plan, &mut chance)?;
+        let deeper_mm = self.depth_offset_mm(&mut chance);
+        let place = twintac_simulate::PressPlace {
+            depth_mm: plan.depth_mm + deeper_mm.max(0.0) + SPARE_MM,
+            ..place
+        };
+        let sweep = self
+            .instantaneous()
+            .sweep(&place)
+            .map_err(|source| LabError::Simulate {
+                press: plan.name.clone(),
+                source,
+            })?;
+        if let Some(why) = &sweep.failure {
+            return Err(LabError::NotConverged {
+                press: plan.name.clone(),
+                why: why.clone(),
+            });
+        }
+        let curve = |value: &dyn Fn(&SweepFrame) -> f64| {
+            let frames = sweep.frames.iter();
+            Pchip::new(
+                frames.clone().map(|frame| frame.depth_mm).collect(),
+                frames.map(value).collect(),
+            )
+        };
+        let mut curves = [const { None }; VALUES];
+        curves[0] = curve(&|frame| frame.force_n);
+        for (taxel, channel) in self.taxel_channels() {
+            curves[1 + channel] = curve(&|frame| frame.port_pressure_kpa[taxel]);
+        }
+        Ok(Table {
+            name: plan.name.clone(),
+            touch_mm: sweep.gel_from_indenter_at_touch.position_mm.z,
+            deeper_mm,
+            curves,
+        })
+    }
+}
+
+impl Selector {
+    /// Puts the indenter of a press on, by the press's name. False if the plan has no such press.
+    #[must_use]
+    pub fn select(&self, press: &str) -> bool {
+        let found = self.names.iter().position(|name| name == press);
+        if let Some(index) = found {
+            self.selected.store(index, Ordering::Relaxed);
+        }
+        found.is_some()
+    }
+}
+
+impl Physics for LiveGel {
+    fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed {
+        let tip_mm = self.base_from_gel.inverse_transform_point(tool.position_mm);
+        let elastic = self
+            .tables
+            .get(self.selected.load(Ordering::Relaxed))
+            .map_or([0.0; VALUES], |table| table.at(tip_mm.z));
+        let step_s = time_s - self.memory.time_s;
+        let felt = self.memory.advance(elastic, time_s, &self.relaxation);
+        let force_n = self.base_from_gel.rotation * (DVec3::NEG_Z * felt[0]);
+        let arm_mm = tool.position_mm - self.base_from_gel.position_mm;
+        let taxel_pressures_kpa = std::array::from_fn(|channel| {
+            let walk_kpa = &mut self.memory.walk_kpa[channel];
+            *walk_kpa += self
+                .chance
+                .normal(self.drift_kpa_per_sqrt_s * step_s.max(0.0).sqrt());
+            ATMOSPHERE_KPA + self.offsets_kpa[channel] + *walk_kpa + self.gains[channel] * felt[1 + channel]
+        });
+        Sensed {
+            taxel_pressures_kpa,
+            temperature_c: TEMPERATURE_C,
+            wrench: Wrench {
+                force_n,
+                torque_n_mm: arm_mm.cross(force_n),
+            },
+        }
+    }
+}
+
+impl Table {
+    /// The values with the indenter's origin at a height, mm, in the gel's frame.
+    fn at(&self, height_mm: f64) -> [f64; VALUES] {
+        let depth_mm = self.touch_mm - height_mm + self.deeper_mm;
+        if depth_mm <= 0.0 {
+            return [0.0; VALUES];
+        }
+        std::array::from_fn(|value| {
+            self.curves[value]
+                .as_ref()
+                .map_or(0.0, |curve| curve.at(depth_mm))
+        })
+    }
+}
+
+impl Memory {
+    /// Lives through a step in which the elastic values change evenly; returns what is felt at its end.
+    fn advance(&mut self, elastic: [f64; VALUES], time_s: f64, terms: &[Relaxation]) -> [f64; VALUES] {
+        let step_s = time_s - self.time_s;
+        let weights: f64 = terms.iter().map(|term| term.weight).sum();
+        let mut felt = elastic.map(|value| (1.0 - weights) * value);
+        for (term, fading) in terms.iter().zip(&mut self.fading) {
+            let part = step_s / term.time_s;
+            let fade = (-part).exp();
+            // The mean of the fading over the step.
+            let share = if part > 0.0 { (1.0 - fade) / part } else { 1.0 };
+            for value in 0..VALUES {
+                fading[value] = fade * fading[value] + share * (elastic[value] - self.elastic[value]);
+                felt[value] += term.weight * fading[value];
+            }
+        }
+        (self.time_s, self.elastic) = (time_s, elastic);
+        felt
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_held_value_relaxes_as_its_terms_say() {
+        let terms = [(0.1, 0.4), (0.2, 4.0)].map(|(weight, time_s)| Relaxation { weight, time_s });
+        let mut memory = Memory {
+            time_s: 0.0,
+            elastic: [0.0; VALUES],
+            fading: vec![[0.0; VALUES]; 2],
+            walk_kpa: [0.0; CHANNELS],
+        };
+        let mut felt = memory.advance([5.0; VALUES], 1e-9, &terms)[0];
+        assert!((felt - 5.0).abs() < 1e-6, "all of it at once: {felt}");
+        for step in 1..=3000 {
+            felt = memory.advance([5.0; VALUES], f64::from(step) * 1e-3, &terms)[0];
+        }
+        let expected = 5.0 * (0.7 + 0.1 * (-3.0_f64 / 0.4).exp() + 0.2 * (-3.0_f64 / 4.0).exp());
+        assert!((felt - expected).abs() < 1e-6, "{felt} {expected}");
+    }
+}
