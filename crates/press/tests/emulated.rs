@@ -1,6 +1,6 @@
 //! Runs on the emulated bench, in real time and on its sockets: what is recorded, and each fault.
 
-#![allow(clippy::unwrap_used)] // also in the helpers of tests
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // also in the helpers of tests; figures for people to read
 
 use std::collections::BTreeMap;
 use std::net::TcpStream;
