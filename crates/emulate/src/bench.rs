@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::force::{ForceServer, ForceSettings};
 use crate::i2c::{Board, BoardSettings};
 use crate::robot::{RobotServer, RobotSettings};
-use crate::{EmulateError, Fault, LabClock, Physics, Scene};
+use crate::{EmulateError, Fault, LabClock, Physics, Scene, Wire};
 
 /// What the devices are like and what goes wrong with them; as TOML, everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -52,6 +52,20 @@ impl Bench {
             force: ForceServer::start(scene.clone(), settings.force.clone(), faults)?,
             scene,
         })
+    }
+
+    /// Something goes wrong, besides what the settings foresee: at once, if the moment is in the past.
+    ///
+    /// # Errors
+    /// A fault that makes no sense.
+    pub fn inject(&self, fault: Fault) -> Result<(), EmulateError> {
+        fault.check("fault")?;
+        match fault.what.wire() {
+            Wire::I2c => self.board.inject(fault),
+            Wire::Robot => self.robot.with_controller(|controller| controller.inject(fault)),
+            Wire::Force => self.force.with_sensor(|sensor| sensor.inject(fault)),
+        }
+        Ok(())
     }
 
     /// Where the robot is and what is felt there: what no device says without its imperfections.

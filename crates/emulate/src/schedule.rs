@@ -27,6 +27,11 @@ impl Schedule {
         }
     }
 
+    /// Another fault, for a moment ahead or at once.
+    pub(crate) fn add(&mut self, fault: Fault) {
+        self.faults.push((fault, Stage::Ahead));
+    }
+
     /// The next event happens: what goes wrong once now.
     pub(crate) fn next_event(&mut self, now_s: f64) -> Vec<What> {
         let happened = self.look(now_s);

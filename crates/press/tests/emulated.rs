@@ -15,7 +15,7 @@ use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
 use twintac_log::{
     Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Stream, read_presses,
 };
-use twintac_press::{Bench, PressError, PressSettings, RunSummary, Runner, Streams, dry_run};
+use twintac_press::{Bench, PressError, PressSettings, Progress, RunSummary, Runner, Streams, dry_run};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_rig::xarm::{Client, ReportPort, ReportReader};
@@ -45,6 +45,10 @@ fn runner() -> Runner {
 }
 
 fn plans(count: usize) -> Vec<PressPlan> {
+    held_plans(count, 0.3)
+}
+
+fn held_plans(count: usize, hold_s: f64) -> Vec<PressPlan> {
     let plan = |index: usize| PressPlan {
         name: format!("ball#{index:03}"),
         indenter: "ball".to_owned(),
@@ -54,18 +58,15 @@ fn plans(count: usize) -> Vec<PressPlan> {
         clearance_mm: 0.5,
         depth_mm: 1.0,
         speed_mm_per_s: 6.0,
-        hold_s: 0.3,
+        hold_s,
     };
     (0..count).map(plan).collect()
 }
 
-/// The emulated devices, with faults, and their clients.
-fn bench(faults: Vec<Fault>) -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
+/// The emulated devices and their clients.
+fn bench() -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
     let clock = LabClock::real();
-    let mut settings = Settings {
-        faults,
-        ..Settings::default()
-    };
+    let mut settings = Settings::default();
     settings.robot.first_pose.position_mm = DVec3::new(199.0, 0.0, 103.0);
     settings.force.zero = [0.1, -0.1, 0.3, 0.0, 0.0, 0.0];
     let devices = twintac_emulate::Bench::start(clock.clone(), Hertz::default(), &settings).unwrap();
@@ -138,7 +139,7 @@ fn gaps(events: &[Event], of: Stream) -> usize {
 #[test]
 fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
     let folder = TempDir::new().unwrap();
-    let (devices, mut bench) = bench(Vec::new());
+    let (devices, mut bench) = bench();
     // The first run is interrupted when the second press begins.
     let interrupt = AtomicBool::new(false);
     let mut begun = 0;
@@ -149,7 +150,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
             folder.path(),
             &interrupt,
             &mut |progress| {
-                if let twintac_press::Progress::Press { index, .. } = progress {
+                if let Progress::Press { index, .. } = progress {
                     begun += 1;
                     interrupt.store(index == 1, Ordering::Relaxed);
                 }
@@ -228,81 +229,68 @@ enum End {
     Stop(&'static str),
 }
 
-/// One press each, a fault at a time.
+/// One press each, held long enough for any silence to show, and a fault while it is under way.
 #[test]
 fn each_fault_is_marked_or_stops_the_run() {
-    let (count, time) = (Moment::Count, Moment::TimeS);
-    let some = |n| Some(count(n));
+    let some_time = Some(Moment::TimeS(0.1));
+    let some_datagrams = Some(Moment::Count(10));
+    let whole_bus = What::NoAcknowledge { channel: None };
+    let one_taxel = What::NoAcknowledge { channel: Some(2) };
+    let stuck_bus = What::StuckBus { channel: None };
+    let late = What::LateDatagrams { by_s: 0.02 };
     let table = [
-        (
-            What::NoAcknowledge { channel: Some(2) },
-            time(1.0),
-            None,
-            End::Note("taxel 2 is Missing"),
-        ),
-        (
-            What::NoAcknowledge { channel: None },
-            time(1.2),
-            Some(time(0.1)),
-            End::Gap(Stream::Tactile),
-        ),
-        (
-            What::NoAcknowledge { channel: None },
-            time(1.2),
-            None,
-            End::Stop("the tactile sensor"),
-        ),
-        (
-            What::StuckBus { channel: None },
-            time(1.2),
-            None,
-            End::Gap(Stream::Tactile),
-        ),
-        (What::LostDatagrams, time(1.2), some(10), End::Gap(Stream::Wrench)),
-        (
-            What::LostDatagrams,
-            time(1.2),
-            None,
-            End::Stop("the force sensor"),
-        ),
-        (
-            What::LateDatagrams { by_s: 0.02 },
-            time(1.2),
-            some(10),
-            End::Gap(Stream::Wrench),
-        ),
-        (What::DoubledDatagrams, time(1.2), None, End::Nothing),
-        (
-            What::ReorderedDatagrams,
-            time(1.2),
-            some(10),
-            End::Gap(Stream::Wrench),
-        ),
-        (What::ConnectionReset, time(1.2), None, End::Stop("robot")),
-        (What::RobotError { code: 31 }, time(1.2), None, End::Stop("robot")),
-        (What::SaturatedForce, time(1.2), None, End::Stop("saturation")),
+        (one_taxel, None, End::Note("taxel 2 is Missing")),
+        (whole_bus, some_time, End::Gap(Stream::Tactile)),
+        (whole_bus, None, End::Stop("the tactile sensor")),
+        (stuck_bus, None, End::Gap(Stream::Tactile)),
+        (What::LostDatagrams, some_datagrams, End::Gap(Stream::Wrench)),
+        (What::LostDatagrams, None, End::Stop("the force sensor")),
+        (late, some_datagrams, End::Gap(Stream::Wrench)),
+        (What::DoubledDatagrams, None, End::Nothing),
+        (What::ReorderedDatagrams, some_datagrams, End::Gap(Stream::Wrench)),
+        (What::ConnectionReset, None, End::Stop("robot")),
+        (What::RobotError { code: 31 }, None, End::Stop("robot")),
+        (What::SaturatedForce, None, End::Stop("saturation")),
     ];
     // Few at a time: each bench runs in real time.
     for few in table.chunks(3) {
         std::thread::scope(|scope| {
-            for (what, begins, lasts, end) in few {
-                let (what, begins, lasts) = (*what, *begins, *lasts);
-                scope.spawn(move || check(Fault { what, begins, lasts }, end));
+            for (what, lasts, end) in few {
+                scope.spawn(move || check(*what, *lasts, end));
             }
         });
     }
 }
 
-fn check(fault: Fault, end: &End) {
-    let what = fault.what;
+/// From the beginning of a press to its fault, s: tare, travel and approach take less.
+const FAULT_AFTER_S: f64 = 0.8;
+/// How long its gel is held, s.
+const HOLD_S: f64 = 1.5;
+
+fn check(what: What, lasts: Option<Moment>, end: &End) {
     let folder = TempDir::new().unwrap();
-    let (_devices, mut bench) = bench(vec![fault]);
-    let summary = run(&mut bench, 1, folder.path());
+    let (devices, mut bench) = bench();
+    let mut inject = |progress: Progress<'_>| {
+        if matches!(progress, Progress::Press { .. }) {
+            let begins = Moment::TimeS(devices.scene().clock().now_s() + FAULT_AFTER_S);
+            devices.inject(Fault { what, begins, lasts }).unwrap();
+        }
+    };
+    let interrupt = AtomicBool::new(false);
+    let summary = runner()
+        .run(
+            &mut bench,
+            &held_plans(1, HOLD_S),
+            folder.path(),
+            &interrupt,
+            &mut inject,
+        )
+        .unwrap();
     let (events, frames) = log(folder.path());
     let cause = summary.stopped.as_ref().map(ToString::to_string);
     println!(
-        "{what:?} {:?}: {cause:?}, {:?} periods",
-        fault.lasts, summary.stop_latency_periods
+        "{what:?} {lasts:?}: {cause:?}, {:?} periods",
+        summary.stop_latency_periods
     );
     assert_eq!(summary.lost_unmarked, 0, "{what:?}: {summary:?}");
     assert_eq!(summary.frames, frames, "{what:?}");

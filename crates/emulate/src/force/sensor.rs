@@ -69,6 +69,10 @@ impl ForceSensor {
         })
     }
 
+    pub(crate) fn inject(&mut self, fault: Fault) {
+        self.schedule.add(fault);
+    }
+
     /// What its page says.
     #[must_use]
     pub fn configuration(&self) -> &Configuration {

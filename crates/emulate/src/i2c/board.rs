@@ -75,6 +75,10 @@ impl Board {
         })
     }
 
+    pub(crate) fn inject(&self, fault: Fault) {
+        locked(&self.parts).schedule.add(fault);
+    }
+
     /// A port to its bus.
     #[must_use]
     pub fn bus(&self) -> Bus {

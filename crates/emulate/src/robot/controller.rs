@@ -74,6 +74,10 @@ impl Controller {
         })
     }
 
+    pub(crate) fn inject(&mut self, fault: Fault) {
+        self.schedule.add(fault);
+    }
+
     /// The answer to a frame of the command socket; none to what is no request, or while a fault keeps it silent.
     pub fn respond(&mut self, frame: &[u8]) -> Option<Vec<u8>> {
         let happened = self.schedule.next_event(self.scene.clock().now_s());
