@@ -99,6 +99,10 @@ pub struct Readout {
     /// Unit that the device itself reports, such as `kPa` or `psi`; for people to read.
     #[serde(default = "kilopascal")]
     pub unit: String,
+    /// How many counts of its barometers are a pascal, once somebody who knows the parts has confirmed it: parts that look alike on the
+    /// bus differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counts_per_pa: Option<u16>,
 }
 
 fn kilopascal() -> String {

@@ -405,6 +405,7 @@ fn readout_indenters_and_inferred_fields() {
         "does not have",
     );
     expect("rate_hz = 50.0", "rate_hz = nan", "readout.rate_hz", "finite");
+    expect("rate_hz = 50.0", "rate_hz = 50.0\ncounts_per_pa = 0", "readout.counts_per_pa", "leave it out");
 }
 
 #[test]
