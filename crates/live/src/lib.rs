@@ -25,6 +25,7 @@ mod error;
 mod lab;
 #[cfg(target_os = "linux")]
 mod linux;
+mod live;
 mod reader;
 mod rows;
 mod scale;
@@ -37,6 +38,7 @@ pub use error::LiveError;
 pub use lab::{Lab, Motion};
 #[cfg(target_os = "linux")]
 pub use linux::{LinuxBus, LinuxPhysTac, open_linux};
+pub use live::Live;
 pub use reader::{FrameReader, Reading};
 pub use rows::{Format, RowWriter};
 pub use scale::{PowerOn, power_on};

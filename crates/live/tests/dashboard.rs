@@ -73,16 +73,16 @@ fn the_map_is_brightest_where_it_is_pressed() {
 fn a_tare_makes_what_is_felt_now_nothing() {
     let (mut reader, about) = reader(&[]);
     let mut state = State::new(about).unwrap();
-    for _ in 0..220 {
+    for _ in 0..270 {
         state.push(reader.read().unwrap());
     }
-    let pressed_kpa = state.above_kpa()[3].unwrap();
+    let pressed_kpa = state.above_kpa()[7].unwrap();
     state.tare();
     for _ in 0..32 {
         assert!(state.message.contains("taking a tare"));
         state.push(reader.read().unwrap());
     }
-    assert!(state.above_kpa()[3].unwrap().abs() < 0.3 * pressed_kpa && state.message == "tare taken");
+    assert!(state.above_kpa()[7].unwrap().abs() < 0.3 * pressed_kpa && state.message == "tare taken");
 }
 
 #[test]
