@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 /// Barometric touch sensors and their digital twin.
 ///
@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
+    /// Watch a sensor as it is touched: on a dashboard, or as rows of text.
+    Stream(Stream),
     /// Record presses on the emulated bench.
     Record(Record),
     /// Read recordings of a real sensor.
@@ -272,4 +274,43 @@ pub(crate) struct Report {
     /// Folder of an evaluated run.
     #[arg(long, value_name = "DIR")]
     pub(crate) run: PathBuf,
+}
+
+/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` they are a dashboard.
+#[derive(Args, Debug)]
+#[command(group = ArgGroup::new("source").required(true))]
+pub(crate) struct Stream {
+    /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
+    #[arg(long, value_name = "PATH", group = "source")]
+    pub(crate) bus: Option<PathBuf>,
+    /// The emulated sensor, pressed by a slow motion.
+    #[arg(long, group = "source")]
+    pub(crate) lab: bool,
+    /// Sensor description (TOML) [default: PhysTac].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) scale: Option<u16>,
+    /// Rows on standard output instead of the dashboard.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<RowFormat>,
+    /// End after so many rows.
+    #[arg(long, value_name = "N", requires = "format")]
+    pub(crate) frames: Option<u64>,
+    /// End after so long, s.
+    #[arg(long, value_name = "S", requires = "format")]
+    pub(crate) seconds: Option<f64>,
+    /// Folder of the dashboard's recordings (MCAP).
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
+}
+
+/// How frames are written.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum RowFormat {
+    /// Comma-separated values under a header.
+    Csv,
+    /// A JSON object a line.
+    Jsonl,
 }

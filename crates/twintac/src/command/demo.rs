@@ -10,7 +10,7 @@ use crate::run::{Run, RunSettings, plan_text};
 use crate::sensor_file::SensorFile;
 use crate::stage::write_file;
 
-const SENSOR: &str = include_str!("../../../../sensors/phystac.toml");
+pub(super) const SENSOR: &str = include_str!("../../../../sensors/phystac.toml");
 const PROTOCOL: &str = include_str!("../../../../protocols/demo.toml");
 const REALITY: &str = include_str!("../../../../realities/default.toml");
 

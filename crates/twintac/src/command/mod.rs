@@ -9,6 +9,7 @@ mod reproduce;
 mod sensor;
 mod simulate;
 mod stages;
+mod stream;
 
 use anyhow::Result;
 
@@ -26,6 +27,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Stream(arguments) => stream::run(&arguments),
         Command::Record(arguments) => stages::record(&arguments),
         Command::Import(arguments) => reproduce::import(&arguments),
         Command::Align(arguments) => stages::align(&arguments),
