@@ -9,13 +9,14 @@ use std::process::{Command, ExitCode, ExitStatus};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | verify [rung…] [--quick] [--json] [--ccx CASE]>
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | bench recording | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, then test: what CI runs
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
+         recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
 
 fn main() -> ExitCode {
@@ -56,6 +57,9 @@ fn test() -> Result<()> {
 
 fn bench() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(2).collect();
+    if given.first().is_some_and(|bench| bench == "recording") {
+        cargo(&["build", "--release", "--package", "twintac"])?; // it is run as its users run it
+    }
     cargo(&of_verify(&given))
 }
 

@@ -111,6 +111,14 @@ fn wires_know_no_gel() {
 }
 
 #[test]
+fn watching_touch_solves_nothing() {
+    let reached = reached_from("twintac-live");
+    for other in ["twintac-lab", "digitac", "twintac-softbody", "twintac-simulate"] {
+        assert!(!reached.contains(other), "twintac-live reaches {other}");
+    }
+}
+
+#[test]
 fn files_named_in_the_documents_exist() {
     for document in ["README.md", "ARCHITECTURE.md"] {
         let text = fs::read_to_string(root().join(document)).unwrap();

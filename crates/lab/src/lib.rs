@@ -13,5 +13,5 @@ mod live;
 mod reality;
 
 pub use bench::{Bench, LabError};
-pub use live::{LiveGel, Selector};
+pub use live::{LiveGel, LiveTable, Selector};
 pub use reality::{GelReality, ReadoutReality, Reality, RobotReality};

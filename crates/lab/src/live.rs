@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use twintac_emulate::{CHANNELS, Physics, Sensed};
 use twintac_protocol::PressPlan;
 use twintac_rig::{TcpPose, Wrench};
@@ -31,7 +31,8 @@ const VALUES: usize = 1 + CHANNELS;
 /// What the devices feel of one cast of a sensor, pressed at the places of a plan.
 pub struct LiveGel {
     base_from_gel: Pose,
-    tables: Vec<Table>,
+    tool_from_indenter: Pose,
+    tables: Vec<Curves>,
     selected: Arc<AtomicUsize>,
     relaxation: Vec<Relaxation>,
     /// Of each channel.
@@ -49,15 +50,27 @@ pub struct Selector {
     selected: Arc<AtomicUsize>,
 }
 
-/// The gel's instantaneous answer at one place.
-struct Table {
+/// The gel's instantaneous answer at the place of one press: a table over depth.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct LiveTable {
     name: String,
     /// Height of the indenter's origin at first touch, mm, in the gel's frame.
     touch_mm: f64,
     /// How much deeper than the robot believes the indenter is, mm.
     deeper_mm: f64,
-    /// Over depth, mm; none for a channel without a taxel.
-    curves: [Option<Pchip>; VALUES],
+    /// Depths, mm.
+    depths_mm: Vec<f64>,
+    /// Force, N, at each.
+    force_n: Vec<f64>,
+    /// Pressure, kPa, at each, of every channel; empty of a channel without a taxel.
+    pressures_kpa: [Vec<f64>; CHANNELS],
+}
+
+/// A table to be asked.
+struct Curves {
+    touch_mm: f64,
+    deeper_mm: f64,
+    of: [Option<Pchip>; VALUES],
 }
 
 /// What has been felt so far.
@@ -70,52 +83,11 @@ struct Memory {
 }
 
 impl Bench {
-    /// Computes the gel's answers at the places of a plan, for a gel that stands somewhere in the robot's base frame. Says after each place that it
-    /// is done.
+    /// Computes the gel's answer at the place of a press.
     ///
     /// # Errors
     /// A place that can't be pressed, or not as deep as planned.
-    pub fn live(
-        &self,
-        plans: &[PressPlan],
-        base_from_gel: Pose,
-        done: &(dyn Fn() + Sync),
-    ) -> Result<(LiveGel, Selector), LabError> {
-        let tables = plans
-            .par_iter()
-            .map(|plan| {
-                let table = self.table(plan);
-                done();
-                table
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        let reality = self.reality();
-        let selected = Arc::new(AtomicUsize::new(usize::MAX));
-        let selector = Selector {
-            names: Arc::new(tables.iter().map(|table| table.name.clone()).collect()),
-            selected: Arc::clone(&selected),
-        };
-        let (gains, offsets_kpa) = self.channels();
-        let gel = LiveGel {
-            base_from_gel,
-            tables,
-            selected,
-            memory: Memory {
-                time_s: 0.0,
-                elastic: [0.0; VALUES],
-                fading: vec![[0.0; VALUES]; reality.gel.relaxation.len()],
-                walk_kpa: [0.0; CHANNELS],
-            },
-            relaxation: reality.gel.relaxation.clone(),
-            gains,
-            offsets_kpa,
-            drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
-            chance: Chance::new(reality.seed, "live"),
-        };
-        Ok((gel, selector))
-    }
-
-    fn table(&self, plan: &PressPlan) -> Result<Table, LabError> {
+    pub fn live_table(&self, plan: &PressPlan) -> Result<LiveTable, LabError> {
         let mut chance = Chance::new(self.reality().seed, &plan.name);
         let place = self.true_place(plan, &mut chance)?;
         let deeper_mm = self.depth_offset_mm(&mut chance);
@@ -136,24 +108,69 @@ impl Bench {
                 why: why.clone(),
             });
         }
-        let curve = |value: &dyn Fn(&SweepFrame) -> f64| {
-            let frames = sweep.frames.iter();
-            Pchip::new(
-                frames.clone().map(|frame| frame.depth_mm).collect(),
-                frames.map(value).collect(),
-            )
-        };
-        let mut curves = [const { None }; VALUES];
-        curves[0] = curve(&|frame| frame.force_n);
+        let column = |value: &dyn Fn(&SweepFrame) -> f64| sweep.frames.iter().map(value).collect();
+        let mut pressures_kpa = [const { Vec::new() }; CHANNELS];
         for (taxel, channel) in self.taxel_channels() {
-            curves[1 + channel] = curve(&|frame| frame.port_pressure_kpa[taxel]);
+            pressures_kpa[channel] = column(&|frame| frame.port_pressure_kpa[taxel]);
         }
-        Ok(Table {
+        Ok(LiveTable {
             name: plan.name.clone(),
             touch_mm: sweep.gel_from_indenter_at_touch.position_mm.z,
             deeper_mm,
-            curves,
+            depths_mm: column(&|frame| frame.depth_mm),
+            force_n: column(&|frame| frame.force_n),
+            pressures_kpa,
         })
+    }
+
+    /// The gel, as it stands in the robot's base frame, under an indenter that sits in the tool's frame.
+    #[must_use]
+    pub fn live(
+        &self,
+        tables: &[LiveTable],
+        base_from_gel: Pose,
+        tool_from_indenter: Pose,
+    ) -> (LiveGel, Selector) {
+        let reality = self.reality();
+        let selected = Arc::new(AtomicUsize::new(usize::MAX));
+        let selector = Selector {
+            names: Arc::new(tables.iter().map(|table| table.name.clone()).collect()),
+            selected: Arc::clone(&selected),
+        };
+        let (gains, offsets_kpa) = self.channels();
+        let gel = LiveGel {
+            base_from_gel,
+            tool_from_indenter,
+            tables: tables.iter().map(LiveTable::curves).collect(),
+            selected,
+            memory: Memory {
+                time_s: 0.0,
+                elastic: [0.0; VALUES],
+                fading: vec![[0.0; VALUES]; reality.gel.relaxation.len()],
+                walk_kpa: [0.0; CHANNELS],
+            },
+            relaxation: reality.gel.relaxation.clone(),
+            gains,
+            offsets_kpa,
+            drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
+            chance: Chance::new(reality.seed, "live"),
+        };
+        (gel, selector)
+    }
+}
+
+impl LiveTable {
+    fn curves(&self) -> Curves {
+        let columns = std::iter::once(&self.force_n).chain(&self.pressures_kpa);
+        let mut of = [const { None }; VALUES];
+        for (curve, column) in of.iter_mut().zip(columns) {
+            *curve = Pchip::new(self.depths_mm.clone(), column.clone());
+        }
+        Curves {
+            touch_mm: self.touch_mm,
+            deeper_mm: self.deeper_mm,
+            of,
+        }
     }
 }
 
@@ -171,7 +188,8 @@ impl Selector {
 
 impl Physics for LiveGel {
     fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed {
-        let tip_mm = self.base_from_gel.inverse_transform_point(tool.position_mm);
+        let tip_mm = tool.position_mm + tool.base_from_tool() * self.tool_from_indenter.position_mm;
+        let tip_mm = self.base_from_gel.inverse_transform_point(tip_mm);
         let elastic = self
             .tables
             .get(self.selected.load(Ordering::Relaxed))
@@ -198,7 +216,7 @@ impl Physics for LiveGel {
     }
 }
 
-impl Table {
+impl Curves {
     /// The values with the indenter's origin at a height, mm, in the gel's frame.
     fn at(&self, height_mm: f64) -> [f64; VALUES] {
         let depth_mm = self.touch_mm - height_mm + self.deeper_mm;
@@ -206,7 +224,7 @@ impl Table {
             return [0.0; VALUES];
         }
         std::array::from_fn(|value| {
-            self.curves[value]
+            self.of[value]
                 .as_ref()
                 .map_or(0.0, |curve| curve.at(depth_mm))
         })

@@ -10,6 +10,14 @@ use crate::PressError;
 
 const PROGRESS: &str = "progress.json";
 
+/// The logs in a run's folder of the presses that are done, in the order of the plans.
+///
+/// # Errors
+/// A folder of another run.
+pub fn done_logs(folder: &Path, plans: &[PressPlan]) -> Result<Vec<PathBuf>, PressError> {
+    Ok(Folder::open(folder, plans)?.done())
+}
+
 /// A run's folder: a log for each press, and which of them are done.
 #[derive(Debug)]
 pub(crate) struct Folder {
@@ -63,7 +71,7 @@ impl Folder {
 
     /// Where a press is recorded. What an earlier try left there is set aside.
     pub(crate) fn log(&self, index: usize) -> Result<PathBuf, PressError> {
-        let log = self.path.join(format!("press-{:04}.mcap", index + 1));
+        let log = self.path_of(index);
         self.set_aside(&log)?;
         self.set_aside(&log.with_extension("mcap.partial"))?;
         Ok(log)
@@ -83,6 +91,18 @@ impl Folder {
             Err(found) if found.kind() == std::io::ErrorKind::NotFound => Ok(free),
             Err(source) => Err(PressError::file(file, source)),
         }
+    }
+
+    /// The logs of the presses that are done, in their order.
+    fn done(&self) -> Vec<PathBuf> {
+        (0..self.state.plans.len())
+            .filter(|index| self.is_done(*index))
+            .map(|index| self.path_of(index))
+            .collect()
+    }
+
+    fn path_of(&self, index: usize) -> PathBuf {
+        self.path.join(format!("press-{:04}.mcap", index + 1))
     }
 
     pub(crate) fn set_done(&mut self, index: usize) -> Result<(), PressError> {

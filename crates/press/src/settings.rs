@@ -51,6 +51,22 @@ pub struct PressSettings {
     pub tolerated_loss: u32,
     /// How to go back after a stop.
     pub retreat: Retreat,
+    /// How long the barometers are left alone to convert, µs.
+    pub conversion_us: u32,
+    /// Where the devices are; an emulated bench has its own.
+    pub devices: Option<Devices>,
+}
+
+/// Where the devices of a bench are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Devices {
+    /// Name or address of the xArm's controller.
+    pub robot: String,
+    /// Name or address of the Net F/T box.
+    pub force: String,
+    /// I²C bus of the tactile sensor, such as /dev/i2c-1.
+    pub tactile: String,
 }
 
 impl PressSettings {

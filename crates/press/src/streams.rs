@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use phystac::{Error, PhysTac, Transfer};
+use phystac::{Clock, Error, PhysTac, Transfer};
 use twintac_log::TactileFrame;
 use twintac_rig::xarm::{MotionState, Report, ReportReader, Wire};
 use twintac_rig::{BenchClock, TcpPose, WrenchSample, WrenchSource};
@@ -18,7 +18,7 @@ use crate::PressError;
 /// How long a thread waits before it looks whether it is to end.
 const WAIT: Duration = Duration::from_millis(50);
 /// Rest after a frame that failed: a bus that fails at once would keep a core busy.
-const AFTER_FAILURE_US: u32 = 1000;
+const AFTER_FAILURE: Duration = Duration::from_millis(1);
 
 /// A device that streams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,26 +144,22 @@ impl Streams {
         })
     }
 
-    /// Hears a tactile sensor, which is read as fast as its bus lets it. `free` frees a bus that hangs; its channels are looked into anew.
+    /// Hears a tactile sensor, which is read as fast as its bus lets it; its frames must be stamped on this bench's clock
+    /// ([`BenchClock::now_us`]). `free` frees a bus that hangs; its channels are looked into anew.
     ///
     /// # Errors
     /// No thread.
-    pub fn hear_taxels<I, D, const N: usize>(
+    pub fn hear_taxels<I, D, C, const N: usize>(
         &mut self,
-        i2c: I,
-        delay: D,
-        settings: phystac::Settings<N>,
+        mut sensor: PhysTac<I, D, C, N>,
         transfer: Transfer,
         mut free: impl FnMut(&mut I, &mut D) + Send + 'static,
     ) -> Result<(), PressError>
     where
         I: I2c + Send + 'static,
-        D: DelayNs + Clone + Send + 'static,
+        D: DelayNs + Send + 'static,
+        C: Clock + Send + 'static,
     {
-        let clock = self.clock;
-        let now_us = move || (clock.now_s() * 1e6) as u64;
-        let mut rest = delay.clone();
-        let mut sensor = PhysTac::new(i2c, delay, now_us, settings);
         self.start("the tactile sensor", move |ear| {
             while ear.goes_on() {
                 match sensor.frame() {
@@ -179,7 +175,7 @@ impl Streams {
                         if matches!(error, Error::BusHung { .. }) {
                             sensor.recover(&mut free);
                         }
-                        rest.delay_us(AFTER_FAILURE_US);
+                        std::thread::sleep(AFTER_FAILURE);
                     }
                 }
             }

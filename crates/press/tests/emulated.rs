@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DQuat, DVec3};
-use phystac::Transfer;
+use phystac::{PhysTac, Transfer};
 use phystac::recovery::{free_bus, reset_switch};
 use tempfile::TempDir;
 use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
@@ -85,18 +85,12 @@ fn bench() -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
         let _ = reset_switch(&mut reset, delay);
         let _ = free_bus(&mut scl, &mut sda, delay);
     };
-    streams
-        .hear_taxels::<_, _, 8>(
-            devices.board.bus(),
-            clock,
-            phystac::Settings {
-                conversion_us: 5700, // what the emulated parts take
-                ..phystac::Settings::default()
-            },
-            Transfer::per_pa(32),
-            free,
-        )
-        .unwrap();
+    let driver = phystac::Settings::<8> {
+        conversion_us: runner().settings.conversion_us,
+        ..phystac::Settings::default()
+    };
+    let sensor = PhysTac::new(devices.board.bus(), clock, move || bench_clock.now_us(), driver);
+    streams.hear_taxels(sensor, Transfer::per_pa(32), free).unwrap();
     let mut arm = Client::connect(devices.robot.commands()).unwrap();
     arm.enable().unwrap();
     arm.begin_servo().unwrap();

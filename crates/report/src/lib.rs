@@ -31,7 +31,10 @@ pub use color::{Ink, PALETTE, viridis};
 pub use data::{Provenance, ReportData};
 pub use error::ReportError;
 pub use html::{render, write};
-pub use pressure_map::{MapSettings, PressureMap, Rectangle, Weights, pitch_mm, pressure_map};
+pub use pressure_map::{
+    Kernel, MapSettings, PreparedMap, PressureMap, Rectangle, Weights, leave_one_out_width_mm, pitch_mm,
+    pressure_map,
+};
 pub use raster::png;
 pub use scene::{Anchor, Mark, Scene};
 pub use sensor_drawing::SensorDrawing;

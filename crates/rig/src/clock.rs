@@ -23,6 +23,12 @@ impl BenchClock {
         self.start.elapsed().as_secs_f64()
     }
 
+    /// Time since the start, µs.
+    #[must_use]
+    pub fn now_us(&self) -> u64 {
+        self.start.elapsed().as_micros() as u64 // 584 thousand years
+    }
+
     /// A stamp of now, beside what the source's own clock says.
     #[must_use]
     pub fn stamp(&self, source_s: Option<f64>) -> Stamp {

@@ -33,6 +33,7 @@ impl Sensor {
         checker.shell()?;
         checker.taxels()?;
         checker.readout()?;
+        checker.limits()?;
         checker.indenters()?;
         checker.inferred()
     }
@@ -223,7 +224,19 @@ impl Checker<'_> {
             return Err(self.error("readout.max_kpa", problem, "give the larger pressure here"));
         }
         self.above_zero("readout.resolution_kpa", readout.resolution_kpa)?;
+        if readout.counts_per_pa == Some(0) {
+            let problem = "is 0".to_owned();
+            return Err(self.error("readout.counts_per_pa", problem, "give the counts of a pascal, or leave it out"));
+        }
         self.above_zero("readout.rate_hz", readout.rate_hz)
+    }
+
+    fn limits(&self) -> Checked {
+        let Some(limits) = self.sensor.limits else {
+            return Ok(());
+        };
+        self.above_zero("limits.force_n", limits.force_n)?;
+        self.above_zero("limits.depth_mm", limits.depth_mm)
     }
 
     fn indenters(&self) -> Checked {

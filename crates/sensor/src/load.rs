@@ -84,6 +84,7 @@ impl Sensor {
             taxels: file.taxels,
             readout: file.readout,
             indenters: file.indenters,
+            limits: file.limits,
             import: file.import,
             surfaces,
         };

@@ -29,6 +29,8 @@ pub struct Sensor {
     pub readout: Readout,
     /// What the sensor is pressed with.
     pub indenters: Vec<Indenter>,
+    /// What it stands, if that is known. A bench that presses it has to know.
+    pub limits: Option<Limits>,
     /// Path, relative to the description, of the import description that reads recordings of this sensor.
     pub import: Option<String>,
     /// The triangle surfaces that the gel and the indenters name.
@@ -99,6 +101,20 @@ pub struct Readout {
     /// Unit that the device itself reports, such as `kPa` or `psi`; for people to read.
     #[serde(default = "kilopascal")]
     pub unit: String,
+    /// How many counts of its barometers are a pascal, once somebody who knows the parts has confirmed it: parts that look alike on the
+    /// bus differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counts_per_pa: Option<u16>,
+}
+
+/// What a sensor stands. Whoever presses it may set lower limits, never higher ones.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Largest force, N.
+    pub force_n: f64,
+    /// Largest depth below the surface at rest, mm.
+    pub depth_mm: f64,
 }
 
 fn kilopascal() -> String {

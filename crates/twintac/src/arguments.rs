@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 /// Barometric touch sensors and their digital twin.
 ///
@@ -34,7 +34,9 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
-    /// Record presses on the emulated bench.
+    /// Watch a sensor as it is touched: on a dashboard, or as rows of text.
+    Stream(Stream),
+    /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
     Record(Record),
     /// Read recordings of a real sensor.
     Import(Import),
@@ -205,20 +207,40 @@ pub(crate) struct Calibrate {
     pub(crate) json: bool,
 }
 
+/// A run that was stopped or killed goes on with the first press that is not done. The robot is stopped by Ctrl-C, by any limit, and by
+/// silence of any device.
 #[derive(Args, Debug)]
 pub(crate) struct Record {
-    /// The emulated bench's reality (TOML).
-    #[arg(long, value_name = "FILE")]
-    pub(crate) lab: PathBuf,
-    /// Sensor description (TOML).
-    #[arg(long, value_name = "FILE")]
-    pub(crate) sensor: PathBuf,
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) protocol: PathBuf,
-    /// Folder of the run.
+    /// The emulated bench, with a reality of its own (TOML) [default: realities/default.toml].
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    pub(crate) lab: Option<Option<PathBuf>>,
+    /// How presses are carried out (TOML) and, without --lab, where the devices are [default: benches/lab.toml].
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["lab", "dry_run"])]
+    pub(crate) bench: Option<PathBuf>,
+    /// Sensor description (TOML) [default: PhysTac].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "lab")]
+    pub(crate) scale: Option<u16>,
+    /// Folder of the run [default: runs/<protocol>].
     #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    pub(crate) out: Option<PathBuf>,
+    /// Only say and draw what would be done, and how long it would take.
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// What goes wrong on the emulated bench (TOML), in tables [[faults]].
+    #[arg(long, value_name = "FILE", requires = "lab")]
+    pub(crate) faults: Option<PathBuf>,
+    /// Compute what the emulated bench would record, without devices and without waiting.
+    #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json"])]
+    pub(crate) at_once: bool,
+    /// End with one line of JSON on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) start: Start,
 }
@@ -272,4 +294,43 @@ pub(crate) struct Report {
     /// Folder of an evaluated run.
     #[arg(long, value_name = "DIR")]
     pub(crate) run: PathBuf,
+}
+
+/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` they are a dashboard.
+#[derive(Args, Debug)]
+#[command(group = ArgGroup::new("source").required(true))]
+pub(crate) struct Stream {
+    /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
+    #[arg(long, value_name = "PATH", group = "source")]
+    pub(crate) bus: Option<PathBuf>,
+    /// The emulated sensor, pressed by a slow motion.
+    #[arg(long, group = "source")]
+    pub(crate) lab: bool,
+    /// Sensor description (TOML) [default: PhysTac].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) scale: Option<u16>,
+    /// Rows on standard output instead of the dashboard.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<RowFormat>,
+    /// End after so many rows.
+    #[arg(long, value_name = "N", requires = "format")]
+    pub(crate) frames: Option<u64>,
+    /// End after so long, s.
+    #[arg(long, value_name = "S", requires = "format")]
+    pub(crate) seconds: Option<f64>,
+    /// Folder of the dashboard's recordings (MCAP).
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
+}
+
+/// How frames are written.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum RowFormat {
+    /// Comma-separated values under a header.
+    Csv,
+    /// A JSON object a line.
+    Jsonl,
 }

@@ -1,6 +1,7 @@
 //! TwinTac: barometric touch sensors and their digital twin, from the command line.
 //!
 //! Exit codes: 0 when all was done, 2 when something was wrong with what was asked for or given; the error says what, where, and what to do.
+//! 3 when a bench was stopped: what was recorded until then is kept.
 
 mod arguments;
 mod calibration;
@@ -26,7 +27,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = writeln!(std::io::stderr(), "error: {error:#}");
-            ExitCode::from(2)
+            ExitCode::from(if error.is::<command::Stopped>() { 3 } else { 2 })
         }
     }
 }

@@ -10,10 +10,11 @@ mod cases;
 mod files;
 mod ladder;
 mod peers;
+mod recording;
 mod scaling;
 
 #[derive(Parser)]
-#[command(about = "Benchmarks and verification of the soft body")]
+#[command(about = "Benchmarks and verification of the soft body and of the bench")]
 struct Arguments {
     #[command(subcommand)]
     task: Task,
@@ -38,6 +39,8 @@ enum Task {
     Ladder(ladder::Options),
     /// The block press on other engines and on ours: makes a Python environment, writes docs/benchmarks/peers.*
     Peers(peers::Options),
+    /// Recording on the emulated bench, with faults and kills: writes docs/benchmarks/recording.*
+    Recording(recording::Options),
     /// The block press on our engine alone: one JSON line with rate, forces and memory
     Press {
         /// Poisson's ratio of the block
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Task::Size { edges_per_height } => scaling::print_size(edges_per_height).map(|()| true),
         Task::Ladder(options) => ladder::run(&options),
         Task::Peers(options) => peers::run(&options).map(|()| true),
+        Task::Recording(options) => recording::run(&options).map(|()| true),
         Task::Press { poissons_ratio } => peers::print_row(poissons_ratio).map(|()| true),
     };
     match result {

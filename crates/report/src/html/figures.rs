@@ -5,7 +5,7 @@ use crate::axis::{extent, padded};
 use crate::color::Ink;
 use crate::data::{PressPeak, PressSeries, ReportData};
 use crate::plot::{HeatMap, HeatMaps, Panel, Panels, Places, Series};
-use crate::pressure_map::{MapSettings, pressure_map};
+use crate::pressure_map::{MapSettings, pitch_mm, pressure_map};
 
 /// Twin and sensor over time.
 pub(super) fn presses(data: &ReportData) -> Option<Section> {
@@ -176,6 +176,7 @@ fn map_settings(peak: &PressPeak) -> MapSettings {
     let rows = (6000.0 / columns).ceil();
     MapSettings {
         grid: [columns as usize, rows as usize],
+        width_mm: Some(0.5 * pitch_mm(&peak.taxels_mm)), // the same for sensor and twin
         ..MapSettings::default()
     }
 }

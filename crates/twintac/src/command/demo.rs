@@ -10,9 +10,9 @@ use crate::run::{Run, RunSettings, plan_text};
 use crate::sensor_file::SensorFile;
 use crate::stage::write_file;
 
-const SENSOR: &str = include_str!("../../../../sensors/phystac.toml");
+pub(super) const SENSOR: &str = include_str!("../../../../sensors/phystac.toml");
 const PROTOCOL: &str = include_str!("../../../../protocols/demo.toml");
-const REALITY: &str = include_str!("../../../../realities/default.toml");
+pub(super) const REALITY: &str = include_str!("../../../../realities/default.toml");
 
 /// Runs every stage on the emulated bench.
 pub(crate) fn run(arguments: &Demo) -> Result<()> {

@@ -5,16 +5,19 @@ mod demo;
 mod files;
 mod follow;
 mod mesh;
+mod record;
 mod reproduce;
 mod sensor;
 mod simulate;
 mod stages;
+mod stream;
 
 use anyhow::Result;
 
 use crate::arguments::{Command, SensorCommand};
 
 pub(crate) use follow::indenter;
+pub(crate) use record::Stopped;
 pub(crate) use mesh::{mesh_of, write_mesh};
 
 /// Does what was asked for.
@@ -26,7 +29,8 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
-        Command::Record(arguments) => stages::record(&arguments),
+        Command::Stream(arguments) => stream::run(&arguments),
+        Command::Record(arguments) => record::run(&arguments),
         Command::Import(arguments) => reproduce::import(&arguments),
         Command::Align(arguments) => stages::align(&arguments),
         Command::Train(arguments) => stages::train(&arguments),

@@ -1,13 +1,11 @@
 //! The stages as commands of their own.
 
 use anyhow::{Context, Result};
-use twintac_lab::Reality;
 use twintac_recording::Recording;
 
 use super::files::expand;
-use crate::arguments::{Align, Evaluate, Record, Report, Train};
-use crate::run::{Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan};
-use crate::sensor_file::read_sensor;
+use crate::arguments::{Align, Evaluate, Report, Train};
+use crate::run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files};
 
 /// Everything after the recordings; prints the headline.
 pub(crate) fn finish(run: &Run) -> Result<()> {
@@ -18,19 +16,6 @@ pub(crate) fn finish(run: &Run) -> Result<()> {
     run.evaluate()?;
     run.report()?;
     print_headline(run)
-}
-
-/// `twintac record`: starts a run with presses on the emulated bench.
-pub(crate) fn record(arguments: &Record) -> Result<()> {
-    let sensor = read_sensor(&arguments.sensor)?;
-    let text = std::fs::read_to_string(&arguments.lab)
-        .with_context(|| format!("reading {}", arguments.lab.display()))?;
-    let reality = Reality::parse(&arguments.lab.display().to_string(), &text)?;
-    let settings = RunSettings::of(&arguments.start)?;
-    let seed = arguments.start.seed;
-    let plans = plan(&arguments.protocol, &sensor.sensor, seed)?;
-    let source = format!("{} presses on the emulated bench", plans.len());
-    Run::start(&arguments.out, sensor, source, seed, settings)?.record(&reality, &plans)
 }
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.

@@ -3,6 +3,8 @@
 //! ```text
 //! run.json       what the run is made from, and its settings
 //! sensor.toml    the sensor description, as it was (surfaces beside it)
+//! logs/          of a bench: one for each press (MCAP)
+//! lab/           of the emulated bench: what its gel answers at the places of the presses
 //! recordings/    presses.parquet, summary.json
 //! mesh/          the gel's mesh for ParaView and Gmsh, quality.json
 //! simulation/    split.json, bench.json, and a table over depth for each place

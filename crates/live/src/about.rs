@@ -1,0 +1,102 @@
+//! What is looked at.
+
+use phystac::{Settings, Transfer, Wiring};
+use twintac_log::{CountTransfer, Description};
+use twintac_recording::Provenance;
+use twintac_report::{Rectangle, pitch_mm};
+use twintac_sensor::Sensor;
+use twintac_shape::Pose;
+
+use crate::{LiveError, TAXELS};
+
+/// A sensor, and where its numbers come from.
+#[derive(Clone, Debug)]
+pub struct About {
+    /// Name of the sensor description.
+    pub sensor: String,
+    /// Its text, whole.
+    pub sensor_toml: String,
+    /// Names of the taxels, in the order of every frame.
+    pub taxels: Vec<String>,
+    /// Their places in the gel's plane, mm.
+    pub places_mm: Vec<[f64; 2]>,
+    /// Hardware or emulated.
+    pub provenance: Provenance,
+    /// What counts stand for, confirmed.
+    pub transfer: Transfer,
+    /// When the bench's clock started: wall-clock time, ns since 1970-01-01 UTC.
+    pub start_unix_ns: u64,
+}
+
+impl About {
+    /// Of a sensor and the text of its description.
+    #[must_use]
+    pub fn new(
+        sensor: &Sensor,
+        sensor_toml: &str,
+        provenance: Provenance,
+        transfer: Transfer,
+        start_unix_ns: u64,
+    ) -> Self {
+        let place = |taxel: &twintac_sensor::Taxel| [taxel.position_mm.x, taxel.position_mm.y];
+        Self {
+            sensor: sensor.name.clone(),
+            sensor_toml: sensor_toml.to_owned(),
+            taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+            places_mm: sensor.taxels.iter().map(place).collect(),
+            provenance,
+            transfer,
+            start_unix_ns,
+        }
+    }
+
+    /// What a map of it shows: the taxels, and three quarters of a pitch around them, mm.
+    #[must_use]
+    pub fn window(&self) -> Rectangle {
+        let margin_mm = 0.75 * pitch_mm(&self.places_mm);
+        let along = |axis: usize| self.places_mm.iter().map(move |place| place[axis]);
+        Rectangle {
+            min_mm: [0, 1].map(|axis| along(axis).fold(f64::INFINITY, f64::min) - margin_mm),
+            max_mm: [0, 1].map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max) + margin_mm),
+        }
+    }
+
+    /// What stands at the beginning of a log. Nothing is known of a robot or a force sensor, and none is recorded.
+    #[must_use]
+    pub fn description(&self) -> Description {
+        Description {
+            sensor: self.sensor.clone(),
+            sensor_toml: self.sensor_toml.clone(),
+            provenance: self.provenance,
+            taxels: self.taxels.clone(),
+            transfer: Some(CountTransfer::from_driver(&self.transfer, true)),
+            base_from_gel: Pose::IDENTITY,
+            tool_from_indenter: Pose::IDENTITY,
+            force_axis: glam::DVec3::NEG_Z,
+            start_unix_ns: self.start_unix_ns,
+            versions: [("twintac".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
+        }
+    }
+}
+
+/// How the driver finds a sensor's taxels.
+///
+/// # Errors
+/// The sensor is not read this way: it has another number of taxels, or channels that a switch lacks.
+pub fn driver_settings(sensor: &Sensor) -> Result<Settings<TAXELS>, LiveError> {
+    let problem = |problem: String| LiveError::Sensor {
+        sensor: sensor.name.clone(),
+        problem,
+    };
+    let channels: Vec<u8> = sensor.taxels.iter().map(|taxel| taxel.channel).collect();
+    let n = channels.len();
+    let channels: [u8; TAXELS] = channels
+        .try_into()
+        .map_err(|_| problem(format!("has {n} taxels, expected {TAXELS}")))?;
+    let wiring = Wiring::new(channels).ok_or_else(|| {
+        problem(format!(
+            "channels are {channels:?}, expected each from 0 to 7 once"
+        ))
+    })?;
+    Ok(Settings::new(wiring))
+}

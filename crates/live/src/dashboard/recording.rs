@@ -1,0 +1,81 @@
+//! Recordings that a key begins and ends.
+
+use std::path::{Path, PathBuf};
+
+use twintac_log::{Body, LogError, LogSender, Message, Recorder};
+
+use crate::{About, LiveError, Reading};
+
+/// Files that are looked for a free name.
+const MOST_FILES: u32 = 10_000;
+
+/// A log of frames, while it is written.
+#[derive(Debug)]
+pub struct Recording {
+    recorder: Recorder,
+    sender: LogSender,
+    path: PathBuf,
+    frames: u64,
+}
+
+impl Recording {
+    /// Begins `touch-0001.mcap` in a folder, or the first after it that is not there.
+    ///
+    /// # Errors
+    /// [`LiveError::Log`].
+    pub fn begin(folder: &Path, about: &About) -> Result<Self, LiveError> {
+        let name = |number: u32| folder.join(format!("touch-{number:04}.mcap"));
+        let mut path = name(1);
+        for number in 1..MOST_FILES {
+            path = name(number);
+            match Recorder::create(&path, &about.description()) {
+                Ok(recorder) => {
+                    let (sender, frames) = (recorder.sender(), 0);
+                    return Ok(Self {
+                        recorder,
+                        sender,
+                        path,
+                        frames,
+                    });
+                }
+                Err(LogError::Exists { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        let file = path.display().to_string();
+        Err(LogError::Exists { file }.into())
+    }
+
+    /// Its file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Frames that were handed over.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// Hands a frame over to be written, and never waits.
+    ///
+    /// # Errors
+    /// [`LiveError::Log`]: the disk does not keep up, which the log marks as a gap, or fails.
+    pub fn push(&mut self, reading: &Reading) -> Result<(), LiveError> {
+        self.sender.send(Message::at_s(
+            reading.bench_s,
+            Body::Tactile(reading.frame.clone()),
+        ))?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Writes what waits, and gives the file its name. How many frames it has.
+    ///
+    /// # Errors
+    /// [`LiveError::Log`].
+    pub fn finish(self) -> Result<u64, LiveError> {
+        Ok(self.recorder.finish()?.messages)
+    }
+}

@@ -1,0 +1,188 @@
+//! All that the dashboard shows.
+
+use std::collections::VecDeque;
+
+use twintac_report::{MapSettings, PreparedMap};
+
+use crate::reader::fault_name;
+use crate::{About, LiveError, Reading, Tally, Tare, Taring};
+
+/// Frames that traces go back.
+const HISTORY: usize = 600;
+/// Columns and rows of the map.
+const GRID: [usize; 2] = [128, 64];
+/// The Gaussians' width is chosen anew for a touch that is so much stronger than the one that it was chosen for.
+const STRONGER: f64 = 1.25;
+/// Touches below this say nothing about a width, kPa.
+const WEAK_KPA: f64 = 0.5;
+
+/// All that the dashboard shows.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// What is looked at.
+    pub about: About,
+    /// The newest frame.
+    pub latest: Option<Reading>,
+    /// Pressure above the tare of each taxel, kPa, the newest at the end.
+    pub traces_kpa: Vec<VecDeque<Option<f64>>>,
+    /// What became of the frames.
+    pub tally: Tally,
+    /// What is being recorded, if anything is.
+    pub recording: Option<Recorded>,
+    /// What there is to say.
+    pub message: String,
+    /// The map of [`refresh`](Self::refresh), kPa, over [`prepared`](Self::prepared)'s grid.
+    pub map_kpa: Vec<f64>,
+    /// What maps are made with.
+    pub prepared: PreparedMap,
+    tare: Tare,
+    taring: Option<Taring>,
+    /// Number and time of the frames that traces go back.
+    times: VecDeque<(u64, f64)>,
+    strongest_kpa: f64,
+}
+
+/// A recording, as it is shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// Its file.
+    pub file: String,
+    /// Frames so far.
+    pub frames: u64,
+}
+
+impl State {
+    /// Nothing was read yet. The first frames make a tare.
+    ///
+    /// # Errors
+    /// [`LiveError::Map`]: taxels share a place.
+    pub fn new(about: About) -> Result<Self, LiveError> {
+        let prepared = prepare(&about, &[])?;
+        let n = about.taxels.len();
+        Ok(Self {
+            about,
+            latest: None,
+            traces_kpa: vec![VecDeque::with_capacity(HISTORY); n],
+            tally: Tally::default(),
+            recording: None,
+            message: TARING.to_owned(),
+            map_kpa: vec![0.0; GRID[0] * GRID[1]],
+            prepared,
+            tare: Tare {
+                baseline_kpa: vec![None; n],
+            },
+            taring: Some(Taring::default()),
+            times: VecDeque::with_capacity(HISTORY),
+            strongest_kpa: 0.0,
+        })
+    }
+
+    /// Takes the next frame.
+    pub fn push(&mut self, reading: Reading) {
+        if let Some(tare) = self
+            .taring
+            .as_mut()
+            .and_then(|taring| taring.push(&reading.frame))
+        {
+            (self.tare, self.taring) = (tare, None);
+            self.message = "tare taken".to_owned();
+        }
+        for (trace, above_kpa) in self
+            .traces_kpa
+            .iter_mut()
+            .zip(self.tare.above_kpa(&reading.frame))
+        {
+            keep(trace, above_kpa);
+        }
+        keep(&mut self.times, (reading.sequence, reading.bench_s));
+        self.latest = Some(reading);
+    }
+
+    /// Makes the map of the newest frame. Its width is that which told a touch best taxel by taxel, the strongest touch so far.
+    ///
+    /// # Errors
+    /// [`LiveError::Map`].
+    pub fn refresh(&mut self) -> Result<(), LiveError> {
+        let above_kpa = self.above_kpa();
+        let field: Vec<f64> = above_kpa.iter().map(|above| above.unwrap_or(0.0)).collect();
+        let strength_kpa = field.iter().copied().fold(0.0, f64::max);
+        let is_whole = above_kpa.iter().all(Option::is_some);
+        if is_whole && strength_kpa > WEAK_KPA.max(STRONGER * self.strongest_kpa) {
+            self.strongest_kpa = strength_kpa;
+            self.prepared = prepare(&self.about, &[&field])?;
+        }
+        self.prepared.fill(&field, &mut self.map_kpa)?;
+        Ok(())
+    }
+
+    /// Takes a tare of the next frames.
+    pub fn tare(&mut self) {
+        self.taring = Some(Taring::default());
+        self.message = TARING.to_owned();
+    }
+
+    /// The newest pressures above the tare, kPa.
+    #[must_use]
+    pub fn above_kpa(&self) -> Vec<Option<f64>> {
+        let newest = |trace: &VecDeque<Option<f64>>| trace.back().copied().flatten();
+        self.traces_kpa.iter().map(newest).collect()
+    }
+
+    /// Frames that were read in a second, Hz, over the traces.
+    #[must_use]
+    pub fn rate_hz(&self) -> Option<f64> {
+        let ((first, first_s), (last, last_s)) = (self.times.front()?, self.times.back()?);
+        (last_s > first_s).then(|| (last - first) as f64 / (last_s - first_s))
+    }
+
+    /// Mean temperature of the taxels that have one, °C.
+    #[must_use]
+    pub fn temperature_c(&self) -> Option<f64> {
+        let taxels = &self.latest.as_ref()?.frame.taxels;
+        let known: Vec<f64> = taxels.iter().filter_map(|taxel| taxel.temperature_c).collect();
+        (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    }
+
+    /// Each taxel's fault by its name, as of the newest frame.
+    #[must_use]
+    pub fn faults(&self) -> Vec<Option<&'static str>> {
+        let Some(latest) = &self.latest else {
+            return vec![None; self.about.taxels.len()];
+        };
+        latest
+            .frame
+            .taxels
+            .iter()
+            .map(|taxel| fault_name(taxel.state))
+            .collect()
+    }
+
+    /// Where colours and traces end: the largest pressure that is remembered, 1 kPa at least.
+    #[must_use]
+    pub fn scale_kpa(&self) -> f64 {
+        let all = self.traces_kpa.iter().flatten().flatten();
+        all.copied().fold(1.0, f64::max)
+    }
+}
+
+const TARING: &str = "taking a tare: leave the sensor untouched";
+
+fn prepare(about: &About, fields_kpa: &[&[f64]]) -> Result<PreparedMap, LiveError> {
+    let settings = MapSettings {
+        grid: GRID,
+        ..MapSettings::default()
+    };
+    Ok(PreparedMap::new(
+        &about.places_mm,
+        about.window(),
+        &settings,
+        fields_kpa,
+    )?)
+}
+
+fn keep<T>(history: &mut VecDeque<T>, newest: T) {
+    if history.len() == HISTORY {
+        history.pop_front();
+    }
+    history.push_back(newest);
+}

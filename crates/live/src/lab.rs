@@ -1,0 +1,141 @@
+//! The emulated sensor, pressed by a slow motion, so that there is something to see.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use phystac::PhysTac;
+use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
+use twintac_emulate::robot::ArmSettings;
+use twintac_emulate::{Fault, Hertz, LabClock, Physics, Scene, Sensed};
+use twintac_rig::TcpPose;
+use twintac_sensor::Sensor;
+
+use crate::about::driver_settings;
+use crate::scale::{SCALES_PER_PA, full_scale_kpa};
+use crate::{BoxedClock, LiveError, TAXELS};
+
+/// A ball that wanders around over the taxels and presses every few seconds. It is a function of time alone.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    hertz: Hertz,
+    middle_mm: DVec3,
+    half_mm: DVec3,
+}
+
+impl Motion {
+    /// Before the first press nothing touches for so long, s: time to take a tare.
+    pub const FREE_S: f64 = 1.0;
+    /// Time of a press, from touch to touch, s.
+    pub const PRESS_S: f64 = 3.0;
+    /// Time of a round over the taxels, s.
+    pub const ROUND_S: f64 = 19.0;
+    /// Depth in the middle of a press, mm.
+    pub const DEPTH_MM: f64 = 2.0;
+
+    /// Over a sensor's taxels, whose places become those of the physics, by channel.
+    #[must_use]
+    pub fn over(sensor: &Sensor) -> Self {
+        let mut hertz = Hertz::default();
+        for taxel in &sensor.taxels {
+            if let Some(place_mm) = hertz.taxels_mm.get_mut(usize::from(taxel.channel)) {
+                *place_mm = taxel.position_mm.with_z(0.0);
+            }
+        }
+        let least = hertz.taxels_mm.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let most = hertz
+            .taxels_mm
+            .iter()
+            .copied()
+            .fold(DVec3::NEG_INFINITY, DVec3::max);
+        Self {
+            hertz,
+            middle_mm: 0.5 * (least + most),
+            half_mm: 0.5 * (most - least),
+        }
+    }
+
+    /// Where the ball's lowest point is, mm; the surface at rest is z = 0.
+    #[must_use]
+    pub fn tip_mm(&self, time_s: f64) -> DVec3 {
+        let pressing_s = (time_s - Self::FREE_S).max(0.0);
+        let (sine, cosine) = (TAU * pressing_s / Self::ROUND_S).sin_cos();
+        let depth_mm = Self::DEPTH_MM * (PI * pressing_s / Self::PRESS_S).sin().powi(2);
+        self.middle_mm + self.half_mm * DVec3::new(cosine, sine, 0.0) + depth_mm * DVec3::NEG_Z
+    }
+}
+
+impl Physics for Motion {
+    fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed {
+        let tip = TcpPose {
+            position_mm: self.tip_mm(time_s),
+            ..*tool
+        };
+        self.hertz.at(&tip, time_s)
+    }
+}
+
+/// An emulated sensor on its own bus; there is neither robot nor force sensor.
+pub struct Lab {
+    /// The driver of it.
+    pub phystac: PhysTac<Bus, LabClock, BoxedClock, TAXELS>,
+    /// The clock that it lives by.
+    pub clock: LabClock,
+}
+
+impl Lab {
+    /// A sensor as it is described, on [`emulated_board`], on a clock that stands at zero, with faults of its bus.
+    ///
+    /// # Errors
+    /// The sensor is not read this way; a fault makes no sense.
+    pub fn new(sensor: &Sensor, clock: LabClock, faults: &[Fault]) -> Result<Self, LiveError> {
+        let settings = driver_settings(sensor)?;
+        let nowhere = TcpPose {
+            position_mm: DVec3::ZERO,
+            roll_pitch_yaw_rad: DVec3::new(PI, 0.0, 0.0),
+        };
+        let scene = Scene::new(
+            clock.clone(),
+            Motion::over(sensor),
+            nowhere,
+            ArmSettings::default(),
+        );
+        let board = Board::new(scene, &emulated_board(sensor), faults)?;
+        let now = clock.clone();
+        let now: BoxedClock = Box::new(move || now.now_us());
+        Ok(Self {
+            phystac: PhysTac::new(board.bus(), clock.clone(), now, settings),
+            clock,
+        })
+    }
+}
+
+/// The board of a sensor that nobody has soldered: its barometers have the scale that the description confirms, else the finest that reaches
+/// the description's range.
+#[must_use]
+pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
+    let max_kpa = sensor.readout.max_kpa;
+    let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= max_kpa;
+    let finest = SCALES_PER_PA.into_iter().rev().find(reaches);
+    let counts_per_pa = sensor
+        .readout
+        .counts_per_pa
+        .or(finest)
+        .unwrap_or(SCALES_PER_PA[0]);
+    BoardSettings {
+        channels: sensor.taxels.iter().map(|taxel| taxel.channel).collect(),
+        barometer: BarometerSettings {
+            counts_per_pa: f64::from(counts_per_pa),
+            is_signed: full_scale_kpa(counts_per_pa, true) >= max_kpa,
+            ..BarometerSettings::default()
+        },
+        ..BoardSettings::default()
+    }
+}
+
+impl std::fmt::Debug for Lab {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lab")
+            .field("clock", &self.clock)
+            .finish_non_exhaustive()
+    }
+}

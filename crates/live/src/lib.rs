@@ -1,0 +1,53 @@
+//! Seeing touch: frames of a sensor as they come, as rows of text or as a dashboard on the terminal.
+//!
+//! A [`FrameSource`] reads a sensor on a thread of its own and hands frames out through a bounded channel; what does not fit is counted as
+//! missed, and the bus waits for nobody. The sensor stands on any bus of `embedded_hal`: `/dev/i2c-N` of Linux, or [`Lab`],
+//! the emulated one. [`stream_rows`] writes rows, [`dashboard::run`] draws.
+//!
+//! ```
+//! use twintac_live::{FrameReader, Lab, power_on};
+//! use twintac_emulate::LabClock;
+//!
+//! let sensor = twintac_sensor::Sensor::read("../../sensors/phystac.toml")?;
+//! let mut phystac = Lab::new(&sensor, LabClock::virtual_time(), &[])?.phystac;
+//! assert!(power_on(&mut phystac, &sensor, None).is_err()); // nobody has confirmed a scale
+//! let checked = power_on(&mut phystac, &sensor, Some(8))?;
+//! let reading = FrameReader::new(phystac, checked.transfer).read()?;
+//! assert!((reading.frame.taxels[0].pressure_pa.unwrap() - 101_325.0).abs() < 200.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Pressures are in kPa above a tare, times in s of the bench's clock.
+
+mod about;
+pub mod dashboard;
+mod error;
+mod lab;
+#[cfg(target_os = "linux")]
+mod linux;
+mod live;
+mod reader;
+mod rows;
+mod scale;
+mod source;
+mod stream;
+mod tare;
+
+pub use about::{About, driver_settings};
+pub use error::LiveError;
+pub use lab::{Lab, Motion, emulated_board};
+#[cfg(target_os = "linux")]
+pub use linux::{LinuxBus, LinuxPhysTac, open_linux};
+pub use live::Live;
+pub use reader::{FrameReader, Reading};
+pub use rows::{Format, RowWriter};
+pub use scale::{PowerOn, power_on};
+pub use source::{FrameSource, Tally};
+pub use stream::{Limits, Streamed, stream_rows};
+pub use tare::{Tare, Taring};
+
+/// Taxels of a sensor that is read here: as many as the switch has channels.
+pub const TAXELS: usize = 8;
+
+/// A clock that may go to another thread.
+pub type BoxedClock = Box<dyn Fn() -> u64 + Send>;

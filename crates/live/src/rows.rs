@@ -1,0 +1,128 @@
+//! Frames as rows of text.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use twintac_recording::Provenance;
+
+use crate::reader::fault_name;
+use crate::{About, Reading, Tare};
+
+/// How rows are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Comma-separated values under a header; what is missing is empty.
+    Csv,
+    /// A JSON object a line; what is missing is null.
+    JsonLines,
+}
+
+/// Writes a row for each frame. Each is flushed, so that it is seen at once.
+#[derive(Debug)]
+pub struct RowWriter<W> {
+    out: W,
+    format: Format,
+    taxels: Vec<String>,
+    provenance: Provenance,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    seq: u64,
+    bench_s: f64,
+    provenance: Provenance,
+    taxels: Vec<TaxelRow<'a>>,
+}
+
+#[derive(Serialize)]
+struct TaxelRow<'a> {
+    name: &'a str,
+    above_tare_kpa: Option<f64>,
+    counts: Option<i32>,
+    temperature_c: Option<f64>,
+    fault: Option<&'static str>,
+}
+
+impl<W: Write> RowWriter<W> {
+    /// Writes the header, if the format has one.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn new(mut out: W, format: Format, about: &About) -> io::Result<Self> {
+        if format == Format::Csv {
+            write!(out, "seq,bench_s,provenance")?;
+            for unit in ["above_tare_kpa", "counts", "temperature_c", "fault"] {
+                for taxel in &about.taxels {
+                    write!(out, ",{taxel}_{unit}")?;
+                }
+            }
+            writeln!(out)?;
+            out.flush()?;
+        }
+        Ok(Self {
+            out,
+            format,
+            taxels: about.taxels.clone(),
+            provenance: about.provenance,
+        })
+    }
+
+    /// Writes a frame.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write(&mut self, reading: &Reading, tare: &Tare) -> io::Result<()> {
+        let above_kpa = tare.above_kpa(&reading.frame);
+        let taxels = self.taxels.iter().zip(&reading.frame.taxels).zip(above_kpa);
+        let row = Row {
+            seq: reading.sequence,
+            bench_s: reading.bench_s,
+            provenance: self.provenance,
+            taxels: taxels
+                .map(|((name, taxel), above_kpa)| TaxelRow {
+                    name,
+                    above_tare_kpa: above_kpa.map(to_a_millipascal),
+                    counts: taxel.counts,
+                    temperature_c: taxel.temperature_c,
+                    fault: fault_name(taxel.state),
+                })
+                .collect(),
+        };
+        match self.format {
+            Format::Csv => row.write_csv(&mut self.out)?,
+            Format::JsonLines => {
+                serde_json::to_writer(&mut self.out, &row)?;
+                writeln!(self.out)?;
+            }
+        }
+        self.out.flush()
+    }
+}
+
+/// What a part resolves is a thousand times more, and digits beyond are rounding.
+fn to_a_millipascal(pressure_kpa: f64) -> f64 {
+    (1e6 * pressure_kpa).round() / 1e6
+}
+
+impl Row<'_> {
+    fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
+        write!(out, "{},{:.6},{}", self.seq, self.bench_s, self.provenance)?;
+        for taxel in &self.taxels {
+            write!(out, ",{}", text(taxel.above_tare_kpa))?;
+        }
+        for taxel in &self.taxels {
+            write!(out, ",{}", text(taxel.counts))?;
+        }
+        for taxel in &self.taxels {
+            write!(out, ",{}", text(taxel.temperature_c))?;
+        }
+        for taxel in &self.taxels {
+            write!(out, ",{}", taxel.fault.unwrap_or_default())?;
+        }
+        writeln!(out)
+    }
+}
+
+fn text(value: Option<impl ToString>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
+}

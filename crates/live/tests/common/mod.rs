@@ -1,0 +1,37 @@
+//! The emulated sensor in virtual time.
+
+#![allow(dead_code, unreachable_pub)] // each test file uses its own part
+
+use twintac_emulate::i2c::Bus;
+use twintac_emulate::{Fault, LabClock, Moment, What};
+use twintac_live::{About, BoxedClock, FrameReader, Lab, TAXELS, power_on};
+use twintac_recording::Provenance;
+use twintac_sensor::Sensor;
+
+pub type LabReader = FrameReader<Bus, LabClock, BoxedClock, TAXELS>;
+
+pub fn sensor() -> Sensor {
+    Sensor::read("../../sensors/phystac.toml").unwrap()
+}
+
+pub fn lab(faults: &[Fault]) -> Lab {
+    Lab::new(&sensor(), LabClock::virtual_time(), faults).unwrap()
+}
+
+pub fn reader(faults: &[Fault]) -> (LabReader, About) {
+    let mut phystac = lab(faults).phystac;
+    let transfer = power_on(&mut phystac, &sensor(), Some(8)).unwrap().transfer;
+    let about = About::new(&sensor(), "name = \"phystac\"", Provenance::Emulated, transfer, 0);
+    (FrameReader::new(phystac, transfer), about)
+}
+
+/// A barometer that is gone from a time on, s.
+pub fn gone(channel: u8, from_s: f64) -> Fault {
+    Fault {
+        what: What::NoAcknowledge {
+            channel: Some(channel),
+        },
+        begins: Moment::TimeS(from_s),
+        lasts: None,
+    }
+}

@@ -1,0 +1,127 @@
+//! The devices of a bench, connected.
+
+use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::i2c::I2c;
+use phystac::{Clock, PhysTac, Transfer};
+use twintac_lab::Selector;
+use twintac_live::{TAXELS, power_on};
+use twintac_press::{Bench, PressSettings, Streams};
+use twintac_recording::Provenance;
+use twintac_rig::xarm::{Client, PORT, ReportPort, ReportReader};
+use twintac_rig::{BenchClock, NetFtSource, netft};
+use twintac_sensor::Sensor;
+
+/// How long a device may take to accept a connection.
+const CONNECT_WITHIN: Duration = Duration::from_secs(3);
+
+/// A bench that is switched on.
+pub(super) struct OpenBench {
+    pub(super) devices: Bench<Client<TcpStream>>,
+    pub(super) transfer: Transfer,
+    pub(super) provenance: Provenance,
+    /// What was odd when it was switched on, a sentence each.
+    pub(super) notes: Vec<String>,
+    /// Puts indenters on, where nobody has to.
+    pub(super) selector: Option<Selector>,
+    /// What keeps emulated devices running.
+    pub(super) _emulated: Option<twintac_emulate::Bench>,
+}
+
+/// Where robot and force sensor listen.
+pub(super) struct Addresses {
+    pub(super) commands: SocketAddr,
+    pub(super) reports: SocketAddr,
+    /// Of the force sensor's requests; what its page says.
+    pub(super) force: (SocketAddr, netft::Configuration),
+}
+
+/// Connects the devices of the settings. The robot is enabled, and stands.
+pub(super) fn open_real(sensor: &Sensor, settings: &PressSettings, scale: Option<u16>) -> Result<OpenBench> {
+    let devices = settings.devices.as_ref().context(
+        "the bench's settings have no [devices]: say where robot, force and tactile are, or press on the emulated bench with --lab",
+    )?;
+    let clock = BenchClock::start();
+    let configuration = netft::Client::read_configuration(&devices.force)?;
+    let address = |host: &str, port: u16| -> Result<SocketAddr> {
+        (host, port)
+            .to_socket_addrs()
+            .with_context(|| format!("looking up {host}"))?
+            .next()
+            .with_context(|| format!("{host} has no address"))
+    };
+    let addresses = Addresses {
+        commands: address(&devices.robot, PORT)?,
+        reports: address(&devices.robot, ReportPort::Development.number())?,
+        force: (address(&devices.force, netft::PORT)?, configuration),
+    };
+    let mut driver = twintac_live::driver_settings(sensor)?;
+    driver.conversion_us = settings.conversion_us;
+    let taxels = open_bus(Path::new(&devices.tactile), driver, clock)?;
+    // Linux's driver frees a bus by itself.
+    let (bench, transfer, notes) = connect(&addresses, taxels, |_, _| {}, sensor, scale, clock)?;
+    Ok(OpenBench {
+        devices: bench,
+        transfer,
+        provenance: Provenance::Real,
+        notes,
+        selector: None,
+        _emulated: None,
+    })
+}
+
+#[cfg(target_os = "linux")]
+fn open_bus(
+    path: &Path,
+    driver: phystac::Settings<TAXELS>,
+    clock: BenchClock,
+) -> Result<twintac_live::LinuxPhysTac> {
+    Ok(twintac_live::open_linux(
+        path,
+        driver,
+        Box::new(move || clock.now_us()),
+    )?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn open_bus(
+    path: &Path,
+    _: phystac::Settings<TAXELS>,
+    _: BenchClock,
+) -> Result<PhysTac<twintac_emulate::i2c::Bus, twintac_emulate::LabClock, twintac_live::BoxedClock, TAXELS>> {
+    anyhow::bail!("{}: buses are opened on Linux only", path.display())
+}
+
+/// Connects, checks the taxels in free air, and has everything heard. The robot is enabled last.
+pub(super) fn connect<I, D, C>(
+    addresses: &Addresses,
+    mut taxels: PhysTac<I, D, C, TAXELS>,
+    free: impl FnMut(&mut I, &mut D) + Send + 'static,
+    sensor: &Sensor,
+    scale: Option<u16>,
+    clock: BenchClock,
+) -> Result<(Bench<Client<TcpStream>>, Transfer, Vec<String>)>
+where
+    I: I2c + Send + 'static,
+    D: DelayNs + Send + 'static,
+    C: Clock + Send + 'static,
+{
+    let checked = power_on(&mut taxels, sensor, scale)?;
+    let mut streams = Streams::new(clock);
+    streams.hear_taxels(taxels, checked.transfer, free)?;
+    let (requests, configuration) = addresses.force.clone();
+    let mut force = netft::Client::connect(requests, configuration)?;
+    force.start(false)?;
+    streams.hear_force(NetFtSource::new(force, clock))?;
+    let reports = TcpStream::connect_timeout(&addresses.reports, CONNECT_WITHIN)
+        .with_context(|| format!("connecting to the robot's reports at {}", addresses.reports))?;
+    streams.hear_robot(ReportReader::new(reports, ReportPort::Development))?;
+    let mut arm = Client::connect(addresses.commands)?;
+    arm.enable()?;
+    arm.begin_servo()?;
+    Ok((Bench { arm, streams }, checked.transfer, checked.notes))
+}

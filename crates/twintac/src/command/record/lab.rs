@@ -1,0 +1,96 @@
+//! The emulated bench, on the same wires.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use glam::DVec3;
+use phystac::PhysTac;
+use phystac::recovery::{free_bus, reset_switch};
+use serde::Deserialize;
+use twintac_emulate::{Fault, LabClock, Settings};
+use twintac_lab::{Bench, Reality};
+use twintac_live::emulated_board;
+use twintac_press::PressSettings;
+use twintac_protocol::PressPlan;
+use twintac_recording::Provenance;
+use twintac_rig::xarm::ReportPort;
+use twintac_rig::{BenchClock, netft};
+use twintac_shape::Pose;
+
+use super::bench::{Addresses, OpenBench, connect};
+use crate::run::Run;
+
+/// What `--faults FILE` holds.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FaultsFile {
+    faults: Vec<Fault>,
+}
+
+/// Computes what the gel answers at the places of the plans, and switches the emulated devices on.
+pub(super) fn open(
+    run: &Run,
+    reality: &Reality,
+    plans: &[PressPlan],
+    settings: &PressSettings,
+    faults: Option<&Path>,
+) -> Result<OpenBench> {
+    let faults = match faults {
+        Some(file) => twintac_config::read::<FaultsFile>(file)?.value.faults,
+        None => Vec::new(),
+    };
+    let sensor = &run.sensor.sensor;
+    let lab = Bench::new(Arc::clone(sensor), reality.clone());
+    let tables = run.live_tables(&lab, reality, plans)?;
+    let placement = &settings.placement;
+    let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);
+
+    let board = emulated_board(sensor);
+    let scale = board.barometer.counts_per_pa as u16; // it was made from one
+    let mut devices = Settings {
+        board,
+        faults,
+        ..Settings::default()
+    };
+    devices.board.barometer.noise_pa = 1e3 * reality.readout.noise_kpa;
+    devices.board.seed = reality.seed;
+    devices.force.noise_n = reality.robot.force_noise_n;
+    devices.force.seed = reality.seed;
+    devices.robot.first_pose =
+        placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
+    let lab_clock = LabClock::real();
+    let devices = twintac_emulate::Bench::start(lab_clock.clone(), gel, &devices)?;
+
+    let configuration = netft::Client::read_configuration(&devices.force.page().to_string())?;
+    let addresses = Addresses {
+        commands: devices.robot.commands(),
+        reports: devices.robot.reports(ReportPort::Development),
+        force: (devices.force.requests(), configuration),
+    };
+    let clock = BenchClock::start();
+    let mut driver = twintac_live::driver_settings(sensor)?;
+    driver.conversion_us = settings.conversion_us;
+    let taxels = PhysTac::new(
+        devices.board.bus(),
+        lab_clock,
+        move || clock.now_us(),
+        driver,
+    );
+    let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
+    let free = move |_: &mut _, delay: &mut LabClock| {
+        // A bus that stays hung fails the next frame as well.
+        let _ = reset_switch(&mut reset, delay);
+        let _ = free_bus(&mut scl, &mut sda, delay);
+    };
+    let (bench, transfer, notes) = connect(&addresses, taxels, free, sensor, Some(scale), clock)
+        .context("connecting to the emulated bench")?;
+    Ok(OpenBench {
+        devices: bench,
+        transfer,
+        provenance: Provenance::Emulated,
+        notes,
+        selector: Some(selector),
+        _emulated: Some(devices),
+    })
+}

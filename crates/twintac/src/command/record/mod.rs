@@ -1,0 +1,221 @@
+//! `twintac record`: presses on a bench, over its wires.
+
+mod bench;
+mod lab;
+mod preview;
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, Result, bail};
+use serde::Serialize;
+use twintac_lab::Reality;
+use twintac_log::{CountTransfer, Description};
+use twintac_press::{PressSettings, Progress, RunSummary, Runner};
+use twintac_protocol::PressPlan;
+use twintac_recording::Provenance;
+use twintac_rig::SensorLimits;
+
+use super::demo::{REALITY, SENSOR};
+use crate::arguments::Record;
+use crate::progress;
+use crate::run::{Run, RunSettings, plan};
+use crate::sensor_file::{SensorFile, read_sensor};
+use bench::OpenBench;
+
+/// How the emulated bench presses.
+const LAB_BENCH: &str = include_str!("../../../../../benches/lab.toml");
+
+/// Set by Ctrl-C: the bench stops.
+static INTERRUPT: AtomicBool = AtomicBool::new(false);
+
+/// A run was stopped before its end, safely and for a reason; what was recorded is kept.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub(crate) struct Stopped(String);
+
+/// The last line with `--json`.
+#[derive(Debug, Serialize)]
+struct Summary {
+    rate_hz: f64,
+    frames: u64,
+    lost_unmarked: u64,
+    presses: usize,
+    presses_done: usize,
+    stopped: Option<String>,
+    stop_latency_periods: Option<f64>,
+    provenance: Provenance,
+}
+
+pub(super) fn run(arguments: &Record) -> Result<()> {
+    let sensor = match &arguments.sensor {
+        Some(path) => read_sensor(path)?,
+        None => SensorFile::built_in("sensors/phystac.toml", SENSOR)?,
+    };
+    let seed = arguments.start.seed;
+    let plans = plan(&arguments.protocol, &sensor.sensor, seed)?;
+    let reality = arguments.lab.as_ref().map(|file| read_reality(file.as_deref()));
+    let reality = reality.transpose()?;
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => Path::new("runs").join(arguments.protocol.file_stem().unwrap_or_default()),
+    };
+    if let (Some(reality), true) = (&reality, arguments.at_once) {
+        let source = format!("{} presses on the emulated bench", plans.len());
+        let settings = RunSettings::of(&arguments.start)?;
+        return Run::start(&out, sensor, source, seed, settings)?.record(reality, &plans);
+    }
+    let settings = press_settings(arguments.bench.as_deref())?;
+    if arguments.dry_run {
+        return preview::run(&settings, &plans, &sensor.sensor, &out, arguments.json);
+    }
+    let limits = limits(&sensor)?;
+    let whose = if reality.is_some() { "the emulated" } else { "a real" };
+    let source = format!("{} presses on {whose} bench, over its wires", plans.len());
+    let run = Run::start(&out, sensor, source, seed, RunSettings::of(&arguments.start)?)?;
+    let mut bench = match &reality {
+        Some(reality) => lab::open(&run, reality, &plans, &settings, arguments.faults.as_deref())?,
+        None => bench::open_real(&run.sensor.sensor, &settings, arguments.scale)?,
+    };
+    for note in &bench.notes {
+        say(note);
+    }
+    let runner = Runner {
+        description: description(&run.sensor, &bench),
+        settings,
+        sensor: limits,
+    };
+    let summary = press_all(&runner, &mut bench, &plans, &run.folder.join("logs"))?;
+    if summary.presses_done > 0 {
+        run.collect(&run.folder.join("logs"), &plans)?;
+    }
+    tell(&summary, plans.len(), &bench, &run.folder, arguments.json)
+}
+
+/// Carries the presses out, with a bar, and stops on Ctrl-C.
+fn press_all(
+    runner: &Runner,
+    bench: &mut OpenBench,
+    plans: &[PressPlan],
+    logs: &Path,
+) -> Result<RunSummary> {
+    ctrlc::set_handler(|| INTERRUPT.store(true, Ordering::Relaxed)).context("listening to Ctrl-C")?;
+    let bar = progress::bar("pressing", plans.len() as u64);
+    let OpenBench {
+        devices, selector, ..
+    } = bench;
+    let selector = selector.as_ref();
+    let summary = runner.run(devices, plans, logs, &INTERRUPT, &mut |progress| match progress {
+        Progress::Mount { indenter } if selector.is_none() => {
+            bar.suspend(|| ask_for(indenter));
+        }
+        Progress::Mount { .. } => {}
+        Progress::Press { index, plan } => {
+            bar.set_position(index as u64);
+            if let Some(selector) = selector {
+                // The tables are those of the same plans.
+                let _ = selector.select(&plan.name);
+            }
+        }
+    })?;
+    bar.finish_and_clear();
+    Ok(summary)
+}
+
+/// Waits for a person who mounts an indenter.
+fn ask_for(indenter: &str) {
+    say(&format!(
+        "Mount the indenter `{indenter}`, step back, and press Enter: the robot will move. Ctrl-C stops it."
+    ));
+    let _ = std::io::stdin().read_line(&mut String::new());
+}
+
+fn tell(summary: &RunSummary, presses: usize, bench: &OpenBench, folder: &Path, json: bool) -> Result<()> {
+    let stopped = summary.stopped.as_ref().map(ToString::to_string);
+    if json {
+        super::print(&serde_json::to_string(&Summary {
+            rate_hz: summary.rate_hz,
+            frames: summary.frames,
+            lost_unmarked: summary.lost_unmarked,
+            presses,
+            presses_done: summary.presses_done,
+            stopped: stopped.clone(),
+            stop_latency_periods: summary.stop_latency_periods,
+            provenance: bench.provenance,
+        })?)?;
+    } else {
+        super::print(&format!(
+            "{} of {presses} presses are done ({} data): {} frames at {:.1} Hz, {} lost without a mark",
+            summary.presses_done,
+            bench.provenance,
+            summary.frames,
+            summary.rate_hz,
+            summary.lost_unmarked
+        ))?;
+        super::print(&format!("logs    {}", folder.join("logs").display()))?;
+    }
+    match stopped {
+        None => Ok(()),
+        Some(cause) => Err(Stopped(format!(
+            "the bench was stopped: {cause}. What was recorded is kept; the same command goes on with the next press"
+        ))
+        .into()),
+    }
+}
+
+fn description(sensor: &SensorFile, bench: &OpenBench) -> Description {
+    Description {
+        sensor: sensor.sensor.name.clone(),
+        sensor_toml: sensor.text.clone(),
+        provenance: bench.provenance,
+        taxels: sensor
+            .sensor
+            .taxels
+            .iter()
+            .map(|taxel| taxel.name.clone())
+            .collect(),
+        transfer: Some(CountTransfer::from_driver(&bench.transfer, true)),
+        // Set by the run.
+        base_from_gel: twintac_shape::Pose::IDENTITY,
+        tool_from_indenter: twintac_shape::Pose::IDENTITY,
+        force_axis: glam::DVec3::NEG_Z,
+        start_unix_ns: 0,
+        versions: BTreeMap::from([("twintac".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
+    }
+}
+
+/// What the sensor stands: a bench without such limits presses nothing.
+fn limits(sensor: &SensorFile) -> Result<SensorLimits> {
+    let Some(limits) = sensor.sensor.limits else {
+        bail!(
+            "the description of sensor `{}` does not say what it stands; add a table [limits] with force_n and depth_mm",
+            sensor.sensor.name
+        );
+    };
+    Ok(SensorLimits {
+        force_n: limits.force_n,
+        depth_mm: limits.depth_mm,
+    })
+}
+
+fn press_settings(file: Option<&Path>) -> Result<PressSettings> {
+    let Some(file) = file else {
+        return Ok(PressSettings::parse("benches/lab.toml", LAB_BENCH)?);
+    };
+    let text = std::fs::read_to_string(file).with_context(|| format!("reading {}", file.display()))?;
+    Ok(PressSettings::parse(&file.display().to_string(), &text)?)
+}
+
+fn read_reality(file: Option<&Path>) -> Result<Reality> {
+    let Some(file) = file else {
+        return Ok(Reality::parse("realities/default.toml", REALITY)?);
+    };
+    let text = std::fs::read_to_string(file).with_context(|| format!("reading {}", file.display()))?;
+    Ok(Reality::parse(&file.display().to_string(), &text)?)
+}
+
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}

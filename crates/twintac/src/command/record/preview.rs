@@ -1,0 +1,107 @@
+//! What a run would do: its places, its motion and its time.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use anyhow::Result;
+use glam::DVec3;
+use serde::Serialize;
+use twintac_press::{DryRun, PressSettings, dry_run};
+use twintac_protocol::PressPlan;
+use twintac_report::plot::{Panel, Panels, Places, Series};
+use twintac_report::{Ink, svg};
+use twintac_sensor::Sensor;
+use twintac_shape::Pose;
+
+use crate::stage::write_file;
+
+/// The last line with `--json`.
+#[derive(Debug, Serialize)]
+struct Preview {
+    presses: usize,
+    indenters: usize,
+    duration_s: f64,
+    drawings: Vec<String>,
+}
+
+pub(super) fn run(
+    settings: &PressSettings,
+    plans: &[PressPlan],
+    sensor: &Sensor,
+    out: &Path,
+    json: bool,
+) -> Result<()> {
+    let start = settings
+        .placement
+        .tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
+    let dry = dry_run(settings, plans, &start)?;
+    let folder = out.join("plan");
+    let drawings = [folder.join("places.svg"), folder.join("motion.svg")];
+    let scenes = [places(plans, sensor).scene(), motion(&dry, settings).scene()];
+    for (path, scene) in drawings.iter().zip(scenes) {
+        write_file(path, svg(&scene).as_bytes())?;
+    }
+    let indenters: BTreeSet<&str> = plans.iter().map(|plan| plan.indenter.as_str()).collect();
+    let preview = Preview {
+        presses: plans.len(),
+        indenters: indenters.len(),
+        duration_s: dry.duration_s,
+        drawings: drawings.map(|path| path.display().to_string()).into(),
+    };
+    if json {
+        return super::super::print(&serde_json::to_string(&preview)?);
+    }
+    super::super::print(&format!(
+        "{} presses with {} indenters take {}, without the time to change indenters",
+        preview.presses,
+        preview.indenters,
+        minutes(preview.duration_s)
+    ))?;
+    super::super::print(&format!("drawings {}", preview.drawings.join(" ")))
+}
+
+fn minutes(seconds: f64) -> String {
+    format!("{:.0} min {:02.0} s", (seconds / 60.0).floor(), seconds % 60.0)
+}
+
+fn places(plans: &[PressPlan], sensor: &Sensor) -> Places {
+    Places {
+        title: format!("{} presses, how deep", plans.len()),
+        unit: "mm".to_owned(),
+        places_mm: plans.iter().map(|plan| [plan.x_mm, plan.y_mm]).collect(),
+        values: plans.iter().map(|plan| plan.depth_mm).collect(),
+        taxels_mm: sensor
+            .taxels
+            .iter()
+            .map(|taxel| [taxel.position_mm.x, taxel.position_mm.y])
+            .collect(),
+    }
+}
+
+/// The indenter over time, in the gel's frame.
+fn motion(dry: &DryRun, settings: &PressSettings) -> Panels {
+    let poses: Vec<(f64, DVec3)> = dry
+        .presses
+        .iter()
+        .flat_map(|press| &press.poses)
+        .map(|pose| (pose.time_s, settings.placement.indenter(&pose.tool).position_mm))
+        .collect();
+    let panel = |y_label: &str, axis: usize| Panel {
+        y_label: y_label.to_owned(),
+        series: vec![Series {
+            name: String::new(),
+            points: poses.iter().map(|(time_s, at)| [*time_s, at[axis]]).collect(),
+            ink: Ink::Series(0),
+            width_px: 1.0,
+            dashed: false,
+        }],
+        ..Panel::default()
+    };
+    Panels {
+        title: format!("The indenter's tip: {}", minutes(dry.duration_s)),
+        x_label: "time, s".to_owned(),
+        panels: vec![panel("height, mm", 2), panel("x, mm", 0), panel("y, mm", 1)],
+        panel_height_px: 110.0,
+        logarithmic: false,
+    }
+}

@@ -1,0 +1,71 @@
+//! `twintac stream`: touch as it happens.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::Result;
+use twintac_live::{Format, Limits, Live, Tally, dashboard, stream_rows};
+
+use super::demo::SENSOR;
+use crate::arguments::{RowFormat, Stream};
+use crate::sensor_file::{SensorFile, read_sensor};
+
+pub(super) fn run(arguments: &Stream) -> Result<()> {
+    let sensor = match &arguments.sensor {
+        Some(path) => read_sensor(path)?,
+        None => SensorFile::built_in("sensors/phystac.toml", SENSOR)?,
+    };
+    let mut live = match (&arguments.bus, arguments.lab) {
+        (Some(bus), false) => on_bus(bus, &sensor, arguments.scale)?,
+        _ => Live::in_the_lab(&sensor.sensor, &sensor.text, arguments.scale)?,
+    };
+    for note in &live.notes {
+        say(note);
+    }
+    let format = match arguments.format {
+        None => {
+            return dashboard::run(&mut live.source, live.about, &arguments.out)
+                .map(|tally| sum_up(&tally))
+                .map_err(Into::into);
+        }
+        Some(RowFormat::Csv) => Format::Csv,
+        Some(RowFormat::Jsonl) => Format::JsonLines,
+    };
+    let limits = Limits {
+        frames: arguments.frames,
+        seconds: arguments.seconds,
+    };
+    let out = std::io::stdout().lock();
+    let streamed = stream_rows(&mut live.source, &live.about, format, limits, out)?;
+    sum_up(&streamed.tally);
+    Ok(())
+}
+
+#[cfg(target_os = "linux")]
+fn on_bus(bus: &Path, sensor: &SensorFile, scale: Option<u16>) -> Result<Live> {
+    Ok(Live::on_linux(bus, &sensor.sensor, &sensor.text, scale)?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn on_bus(bus: &Path, _: &SensorFile, _: Option<u16>) -> Result<Live> {
+    anyhow::bail!(
+        "{}: buses are opened on Linux only; `--lab` is emulated anywhere",
+        bus.display()
+    )
+}
+
+/// Says what was lost, if anything was.
+fn sum_up(tally: &Tally) {
+    if tally.missed + tally.failed > 0 {
+        let Tally {
+            read, missed, failed, ..
+        } = tally;
+        say(&format!(
+            "{read} frames were read; {missed} of them missed; {failed} times none came"
+        ));
+    }
+}
+
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}

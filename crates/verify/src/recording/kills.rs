@@ -1,0 +1,76 @@
+//! Recordings that are killed at random moments.
+
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use anyhow::{Context, Result};
+use rand::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use super::{LabBench, Options, read};
+
+/// Longest time from the start to the kill, s: within the second press.
+const LATEST_S: f64 = 9.0;
+
+/// What was left.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Kills {
+    /// Recordings that were killed.
+    pub(crate) kills: usize,
+    /// Of these, while a press was being recorded.
+    pub(crate) while_recording: usize,
+    /// Logs that were left, in all.
+    pub(crate) logs: usize,
+    /// Of these, such as do not open.
+    pub(crate) unreadable: Vec<String>,
+    /// From the last message in the log to the kill, s, of those that were killed while recording.
+    pub(crate) missing_s: Vec<f64>,
+}
+
+impl Kills {
+    pub(crate) fn longest_missing_s(&self) -> f64 {
+        self.missing_s.iter().copied().fold(0.0, f64::max)
+    }
+
+    pub(crate) fn is_sound(&self) -> bool {
+        self.unreadable.is_empty() && self.longest_missing_s() <= 1.0
+    }
+}
+
+pub(crate) fn run(bench: &LabBench, options: &Options) -> Result<Kills> {
+    let mut chance = rand_chacha::ChaCha8Rng::seed_from_u64(options.seed);
+    let mut kills = Kills {
+        kills: options.kills,
+        while_recording: 0,
+        logs: 0,
+        unreadable: Vec::new(),
+        missing_s: Vec::new(),
+    };
+    for number in 0..options.kills {
+        bench.clear()?;
+        let mut process = bench.command(None).spawn().context("starting twintac")?;
+        std::thread::sleep(Duration::from_secs_f64(chance.random_range(0.2..LATEST_S)));
+        let killed_ns = SystemTime::now().duration_since(UNIX_EPOCH)?.as_nanos() as u64;
+        process.kill()?;
+        process.wait()?;
+        for log in bench.log_files()? {
+            kills.logs += 1;
+            let is_cut = log.extension().is_some_and(|extension| extension == "partial");
+            match read(&log) {
+                Err(error) => kills.unreadable.push(format!("{}: {error:#}", log.display())),
+                Ok(reading) if is_cut => {
+                    kills.while_recording += 1;
+                    let last_ns = reading.last_unix_ns.unwrap_or(0);
+                    kills.missing_s.push(killed_ns.saturating_sub(last_ns) as f64 * 1e-9);
+                }
+                Ok(_) => {}
+            }
+        }
+        eprintln!(
+            "kill {}: {:.2} s missing at most, {} unreadable",
+            number + 1,
+            kills.longest_missing_s(),
+            kills.unreadable.len()
+        );
+    }
+    Ok(kills)
+}
