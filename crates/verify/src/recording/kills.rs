@@ -49,7 +49,7 @@ pub(crate) fn run(bench: &LabBench, options: &Options) -> Result<Kills> {
         bench.clear()?;
         let mut process = bench.command(None).spawn().context("starting twintac")?;
         std::thread::sleep(Duration::from_secs_f64(chance.random_range(0.2..LATEST_S)));
-        let killed_ns = SystemTime::now().duration_since(UNIX_EPOCH)?.as_nanos() as u64;
+        let killed_ns = unix_ns(SystemTime::now())?;
         process.kill()?;
         process.wait()?;
         for log in bench.log_files()? {
@@ -59,7 +59,9 @@ pub(crate) fn run(bench: &LabBench, options: &Options) -> Result<Kills> {
                 Err(error) => kills.unreadable.push(format!("{}: {error:#}", log.display())),
                 Ok(reading) if is_cut => {
                     kills.while_recording += 1;
-                    let last_ns = reading.last_unix_ns.unwrap_or(0);
+                    // One that was killed before its first message lacks nothing older than itself.
+                    let begun_ns = unix_ns(std::fs::metadata(&log)?.created()?)?;
+                    let last_ns = reading.last_unix_ns.unwrap_or(begun_ns);
                     kills.missing_s.push(killed_ns.saturating_sub(last_ns) as f64 * 1e-9);
                 }
                 Ok(_) => {}
@@ -73,4 +75,9 @@ pub(crate) fn run(bench: &LabBench, options: &Options) -> Result<Kills> {
         );
     }
     Ok(kills)
+}
+
+/// Wall-clock time, ns since 1970.
+fn unix_ns(time: SystemTime) -> Result<u64> {
+    Ok(time.duration_since(UNIX_EPOCH)?.as_nanos() as u64) // until the year 2554
 }

@@ -78,11 +78,15 @@ fn places(plans: &[PressPlan], sensor: &Sensor) -> Places {
     }
 }
 
+/// Presses whose motion is drawn: more would be a smear.
+const DRAWN: usize = 5;
+
 /// The indenter over time, in the gel's frame.
 fn motion(dry: &DryRun, settings: &PressSettings) -> Panels {
     let poses: Vec<(f64, DVec3)> = dry
         .presses
         .iter()
+        .take(DRAWN)
         .flat_map(|press| &press.poses)
         .map(|pose| (pose.time_s, settings.placement.indenter(&pose.tool).position_mm))
         .collect();
@@ -98,7 +102,12 @@ fn motion(dry: &DryRun, settings: &PressSettings) -> Panels {
         ..Panel::default()
     };
     Panels {
-        title: format!("The indenter's tip: {}", minutes(dry.duration_s)),
+        title: format!(
+            "The indenter's tip in the first {} of {} presses, {} in all",
+            dry.presses.len().min(DRAWN),
+            dry.presses.len(),
+            minutes(dry.duration_s)
+        ),
         x_label: "time, s".to_owned(),
         panels: vec![panel("height, mm", 2), panel("x, mm", 0), panel("y, mm", 1)],
         panel_height_px: 110.0,
