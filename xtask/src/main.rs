@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
+mod fuzz;
 #[cfg(test)]
 mod tidy;
 
@@ -9,13 +10,16 @@ use std::process::{Command, ExitCode, ExitStatus};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | verify [rung…] [--quick] [--json] [--ccx CASE]>
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | fuzz [target…] [--seconds N] [--jobs N] [--keep] |
+    verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, then test: what CI runs
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
+  fuzz   looks for bytes that break what decodes wires and files, 60 s a target, two at a time; needs a C++ compiler; exit code 2 if it finds any
+         keep: the corpus that was found becomes `fuzz/corpus`, the figures docs/benchmarks/fuzz.*
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
 
 fn main() -> ExitCode {
@@ -25,6 +29,7 @@ fn main() -> ExitCode {
         "lint" => lint(),
         "test" => test(),
         "bench" => bench(),
+        "fuzz" => fuzz::fuzz(&std::env::args().skip(2).collect::<Vec<_>>()),
         "verify" => return verify(),
         _ => Err(anyhow::anyhow!("there is no task `{task}`\n{USAGE}")),
     };
