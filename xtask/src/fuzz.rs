@@ -84,7 +84,12 @@ pub(crate) fn fuzz(given: &[String]) -> Result<()> {
         })
     })?;
     let mut outcomes = outcomes.into_inner().unwrap_or_default();
-    outcomes.sort_by_key(|outcome| options.targets.iter().position(|target| *target == outcome.target));
+    outcomes.sort_by_key(|outcome| {
+        options
+            .targets
+            .iter()
+            .position(|target| *target == outcome.target)
+    });
     let text = table(&outcomes);
     eprintln!("{text}");
     if options.keep {
@@ -106,7 +111,10 @@ impl Options {
         let mut words = given.iter();
         while let Some(word) = words.next() {
             let mut number = || -> Result<u64> {
-                let number = words.next().and_then(|text| text.parse().ok()).filter(|number| *number > 0);
+                let number = words
+                    .next()
+                    .and_then(|text| text.parse().ok())
+                    .filter(|number| *number > 0);
                 number.with_context(|| format!("`{word}` wants a number above zero"))
             };
             match word.as_str() {
@@ -141,7 +149,10 @@ fn all_targets(root: &Path) -> Result<Vec<String>> {
 
 /// Builds the harness; the folder of its programs.
 fn build(root: &Path) -> Result<PathBuf> {
-    let rustc = Command::new("rustc").arg("-vV").output().context("starting rustc")?;
+    let rustc = Command::new("rustc")
+        .arg("-vV")
+        .output()
+        .context("starting rustc")?;
     let about = String::from_utf8_lossy(&rustc.stdout).into_owned();
     let host = about
         .lines()
@@ -156,14 +167,20 @@ fn build(root: &Path) -> Result<PathBuf> {
         .env("CARGO_TARGET_DIR", &folder)
         .status()
         .context("starting cargo")?;
-    ensure!(status.success(), "the fuzz targets could not be built; libFuzzer needs a C++ compiler");
+    ensure!(
+        status.success(),
+        "the fuzz targets could not be built; libFuzzer needs a C++ compiler"
+    );
     Ok(folder.join(host).join("release"))
 }
 
 /// Runs one target, and lets its corpus be kept.
 fn run(root: &Path, programs: &Path, work: &Path, target: &str, options: &Options) -> Result<Outcome> {
     let committed = root.join("fuzz/corpus").join(target);
-    let (corpus, artifacts) = (work.join("corpus").join(target), root.join("fuzz/artifacts").join(target));
+    let (corpus, artifacts) = (
+        work.join("corpus").join(target),
+        root.join("fuzz/artifacts").join(target),
+    );
     for folder in [&corpus, &artifacts, &committed] {
         fs::create_dir_all(folder)?;
     }
@@ -207,12 +224,18 @@ fn minimise(programs: &Path, work: &Path, target: &str, from: &[&PathBuf], kept:
     }
     fs::create_dir_all(&merged)?;
     let output = Command::new(programs.join(target))
-        .args(["-set_cover_merge=1".to_owned(), format!("-max_len={LARGEST_KEPT}")])
+        .args([
+            "-set_cover_merge=1".to_owned(),
+            format!("-max_len={LARGEST_KEPT}"),
+        ])
         .arg(&merged)
         .args(from)
         .stdin(Stdio::null())
         .output()?;
-    ensure!(output.status.success(), "the corpus of {target} could not be minimised");
+    ensure!(
+        output.status.success(),
+        "the corpus of {target} could not be minimised"
+    );
     for entry in fs::read_dir(kept)? {
         fs::remove_file(entry?.path())?;
     }
@@ -270,7 +293,10 @@ fn table(outcomes: &[Outcome]) -> String {
 
 /// Writes the figures down.
 fn record(root: &Path, options: &Options, outcomes: &[Outcome], table: &str) -> Result<()> {
-    let command = format!("cargo xtask fuzz --seconds {} --jobs {} --keep", options.seconds, options.jobs);
+    let command = format!(
+        "cargo xtask fuzz --seconds {} --jobs {} --keep",
+        options.seconds, options.jobs
+    );
     let targets: Vec<Value> = outcomes
         .iter()
         .map(|outcome| {
@@ -326,9 +352,17 @@ mod tests {
             Options::parse(&words, &all)
         };
         let options = parse(&["two", "--seconds", "5", "--keep"]).unwrap();
-        assert_eq!((options.targets.as_slice(), options.seconds, options.keep), (&all[1..], 5, true));
+        assert_eq!(
+            (options.targets.as_slice(), options.seconds, options.keep),
+            (&all[1..], 5, true)
+        );
         assert_eq!(parse(&[]).unwrap().targets, all);
-        for wrong in [&["three"][..], &["--seconds"], &["--seconds", "0"], &["--jobs", "x"]] {
+        for wrong in [
+            &["three"][..],
+            &["--seconds"],
+            &["--seconds", "0"],
+            &["--jobs", "x"],
+        ] {
             assert!(parse(wrong).is_err(), "{wrong:?}");
         }
     }

@@ -10,7 +10,7 @@ use twintac_rig::netft;
 use twintac_rig::xarm::Client;
 use twintac_rig::{BenchClock, NetFtSource, WrenchSource};
 
-const SOON: Duration = Duration::from_secs(1);
+const SOON: Duration = Duration::from_secs(10);
 
 fn force_client(bench: &Bench) -> netft::Client {
     let configuration = netft::Client::read_configuration(&bench.force.page().to_string()).unwrap();

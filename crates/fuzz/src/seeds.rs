@@ -305,7 +305,11 @@ fn without_definitions(log: &[u8]) -> Vec<u8> {
         let (content, after) = after.split_at(u64::from_le_bytes(*length) as usize);
         rest = after;
         let name_bytes = usize::from(content[2]);
-        let kept = if *kind == SCHEMA { &content[..6 + name_bytes] } else { content };
+        let kept = if *kind == SCHEMA {
+            &content[..6 + name_bytes]
+        } else {
+            content
+        };
         short.push(*kind);
         short.extend((kept.len() as u64).to_le_bytes());
         short.extend(kept);
@@ -324,13 +328,7 @@ pub(crate) fn log_files() -> Vec<Vec<u8>> {
     damaged[start + 200] ^= 1;
     let mut unchecked = whole.clone();
     unchecked[start + CHECKSUM_AT..][..4].fill(0);
-    vec![
-        log_start(),
-        whole[..end].to_vec(),
-        whole.clone(),
-        damaged,
-        unchecked,
-    ]
+    vec![log_start(), cut, whole, damaged, unchecked]
 }
 
 /// The messages of ours out of a log: a channel, a length, a step of time, and bytes of each.

@@ -19,12 +19,18 @@ const SENSOR: SensorLimits = SensorLimits {
 struct Fake {
     poses: Vec<TcpPose>,
     stops: usize,
+    /// For how long an answer has been missing, s.
+    missing_s: f64,
 }
 
 impl Arm for Fake {
     fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
         self.poses.push(*pose);
         Ok(())
+    }
+
+    fn hear(&mut self) -> Result<f64, RigError> {
+        Ok(self.missing_s)
     }
 
     fn stop(&mut self) -> Result<(), RigError> {
@@ -110,8 +116,11 @@ impl Script {
             Wrench::ZERO,
         )
         .unwrap();
-        let (poses, stops) = (Vec::new(), 0);
-        let mut arm = Fake { poses, stops };
+        let mut arm = Fake {
+            poses: Vec::new(),
+            stops: 0,
+            missing_s: 0.0,
+        };
         let (mut now_s, mut deepest_mm) = (0.0, f64::NEG_INFINITY);
         loop {
             now_s += PERIOD_S;
@@ -179,6 +188,8 @@ fn heard(now_s: f64, force_n: f64, pose: &TcpPose) -> Vec<Heard> {
                     force_n: DVec3::NEG_Z * force_n,
                     torque_n_mm: DVec3::ZERO,
                 },
+                sequence: None,
+                status: 0,
                 lost_before: 0,
             }),
         }
