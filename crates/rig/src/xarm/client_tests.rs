@@ -351,7 +351,7 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
         client.servo(&at(300.0 - 0.1 * f64::from(step))).unwrap();
     }
     assert!(begun.elapsed() < ANSWER_WITHIN, "{:?}", begun.elapsed());
-    assert!(client.hear().unwrap() >= Duration::from_millis(60));
+    assert!(client.hear().unwrap() >= Duration::from_millis(30));
     client.stop().unwrap();
     assert_eq!(
         client.hear().unwrap(),
