@@ -10,7 +10,7 @@ pub use libfuzzer_sys;
 #[doc(hidden)]
 pub use twintac_fuzz::run;
 
-/// Most bytes of one allocation, and of all that live together. The largest input has 64 KiB.
+/// Most bytes of one allocation, and of all that live together. The largest input has 16 KiB.
 const LARGEST: usize = 16 << 20;
 const MOST: usize = 64 << 20;
 

@@ -13,7 +13,7 @@ use phystac::recovery::{free_bus, reset_switch};
 use tempfile::TempDir;
 use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
 use twintac_log::{
-    Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Stream, read_presses,
+    Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Stream, TaxelState, read_presses,
 };
 use twintac_press::{Bench, PressError, PressSettings, Progress, RunSummary, Runner, Streams, dry_run};
 use twintac_protocol::PressPlan;
@@ -123,7 +123,17 @@ fn log(out: &Path) -> (Vec<Event>, u64) {
     for message in reader.by_ref() {
         match message.unwrap().body {
             Body::Event(event) => events.push(event),
-            Body::Tactile(_) => frames += 1,
+            Body::Tactile(frame) => {
+                frames += 1;
+                let good = frame
+                    .taxels
+                    .iter()
+                    .filter(|taxel| taxel.state == TaxelState::Good);
+                for pressure_pa in good.map(|taxel| taxel.pressure_pa.unwrap()) {
+                    let is_possible = (100_000.0..115_000.0).contains(&pressure_pa);
+                    assert!(is_possible, "air and gel have no {pressure_pa} Pa");
+                }
+            }
             _ => {}
         }
     }
@@ -237,6 +247,7 @@ fn each_fault_is_marked_or_stops_the_run() {
     let whole_bus = What::NoAcknowledge { channel: None };
     let one_taxel = What::NoAcknowledge { channel: Some(2) };
     let stuck_bus = What::StuckBus { channel: None };
+    let stuck_taxel = What::StuckBus { channel: Some(4) };
     let late = What::LateDatagrams { by_s: 0.02 };
     let short = What::Short { channel: 3 };
     let slow_bus = What::ClockStretch { by_s: 0.002 };
@@ -247,6 +258,7 @@ fn each_fault_is_marked_or_stops_the_run() {
         (whole_bus, some_time, End::Gap(Stream::Tactile)),
         (whole_bus, None, End::Stop("the tactile sensor")),
         (stuck_bus, None, End::Gap(Stream::Tactile)),
+        (stuck_taxel, None, End::Gap(Stream::Tactile)),
         (short, None, End::Note("taxel 3 is Isolated")),
         (slow_bus, None, End::Gap(Stream::Tactile)),
         // Where in a frame it happens decides what it costs; the mask is written again before each use.

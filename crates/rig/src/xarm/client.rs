@@ -19,7 +19,7 @@ const POLL: Duration = Duration::from_millis(20);
 /// How near a move must end, mm and radians.
 const ARRIVED_MM: f64 = 0.1;
 const ARRIVED_RAD: f64 = 0.01;
-/// Requests whose answers may still come: more than poses are sent while an answer may take.
+/// Requests whose answers may still come: more than there are poses in the time that an answer may take.
 const MOST_UNANSWERED: usize = 1024;
 
 /// A connection to the robot's command socket.
@@ -275,8 +275,12 @@ impl<W: Wire> Client<W> {
             let Incoming::Response(response) = Incoming::decode(&frame)? else {
                 continue;
             };
-            if self.take_unanswered(&response).is_none() {
+            let Some(waiting) = self.take_unanswered(&response) else {
                 return Ok(response);
+            };
+            let command = waiting.request.command;
+            if waiting.is_pose && response.state.without(command.tolerates()) != ResponseState::default() {
+                self.end_servo(); // whoever asks something else meanwhile gets that answer
             }
         }
         self.remember(request, false);

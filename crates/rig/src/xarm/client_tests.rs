@@ -377,6 +377,55 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
     assert!(heard.contains(&Command::SetState(SetState::Stop)));
 }
 
+/// Feedback without end.
+struct Flood;
+
+impl Read for Flood {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        let feedback = [0, 0, 0, 2, 0, 3, FEEDBACK, 1, 2];
+        bytes[..feedback.len()].copy_from_slice(&feedback);
+        Ok(feedback.len())
+    }
+}
+
+#[test]
+fn a_robot_that_never_stops_talking_holds_nobody_up() {
+    let mut client = Client::new(Pair {
+        reader: Flood,
+        writer: std::io::sink(),
+    });
+    assert_eq!(client.hear().unwrap(), Duration::ZERO);
+}
+
+#[test]
+fn an_error_passed_over_ends_the_stream() {
+    let request = |transaction, command| Request {
+        transaction,
+        protocol: PROTOCOL,
+        command,
+    };
+    let pose = request(
+        1,
+        Command::ServoCartesian {
+            to: to(at(300.0)),
+            in_tool_frame: false,
+        },
+    );
+    let question = request(2, Command::GetState);
+    let refused = Response::to(&pose, ResponseState::INVALID, &Answer::Done);
+    let answer = Answer::State(MotionState::Ready);
+    let answered = Response::to(&question, ResponseState::default(), &answer);
+    let mut client = Client::new(Pair {
+        reader: std::io::Cursor::new([refused.encode(), answered.encode()].concat()),
+        writer: Vec::new(),
+    });
+    client.transaction = 1;
+    client.remember(&pose, true);
+    client.servo = Some(crate::xarm::servo::Servo::at(at(300.0)));
+    assert_eq!(client.state().unwrap(), MotionState::Ready);
+    assert!(client.servo.is_none());
+}
+
 #[test]
 fn transactions_wrap_to_one() {
     let mut client = Client::new(Pair {

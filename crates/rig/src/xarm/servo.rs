@@ -13,6 +13,8 @@ use crate::{Device, RigError, TcpPose};
 pub const LONGEST_STEP_MM: f64 = 10.0;
 const PERIOD: Duration = Duration::from_millis(4);
 const FASTEST_MM_PER_S: f64 = 1000.0;
+/// Frames that are taken in at once: many periods' answers, and no end of feedback.
+const MOST_FRAMES: usize = 256;
 /// Time that the robot needs to change to servo mode.
 const SETTLES: Duration = Duration::from_millis(100);
 
@@ -23,6 +25,15 @@ pub(super) struct Servo {
     sent: Instant,
     /// When the next pose may go out.
     due: Instant,
+}
+
+impl Servo {
+    /// A stream that begins now, at a pose.
+    pub(super) fn at(last: TcpPose) -> Self {
+        let sent = Instant::now();
+        let due = sent + PERIOD;
+        Self { last, sent, due }
+    }
 }
 
 impl<W: Wire> Client<W> {
@@ -39,9 +50,7 @@ impl<W: Wire> Client<W> {
             return Err(refused(format!("the robot is {state}"), "enable it anew"));
         }
         let last = self.pose()?;
-        let sent = Instant::now();
-        let due = sent + PERIOD;
-        self.servo = Some(Servo { last, sent, due });
+        self.servo = Some(Servo::at(last));
         Ok(last)
     }
 
@@ -100,7 +109,10 @@ impl<W: Wire> Client<W> {
     }
 
     fn take_answers(&mut self) -> Result<Duration, RigError> {
-        while let Some(frame) = self.reader.next(None)? {
+        for _ in 0..MOST_FRAMES {
+            let Some(frame) = self.reader.next(None)? else {
+                break;
+            };
             let Incoming::Response(response) = Incoming::decode(&frame)? else {
                 continue;
             };
