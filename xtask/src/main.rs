@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
+mod fuzz;
 #[cfg(test)]
 mod tidy;
 
@@ -9,7 +10,8 @@ use std::process::{Command, ExitCode, ExitStatus};
 
 use anyhow::{Context, Result, bail};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | bench recording | verify [rung…] [--quick] [--json] [--ccx CASE]>
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | bench recording |
+    fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, then test: what CI runs
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
@@ -17,6 +19,8 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--js
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
+  fuzz   looks for bytes that break what decodes wires and files, 60 s a target, two at a time; needs a C++ compiler; exit code 2 if it finds any
+         keep: the corpus that was found becomes `fuzz/corpus`, the figures docs/benchmarks/fuzz.*
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
 
 fn main() -> ExitCode {
@@ -26,6 +30,7 @@ fn main() -> ExitCode {
         "lint" => lint(),
         "test" => test(),
         "bench" => bench(),
+        "fuzz" => fuzz::fuzz(&std::env::args().skip(2).collect::<Vec<_>>()),
         "verify" => return verify(),
         _ => Err(anyhow::anyhow!("there is no task `{task}`\n{USAGE}")),
     };
@@ -40,6 +45,7 @@ fn main() -> ExitCode {
 
 fn lint() -> Result<()> {
     cargo(&["fmt", "--all", "--check"])?;
+    cargo(&["fmt", "--manifest-path", "fuzz/Cargo.toml", "--check"])?;
     cargo(&[
         "clippy",
         "--release",

@@ -134,6 +134,7 @@ fn files_named_in_the_documents_exist() {
                     "materials",
                     "xtask",
                     "docs",
+                    "fuzz",
                 ]
                 .contains(&first);
                 if is_ours && quoted.contains('/') && !quoted.contains(['*', '{', ' ']) {

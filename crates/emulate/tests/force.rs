@@ -13,7 +13,7 @@ use twintac_rig::netft::{
 };
 use twintac_rig::{BenchClock, NetFtSource, RigError, TcpPose, WrenchSource};
 
-const SOON: Duration = Duration::from_secs(1);
+const SOON: Duration = Duration::from_secs(10);
 
 /// The ball, pressed in by 1 mm.
 fn scene(clock: &LabClock) -> Scene {
@@ -28,9 +28,14 @@ fn fault(what: What, begins: Moment, lasts: Option<Moment>) -> Fault {
     Fault { what, begins, lasts }
 }
 
-/// A sensor on the loopback and a client that streams from it.
-fn streaming(faults: &[Fault], buffered: bool) -> (ForceServer, Client) {
-    let server = ForceServer::start(scene(&LabClock::real()), ForceSettings::default(), faults).unwrap();
+/// A sensor on the loopback and a client that streams from it. Few records a second: a client that is held up finds them all in its
+/// socket.
+fn streaming(faults: &[Fault], rate_hz: f64, buffered: bool) -> (ForceServer, Client) {
+    let settings = ForceSettings {
+        rate_hz,
+        ..ForceSettings::default()
+    };
+    let server = ForceServer::start(scene(&LabClock::real()), settings, faults).unwrap();
     let configuration = Client::read_configuration(&server.page().to_string()).unwrap();
     let mut client = Client::connect(server.requests(), configuration).unwrap();
     client.start(buffered).unwrap();
@@ -39,7 +44,7 @@ fn streaming(faults: &[Fault], buffered: bool) -> (ForceServer, Client) {
 
 #[test]
 fn the_page_and_the_records_give_the_force_of_the_scene() {
-    let (_server, client) = streaming(&[], true);
+    let (_server, client) = streaming(&[], 1000.0, true);
     assert_eq!(client.configuration().rate_hz, Some(1000.0));
     let mut source = NetFtSource::new(client, BenchClock::start());
     let mut sum_n = DVec3::ZERO;
@@ -58,22 +63,23 @@ fn the_page_and_the_records_give_the_force_of_the_scene() {
 
 #[test]
 fn a_bias_takes_the_load_away() {
-    let (server, mut client) = streaming(&[], false);
+    let (_server, mut client) = streaming(&[], 250.0, false);
     let tolerance = BiasTolerance {
         force_n: 0.2,
         torque_n_mm: 5.0,
     };
     client.bias(&tolerance).unwrap();
     client.stop().unwrap();
-    assert_eq!(client.receive(Duration::from_millis(5)).unwrap(), []);
-    drop(server);
+    // A thread that is held up may have sent its last datagram after that.
+    let is_silent = (0..1000).any(|_| client.receive(Duration::from_millis(20)).unwrap().is_empty());
+    assert!(is_silent);
 }
 
 #[test]
 fn lost_doubled_late_and_reordered_datagrams_are_told_apart() {
     let during = |what| fault(what, Moment::Count(20), Some(Moment::Count(10)));
     let seen = |what| -> SequenceReport {
-        let (_server, client) = streaming(&[during(what)], false);
+        let (_server, client) = streaming(&[during(what)], 250.0, false);
         let mut source = NetFtSource::new(client, BenchClock::start());
         for _ in 0..100 {
             source.next_sample(SOON).unwrap().unwrap();
@@ -84,7 +90,7 @@ fn lost_doubled_late_and_reordered_datagrams_are_told_apart() {
     assert_eq!((lost.lost, lost.longest_gap, lost.late), (10, 10, 0), "{lost}");
     let doubled = seen(What::DoubledDatagrams);
     assert_eq!((doubled.doubled, doubled.lost), (10, 0), "{doubled}");
-    let late = seen(What::LateDatagrams { by_s: 0.02 });
+    let late = seen(What::LateDatagrams { by_s: 0.1 });
     assert_eq!((late.late, late.lost, late.longest_gap), (10, 0, 10), "{late}");
     let reordered = seen(What::ReorderedDatagrams);
     assert_eq!(
@@ -97,7 +103,7 @@ fn lost_doubled_late_and_reordered_datagrams_are_told_apart() {
 #[test]
 fn saturation_is_an_error_of_the_source() {
     let saturated = fault(What::SaturatedForce, Moment::Count(20), None);
-    let (_server, client) = streaming(&[saturated], false);
+    let (_server, client) = streaming(&[saturated], 250.0, false);
     let mut source = NetFtSource::new(client, BenchClock::start());
     let error = (0..100).find_map(|_| source.next_sample(SOON).err()).unwrap();
     assert!(matches!(error, RigError::ForceSensorStatus { .. }), "{error}");

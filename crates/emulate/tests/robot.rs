@@ -14,7 +14,7 @@ use twintac_rig::xarm::{
 };
 use twintac_rig::{RigError, TcpPose};
 
-const SOON: Duration = Duration::from_secs(2);
+const SOON: Duration = Duration::from_secs(10);
 
 fn scene(clock: &LabClock) -> Scene {
     let settings = RobotSettings::default();
@@ -79,12 +79,20 @@ fn a_robot_that_was_enabled_moves_and_then_follows() {
         pose = lower(&pose, 0.2);
         client.servo(&pose).unwrap();
     }
-    assert_eq!(client.state().unwrap(), MotionState::Moving);
     std::thread::sleep(Duration::from_millis(250));
     assert!(client.pose().unwrap().distance_mm(&pose) < 0.02);
     assert_eq!(client.state().unwrap(), MotionState::Ready);
     client.stop().unwrap();
     assert!(client.servo(&pose).is_err());
+    client.enable().unwrap();
+    let slowly = MoveTo {
+        speed_mm_per_s: 0.5, // 20 s
+        ..to(lower(&pose, 10.0))
+    };
+    let (to, time_s) = (slowly, 0.0);
+    client.call(Command::MoveLine { to, time_s }).unwrap();
+    assert_eq!(client.state().unwrap(), MotionState::Moving);
+    client.stop().unwrap();
 }
 
 #[test]
@@ -140,13 +148,20 @@ fn reports_come_at_their_rates_and_say_what_is() {
     commands.enable().unwrap();
     let mut development = reader(&robot, ReportPort::Development);
     let mut rich = reader(&robot, ReportPort::Rich);
-    let begun = Instant::now();
     let mut last = development.next_report(SOON).unwrap().unwrap();
-    for _ in 0..30 {
-        last = development.next_report(SOON).unwrap().unwrap();
-    }
-    let took_s = begun.elapsed().as_secs_f64();
-    assert!((0.28..0.6).contains(&took_s), "{took_s} s");
+    // Whoever is held up misses the time of one round, not of each.
+    let round_s = (0..5).map(|_| {
+        let begun = Instant::now();
+        for _ in 0..30 {
+            last = development.next_report(SOON).unwrap().unwrap();
+        }
+        begun.elapsed().as_secs_f64()
+    });
+    let rounds_s: Vec<f64> = round_s.collect();
+    assert!(
+        rounds_s.iter().any(|took_s| (0.28..0.33).contains(took_s)),
+        "{rounds_s:?} s"
+    );
     assert_eq!((last.state, last.mode), (MotionState::Ready, 0));
     assert!(last.pose.distance_mm(&RobotSettings::default().first_pose) < 1e-4);
     let report = rich.next_report(SOON).unwrap().unwrap();
@@ -163,7 +178,8 @@ fn reports_come_at_their_rates_and_say_what_is() {
 #[test]
 fn an_error_on_demand_stops_the_robot_and_is_reported() {
     let what = What::RobotError { code: 31 };
-    let robot = robot(&[(what, Moment::TimeS(0.3), None)]);
+    // Enabling takes six requests; a report meets the error.
+    let robot = robot(&[(what, Moment::Count(6), None)]);
     let mut client = client(&robot);
     client.enable().unwrap();
     let mut rich = reader(&robot, ReportPort::Rich);

@@ -63,13 +63,12 @@ impl CountTransfer {
     }
 }
 
-/// Sources that say no more than this are healthy: readings with an error in their status are errors of theirs.
 impl From<&WrenchSample> for WrenchReading {
     fn from(sample: &WrenchSample) -> Self {
         Self {
             source_s: sample.stamp.source_s,
-            sequence: None,
-            status: 0,
+            sequence: sample.sequence,
+            status: sample.status,
             lost_before: sample.lost_before,
             force_n: sample.wrench.force_n,
             torque_n_mm: sample.wrench.torque_n_mm,

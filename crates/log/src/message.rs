@@ -112,7 +112,7 @@ pub enum TaxelState {
     Good = 0,
     /// Its barometer does not acknowledge.
     Missing = 1,
-    /// Its conversion did not end in time.
+    /// It has no sample of this frame: its conversion did not end in time, or was lost with its power.
     Stuck = 2,
     /// The bus failed with its channel open.
     BusError = 3,

@@ -33,7 +33,7 @@ pub enum Error<E> {
     BarometerMissing,
     /// Not one barometer takes the trigger: none acknowledges, or all still convert.
     NotTriggered,
-    /// The conversion did not end in time.
+    /// The conversion did not end in time, or was lost with the part's power.
     ConversionStuck,
     /// The barometer's pressure configuration reads back otherwise than written.
     OversamplingRefused {

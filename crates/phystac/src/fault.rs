@@ -9,7 +9,7 @@ use embedded_hal::i2c::ErrorKind;
 pub enum Fault {
     /// Its barometer does not acknowledge.
     Missing,
-    /// Its conversion did not end in time. What its registers hold is of an earlier frame and was not read.
+    /// It has no sample of this frame: its conversion did not end in time, or was lost with its power.
     Stuck,
     /// The bus failed with its channel open, and works again with it closed.
     Bus(ErrorKind),

@@ -5,13 +5,19 @@ use twintac_rig::{RigError, TcpPose};
 
 /// A robot that follows servo poses.
 pub trait Arm {
-    /// Sends a pose, to be followed at once.
+    /// Sends a pose, to be followed at once, and waits for nothing.
     ///
     /// # Errors
-    /// The robot did not take it.
+    /// The pose cannot be sent, or an earlier one was refused.
     fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError>;
 
-    /// Stops the robot until a person has it enabled anew.
+    /// Takes in the answers that have come, and waits for none; for how long the oldest one that is missing has been missing, s.
+    ///
+    /// # Errors
+    /// A pose was refused.
+    fn hear(&mut self) -> Result<f64, RigError>;
+
+    /// Stops the robot until a person has it enabled anew: at once, then waits for it to confirm.
     ///
     /// # Errors
     /// The robot does not confirm: it may be moving.
@@ -22,6 +28,10 @@ pub trait Arm {
 impl<W: Wire> Arm for Client<W> {
     fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
         self.servo(pose)
+    }
+
+    fn hear(&mut self) -> Result<f64, RigError> {
+        self.hear().map(|missing| missing.as_secs_f64())
     }
 
     fn stop(&mut self) -> Result<(), RigError> {

@@ -3,7 +3,9 @@
 use twintac_log::{Event as LogEvent, LogError};
 use twintac_protocol::PressPlan;
 use twintac_recording::Control;
-use twintac_rig::{Cause, Decision, Event, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench};
+use twintac_rig::{
+    Cause, Decision, Event, RigError, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench,
+};
 
 use crate::journal::Journal;
 use crate::touch::Touch;
@@ -30,6 +32,7 @@ pub(crate) struct Press<'a> {
     motion: Motion,
     supervisor: Supervisor,
     tactile: StreamId,
+    answers: StreamId,
     journal: &'a mut Journal,
     tare: Wrench,
     touch: Touch,
@@ -56,11 +59,13 @@ impl<'a> Press<'a> {
         let setup = settings.setup(motion.at_surface().position_mm);
         let mut supervisor = Supervisor::new(setup, sensor, start)?;
         let tactile = supervisor.watch("the tactile sensor", settings.tactile_silence_s, start.now_s);
+        let answers = supervisor.watch("the robot's answers", settings.robot_silence_s, start.now_s);
         Ok(Self {
             settings: settings.clone(),
             plan: plan.clone(),
             supervisor,
             tactile,
+            answers,
             journal,
             tare,
             touch: Touch::new(settings.touch_window_s, settings.touch_force_n),
@@ -93,6 +98,7 @@ impl<'a> Press<'a> {
         if is_interrupted {
             self.observe(now_s, now_s, Event::OperatorStop);
         }
+        self.hear_answers(now_s, arm);
         let was_stopped = self.cause().is_some();
         let goal = if was_stopped {
             Some(self.goal)
@@ -127,11 +133,26 @@ impl<'a> Press<'a> {
         }
     }
 
+    /// An answer that is missing is a silence since its pose went out.
+    fn hear_answers(&mut self, now_s: f64, arm: &mut impl Arm) {
+        match arm.hear() {
+            Ok(missing_s) => {
+                let heard_s = now_s - missing_s;
+                self.observe(heard_s, heard_s, Event::Heard(self.answers));
+            }
+            Err(error) => self.arm_fails(now_s, &error),
+        }
+    }
+
     fn send(&mut self, arm: &mut impl Arm, pose: TcpPose, now_s: f64) {
         if let Err(error) = arm.servo(&pose) {
-            let (stream, problem) = (StreamId::ROBOT, error.to_string());
-            self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+            self.arm_fails(now_s, &error);
         }
+    }
+
+    fn arm_fails(&mut self, now_s: f64, error: &RigError) {
+        let (stream, problem) = (StreamId::ROBOT, error.to_string());
+        self.observe(now_s, now_s, Event::DeviceError { stream, problem });
     }
 
     fn stop(&mut self, now_s: f64, arm: &mut impl Arm) -> Result<Standing, LogError> {

@@ -19,12 +19,18 @@ const SENSOR: SensorLimits = SensorLimits {
 struct Fake {
     poses: Vec<TcpPose>,
     stops: usize,
+    /// For how long an answer has been missing, s.
+    missing_s: f64,
 }
 
 impl Arm for Fake {
     fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
         self.poses.push(*pose);
         Ok(())
+    }
+
+    fn hear(&mut self) -> Result<f64, RigError> {
+        Ok(self.missing_s)
     }
 
     fn stop(&mut self) -> Result<(), RigError> {
@@ -70,6 +76,8 @@ struct Script {
     settings: PressSettings,
     plan: PressPlan,
     stiffness_n_per_mm: f64,
+    /// Whether the arm answers poses below the surface.
+    is_answered: bool,
 }
 
 struct Outcome {
@@ -85,9 +93,15 @@ impl Script {
     fn new(depth_mm: f64) -> Self {
         Self {
             folder: TempDir::new().unwrap(),
-            settings: example(),
+            settings: PressSettings {
+                force_silence_s: 0.1,
+                robot_silence_s: 0.1,
+                tactile_silence_s: 0.1,
+                ..example()
+            },
             plan: plan(depth_mm),
             stiffness_n_per_mm: 1.0,
+            is_answered: true,
         }
     }
 
@@ -110,14 +124,20 @@ impl Script {
             Wrench::ZERO,
         )
         .unwrap();
-        let (poses, stops) = (Vec::new(), 0);
-        let mut arm = Fake { poses, stops };
+        let mut arm = Fake {
+            poses: Vec::new(),
+            stops: 0,
+            missing_s: 0.0,
+        };
         let (mut now_s, mut deepest_mm) = (0.0, f64::NEG_INFINITY);
         loop {
             now_s += PERIOD_S;
             assert!(now_s < 60.0, "it ends");
             let depth_mm = arm.depth_mm();
             deepest_mm = depth_mm.max(deepest_mm);
+            if !self.is_answered && deepest_mm > 0.0 {
+                arm.missing_s += PERIOD_S;
+            }
             let mut heard = heard(now_s, self.stiffness_n_per_mm * depth_mm.max(0.0), &arm.at());
             let is_interrupted = say(now_s, depth_mm, &mut heard);
             let is_fresh = press.cause().is_none();
@@ -179,6 +199,8 @@ fn heard(now_s: f64, force_n: f64, pose: &TcpPose) -> Vec<Heard> {
                     force_n: DVec3::NEG_Z * force_n,
                     torque_n_mm: DVec3::ZERO,
                 },
+                sequence: None,
+                status: 0,
                 lost_before: 0,
             }),
         }
@@ -316,6 +338,19 @@ fn silence_errors_losses_and_people_stop_a_press() {
         false
     });
     assert!(matches!(lost.cause, Some(Cause::DataLost { records: 1000, .. })));
+    let mut unanswered = Script::new(2.0);
+    unanswered.is_answered = false;
+    let unanswered = unanswered.run(|_, _, _| false);
+    let cause = unanswered.cause.unwrap().to_string();
+    assert!(
+        cause.starts_with("nothing from the robot's answers for 0.1"),
+        "{cause}"
+    );
+    assert!(unanswered.latency_s.unwrap() <= PERIOD_S);
+    assert!(
+        unanswered.arm.depth_mm() < 0.0,
+        "its reports say that it goes back"
+    );
     let person = Script::new(2.0).run(|_, depth_mm, _| late(depth_mm));
     assert_eq!(person.cause, Some(Cause::Operator));
     assert!(person.arm.depth_mm() < 0.0, "it went back");

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use twintac_rig::TcpPose;
 use twintac_rig::xarm::{
-    Answer, Command, Mode, MotionState, MoveTo, PROTOCOL, Request, Response, ResponseState, SetState,
+    Answer, Command, FEEDBACK, Mode, MotionState, MoveTo, PROTOCOL, Request, Response, ResponseState,
+    SetState,
 };
 
 use super::{Arm, RobotSettings};
@@ -94,7 +95,9 @@ impl Controller {
                 },
             },
         };
-        if !matches!(request.protocol, PROTOCOL | PROTOCOL_WITH_LIFE_SIGN) {
+        let is_known = matches!(request.protocol, PROTOCOL | PROTOCOL_WITH_LIFE_SIGN);
+        // An answer with the function of feedback would be none.
+        if !is_known || request.command.function() == FEEDBACK {
             return None;
         }
         let (bits, payload) = match self.carry_out(&request.command) {

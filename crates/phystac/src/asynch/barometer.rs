@@ -48,9 +48,10 @@ impl<I2C: I2c> Cps135b<I2C> {
     /// What the last conversion gave. While one is under way that is the one before: [`wait`](Self::wait) first.
     ///
     /// # Errors
-    /// [`Error::BarometerMissing`], [`Error::Bus`].
+    /// [`Error::ConversionStuck`] if the part has not converted since it woke up, [`Error::BarometerMissing`], [`Error::Bus`].
     pub async fn sample(&mut self) -> Result<Sample, Error<I2C::Error>> {
-        self.read(register::DATA).await.map(register::sample)
+        let data = self.read(register::DATA).await?;
+        register::sample(data).ok_or(Error::ConversionStuck)
     }
 
     /// Waits until no conversion is under way. Takes what it waits off `patience`.

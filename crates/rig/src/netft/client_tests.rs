@@ -89,6 +89,11 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
             }
             let _ = socket.send_to(&encode_records(&records), client);
         }
+        // What was sent before the end, however late this thread is.
+        let mut bytes = [0; 64];
+        while let Ok((size, _)) = socket.recv_from(&mut bytes) {
+            heard.push(Request::decode(&bytes[..size]).unwrap().command);
+        }
         heard
     });
     let stop = move || {
@@ -111,7 +116,9 @@ fn requests_that_get_lost_are_repeated_until_the_data_show_them() {
     let mean = client.bias(&TOLERANCE).unwrap();
     assert!(mean.force_n.length() < 1e-12 && (mean.torque_n_mm.z - 1.0).abs() < 1e-9);
     client.stop().unwrap();
-    assert_eq!(client.receive(Duration::from_millis(5)).unwrap(), []);
+    // A thread that is held up may have sent its last datagram after that.
+    let is_silent = (0..1000).any(|_| client.receive(Duration::from_millis(20)).unwrap().is_empty());
+    assert!(is_silent);
     let heard = stop();
     let count = |command| heard.iter().filter(|other| **other == command).count();
     assert!(count(Command::StartBuffered) >= 3 && count(Command::Bias) >= 3);
@@ -170,7 +177,6 @@ fn readings_keep_the_sensors_clock_and_mark_gaps() {
     assert_eq!(samples[0].wrench.force_n, DVec3::new(0.0, 0.0, 2.0));
     assert_eq!((source.report().lost, source.report().doubled), (1, 1));
     drop(source);
-    std::thread::sleep(Duration::from_millis(20));
     assert_eq!(
         stop().last(),
         Some(&Command::Stop),

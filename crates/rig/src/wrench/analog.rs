@@ -40,6 +40,8 @@ impl<F: FnMut(Duration) -> Result<Option<VoltageSample>, RigError>> WrenchSource
         Ok(Some(WrenchSample {
             stamp: sample.stamp,
             wrench: self.calibration.wrench(sample.volts)?,
+            sequence: None,
+            status: 0,
             lost_before: sample.lost_before,
         }))
     }

@@ -51,6 +51,10 @@ pub struct WrenchSample {
     pub stamp: Stamp,
     /// The reading.
     pub wrench: Wrench,
+    /// The source's number of the reading, if it counts them.
+    pub sequence: Option<u32>,
+    /// The source's status bits; 0 is healthy.
+    pub status: u32,
     /// Readings lost between the one before and this one.
     pub lost_before: u32,
 }

@@ -65,6 +65,8 @@ impl NetFtSource {
                 source_s: Some(tracked.time_s),
             },
             wrench: self.client.configuration().wrench(record.counts),
+            sequence: Some(record.rdt_sequence),
+            status: record.status.0,
             lost_before,
         }))
     }

@@ -108,6 +108,8 @@ impl WrenchSource for Replay {
         Ok(Some(WrenchSample {
             stamp: self.clock.stamp(Some(time_s)),
             wrench,
+            sequence: None,
+            status: 0,
             lost_before: 0,
         }))
     }
@@ -132,11 +134,6 @@ mod tests {
         let first = replay.next_sample(Duration::ZERO).unwrap().unwrap();
         assert_eq!(first.wrench.force_n, DVec3::new(0.1, 0.0, -1.5));
         assert_eq!(first.stamp.source_s, Some(10.0));
-        assert_eq!(
-            replay.next_sample(Duration::from_millis(1)).unwrap(),
-            None,
-            "not due yet"
-        );
         let second = replay.next_sample(Duration::from_secs(5)).unwrap().unwrap();
         assert!(second.stamp.bench_s >= 0.02 && second.stamp.bench_s <= clock.now_s());
         assert_eq!(second.wrench.torque_n_mm, DVec3::new(0.0, 2.0, 0.0));
@@ -144,6 +141,14 @@ mod tests {
             replay.next_sample(Duration::from_millis(1)).unwrap(),
             None,
             "over"
+        );
+        let in_an_hour = Replay::rows("press.csv", &TEXT.replace("10.02", "3610.0")).unwrap();
+        let mut replay = Replay::new(in_an_hour, clock);
+        assert!(replay.next_sample(Duration::ZERO).unwrap().is_some());
+        assert_eq!(
+            replay.next_sample(Duration::from_millis(1)).unwrap(),
+            None,
+            "not due yet"
         );
     }
 

@@ -69,8 +69,8 @@ impl Answer {
         match self {
             Self::Done => Vec::new(),
             Self::Version(version) => {
-                let mut payload = version.clone().into_bytes();
-                payload.truncate(VERSION_BYTES - 1);
+                let whole_characters = version.floor_char_boundary(VERSION_BYTES - 1);
+                let mut payload = version.as_bytes()[..whole_characters].to_vec();
                 payload.resize(VERSION_BYTES, 0);
                 payload
             }

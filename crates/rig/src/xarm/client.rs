@@ -1,5 +1,6 @@
 //! Sends commands to the robot and waits for their answers.
 
+use std::collections::VecDeque;
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
@@ -11,28 +12,38 @@ use super::{
 };
 use crate::{Device, RigError, TcpPose};
 
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+pub(super) const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Motors take their time.
 const ENABLE_WITHIN: Duration = Duration::from_secs(5);
 const POLL: Duration = Duration::from_millis(20);
 /// How near a move must end, mm and radians.
 const ARRIVED_MM: f64 = 0.1;
 const ARRIVED_RAD: f64 = 0.01;
-/// Unanswered requests whose answers may still come.
-const MOST_ABANDONED: usize = 16;
+/// Requests whose answers may still come: more than there are poses in the time that an answer may take.
+const MOST_UNANSWERED: usize = 1024;
 
 /// A connection to the robot's command socket.
 ///
 /// [`Client::enable`], [`Client::move_to`] a first pose, [`Client::begin_servo`], then [`Client::servo`] in each period. After
-/// any error in servo mode the stream has ended: look at the error, and begin from `enable`.
+/// any error in servo mode the stream has ended: look at the error, and begin from `enable`. Nothing waits for answers to poses:
+/// [`Client::hear`] says for how long one is missing.
 #[derive(Debug)]
 pub struct Client<W> {
-    reader: FrameReader<W>,
+    pub(super) reader: FrameReader<W>,
     transaction: u16,
-    abandoned: Vec<u16>,
+    pub(super) unanswered: VecDeque<Unanswered>,
     /// The byte that firmware from 1.10 on wants beside a mode.
     detection: Option<u8>,
     pub(super) servo: Option<Servo>,
+}
+
+/// A request that was sent.
+#[derive(Clone, Debug)]
+pub(super) struct Unanswered {
+    pub(super) request: Request,
+    pub(super) sent: Instant,
+    /// Whether it is a pose of the stream that goes on, rather than a request that was given up.
+    pub(super) is_pose: bool,
 }
 
 impl Client<TcpStream> {
@@ -72,7 +83,7 @@ impl<W: Wire> Client<W> {
         Self {
             reader: FrameReader::new(wire, splitter()),
             transaction: 0,
-            abandoned: Vec::new(),
+            unanswered: VecDeque::new(),
             detection: Some(0),
             servo: None,
         }
@@ -108,7 +119,7 @@ impl<W: Wire> Client<W> {
     /// # Errors
     /// Those of [`Client::call`].
     pub fn set_mode(&mut self, mode: Mode) -> Result<(), RigError> {
-        self.servo = None;
+        self.end_servo();
         let detection = self.detection;
         self.call(Command::SetMode { mode, detection }).map(|_| ())
     }
@@ -121,12 +132,13 @@ impl<W: Wire> Client<W> {
         self.call(Command::SetState(state)).map(|_| ())
     }
 
-    /// Stops the robot now. No command moves it before it is enabled anew.
+    /// Stops the robot now: the command goes out at once, whatever is unanswered, and is then waited for. No command moves the robot
+    /// before it is enabled anew.
     ///
     /// # Errors
     /// Those of [`Client::call`]; a robot that does not confirm may be moving.
     pub fn stop(&mut self) -> Result<(), RigError> {
-        self.servo = None;
+        self.end_servo();
         self.set_state(SetState::Stop)
     }
 
@@ -220,6 +232,23 @@ impl<W: Wire> Client<W> {
     /// error or a warning of the controller by its name, a robot that is not ready, a result that is not valid. Questions,
     /// cleaning and stopping put up with all but the last.
     pub fn call(&mut self, command: Command) -> Result<Answer, RigError> {
+        let within = match command {
+            Command::MotionEnable { .. } => ENABLE_WITHIN,
+            _ => ANSWER_WITHIN,
+        };
+        self.call_within(command, within)
+    }
+
+    fn call_within(&mut self, command: Command, within: Duration) -> Result<Answer, RigError> {
+        let request = self.send(command)?;
+        let response = self.response_to(&request, within)?;
+        let answer = response.answer(&request)?;
+        self.check(response.state, &request.command, ANSWER_WITHIN)?;
+        Ok(answer)
+    }
+
+    /// Sends a command, and waits for nothing.
+    pub(super) fn send(&mut self, command: Command) -> Result<Request, RigError> {
         self.transaction = self.transaction.checked_add(1).unwrap_or(1);
         let request = Request {
             transaction: self.transaction,
@@ -230,10 +259,7 @@ impl<W: Wire> Client<W> {
         wire.write_all(&request.encode())
             .and_then(|()| wire.flush())
             .map_err(|found| transport("sending", found))?;
-        let response = self.response_to(&request)?;
-        let answer = response.answer(&request)?;
-        self.check(response.state, &request.command)?;
-        Ok(answer)
+        Ok(request)
     }
 
     fn ask<T>(&mut self, command: Command, pick: impl FnOnce(Answer) -> Option<T>) -> Result<T, RigError> {
@@ -243,39 +269,61 @@ impl<W: Wire> Client<W> {
             .ok_or_else(|| RigError::malformed(Device::Robot, "answer", name, "another answer"))
     }
 
-    fn response_to(&mut self, request: &Request) -> Result<Response, RigError> {
-        let within = match request.command {
-            Command::MotionEnable { .. } => ENABLE_WITHIN,
-            _ => ANSWER_WITHIN,
-        };
+    fn response_to(&mut self, request: &Request, within: Duration) -> Result<Response, RigError> {
         let deadline = Instant::now() + within;
-        while let Some(frame) = self.reader.next(deadline)? {
+        while let Some(frame) = self.reader.next(Some(deadline))? {
             let Incoming::Response(response) = Incoming::decode(&frame)? else {
                 continue;
             };
-            match self.abandoned.iter().position(|old| *old == response.transaction) {
-                Some(index) => drop(self.abandoned.remove(index)),
-                None => return Ok(response),
+            let Some(waiting) = self.take_unanswered(&response) else {
+                return Ok(response);
+            };
+            let command = waiting.request.command;
+            if waiting.is_pose && response.state.without(command.tolerates()) != ResponseState::default() {
+                self.end_servo(); // whoever asks something else meanwhile gets that answer
             }
         }
-        if self.abandoned.len() == MOST_ABANDONED {
-            self.abandoned.remove(0);
-        }
-        self.abandoned.push(request.transaction);
-        Err(RigError::Timeout {
-            device: Device::Robot,
-            what: request.command.name().to_owned(),
-            after: within,
-        })
+        self.remember(request, false);
+        Err(late(request, within))
     }
 
-    fn check(&mut self, state: ResponseState, command: &Command) -> Result<(), RigError> {
+    /// Lets the answer to a request that was sent come later.
+    pub(super) fn remember(&mut self, request: &Request, is_pose: bool) {
+        if self.unanswered.len() == MOST_UNANSWERED {
+            self.unanswered.pop_front();
+        }
+        self.unanswered.push_back(Unanswered {
+            request: request.clone(),
+            sent: Instant::now(),
+            is_pose,
+        });
+    }
+
+    /// The request that a late response answers.
+    pub(super) fn take_unanswered(&mut self, response: &Response) -> Option<Unanswered> {
+        let is_its = |waiting: &Unanswered| waiting.request.transaction == response.transaction;
+        let place = self.unanswered.iter().position(is_its)?;
+        self.unanswered.remove(place)
+    }
+
+    /// That a response has no state bits that its command does not put up with. An error's code is waited for so long.
+    pub(super) fn check(
+        &mut self,
+        state: ResponseState,
+        command: &Command,
+        within: Duration,
+    ) -> Result<(), RigError> {
         let bad = state.without(command.tolerates());
         let command = command.name();
-        if bad.has(ResponseState::ERROR | ResponseState::WARNING)
-            && let Some(code) = self.errors()?
-        {
-            return Err(RigError::Controller { code, command });
+        if bad.has(ResponseState::ERROR | ResponseState::WARNING) {
+            let code = match self.call_within(Command::GetErrors, within) {
+                Ok(Answer::Errors { error, warning }) => ControllerCode::of(error, warning),
+                Ok(_) | Err(RigError::Timeout { .. }) => None,
+                Err(other) => return Err(other),
+            };
+            if let Some(code) = code {
+                return Err(RigError::Controller { code, command });
+            }
         }
         let (problem, hint) = if bad.has(ResponseState::INVALID) {
             (
@@ -294,6 +342,15 @@ impl<W: Wire> Client<W> {
             problem: problem.to_owned(),
             hint,
         })
+    }
+}
+
+/// A request that was not answered in time.
+pub(super) fn late(request: &Request, within: Duration) -> RigError {
+    RigError::Timeout {
+        device: Device::Robot,
+        what: request.command.name().to_owned(),
+        after: within,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Reads whole frames from a connection.
 
 use std::io::ErrorKind;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::Wire;
 use crate::{Device, RigError, Splitter};
@@ -26,8 +26,8 @@ impl<W: Wire> FrameReader<W> {
         }
     }
 
-    /// The next frame; `None` if it is not whole by the deadline.
-    pub(super) fn next(&mut self, deadline: Instant) -> Result<Option<Vec<u8>>, RigError> {
+    /// The next frame; `None` if it is not whole by the deadline, or, without one, by now.
+    pub(super) fn next(&mut self, deadline: Option<Instant>) -> Result<Option<Vec<u8>>, RigError> {
         loop {
             let mut bytes = &self.chunk[self.rest.clone()];
             let frame = self.splitter.take(&mut bytes);
@@ -35,16 +35,18 @@ impl<W: Wire> FrameReader<W> {
             if let Some(frame) = frame? {
                 return Ok(Some(frame));
             }
-            let Some(left) = deadline.checked_duration_since(Instant::now()) else {
+            let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+            if left.is_some_and(|left| left.is_zero()) {
                 return Ok(None);
-            };
+            }
             self.wire
-                .limit_reads(left)
+                .limit_reads(left.unwrap_or(Duration::ZERO))
                 .map_err(|found| transport("setting a time-out", found))?;
             match self.wire.read(&mut self.chunk) {
                 Ok(0) => return Err(transport("receiving", ErrorKind::UnexpectedEof.into())),
                 Ok(size) => self.rest = 0..size,
                 Err(found) => match found.kind() {
+                    ErrorKind::WouldBlock | ErrorKind::TimedOut if left.is_none() => return Ok(None),
                     ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => {}
                     _ => return Err(transport("receiving", found)),
                 },

@@ -41,7 +41,7 @@ impl<W: Wire> ReportReader<W> {
     /// # Errors
     /// A connection that fails or ends, bytes that are no report.
     pub fn next_report(&mut self, within: Duration) -> Result<Option<Report>, RigError> {
-        let frame = self.reader.next(Instant::now() + within)?;
+        let frame = self.reader.next(Some(Instant::now() + within))?;
         frame.map(|frame| Report::decode(self.port, &frame)).transpose()
     }
 }

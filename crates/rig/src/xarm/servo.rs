@@ -1,17 +1,20 @@
 //! Streams poses that the robot follows at once.
 //!
 //! The limits are the manufacturer's for its servo mode: at most 250 poses a second, steps of at most 10 mm, at most 1000 mm/s. The
-//! robot keeps no queue: only the latest pose counts.
+//! robot keeps no queue: only the latest pose counts. Nobody waits for answers to poses: they are taken in as they come.
 
 use std::time::{Duration, Instant};
 
-use super::{Client, Command, Mode, MotionState, MoveTo, SetState, Wire};
-use crate::{RigError, TcpPose};
+use super::client::{ANSWER_WITHIN, late};
+use super::{Client, Command, Incoming, Mode, MotionState, MoveTo, SetState, Wire};
+use crate::{Device, RigError, TcpPose};
 
 /// Longest way from one pose to the next, mm.
 pub const LONGEST_STEP_MM: f64 = 10.0;
 const PERIOD: Duration = Duration::from_millis(4);
 const FASTEST_MM_PER_S: f64 = 1000.0;
+/// Frames that are taken in at once: many periods' answers, and no end of feedback.
+const MOST_FRAMES: usize = 256;
 /// Time that the robot needs to change to servo mode.
 const SETTLES: Duration = Duration::from_millis(100);
 
@@ -22,6 +25,15 @@ pub(super) struct Servo {
     sent: Instant,
     /// When the next pose may go out.
     due: Instant,
+}
+
+impl Servo {
+    /// A stream that begins now, at a pose.
+    pub(super) fn at(last: TcpPose) -> Self {
+        let sent = Instant::now();
+        let due = sent + PERIOD;
+        Self { last, sent, due }
+    }
 }
 
 impl<W: Wire> Client<W> {
@@ -38,22 +50,23 @@ impl<W: Wire> Client<W> {
             return Err(refused(format!("the robot is {state}"), "enable it anew"));
         }
         let last = self.pose()?;
-        let sent = Instant::now();
-        let due = sent + PERIOD;
-        self.servo = Some(Servo { last, sent, due });
+        self.servo = Some(Servo::at(last));
         Ok(last)
     }
 
-    /// Sends a pose when it is due, and waits for the answer. Poses are due every 4 ms: one that comes late may be followed sooner,
-    /// after 2 ms at the soonest. After any error the stream has ended, and the robot holds the last pose.
+    /// Sends a pose when it is due, and does not wait for the answer. Poses are due every 4 ms: one that comes late may be followed
+    /// sooner, after 2 ms at the soonest. After any error the stream has ended, and the robot holds the last pose that it took.
     ///
     /// # Errors
-    /// Those of [`Client::call`]; a pose that is no number, too far from the last one or too fast; no stream begun.
+    /// Those of [`Client::hear`]; a pose that is no number, too far from the last one or too fast; no stream begun.
     pub fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
+        if let Some(servo) = self.servo {
+            std::thread::sleep(servo.due.saturating_duration_since(Instant::now()));
+            self.hear()?;
+        }
         let Some(servo) = self.servo.take() else {
             return Err(refused("no stream of poses was begun".to_owned(), "begin one"));
         };
-        std::thread::sleep(servo.due.saturating_duration_since(Instant::now()));
         let step_mm = pose.distance_mm(&servo.last);
         let longest_mm = longest_step_mm(servo.sent.elapsed());
         let is_near = step_mm <= longest_mm;
@@ -64,7 +77,7 @@ impl<W: Wire> Client<W> {
             ));
         }
         let sent = Instant::now();
-        self.call(Command::ServoCartesian {
+        let request = self.send(Command::ServoCartesian {
             to: MoveTo {
                 pose: *pose,
                 speed_mm_per_s: 0.0,
@@ -72,6 +85,7 @@ impl<W: Wire> Client<W> {
             },
             in_tool_frame: false,
         })?;
+        self.remember(&request, true);
         let due = (servo.due + PERIOD).max(sent + PERIOD / 2);
         self.servo = Some(Servo {
             last: *pose,
@@ -79,6 +93,59 @@ impl<W: Wire> Client<W> {
             due,
         });
         Ok(())
+    }
+
+    /// Takes in the answers to poses that have come, and waits for none; for how long the oldest one that is missing has been missing.
+    /// An error's code is asked for, and waited for 4 ms. After any error the stream has ended.
+    ///
+    /// # Errors
+    /// A connection that fails, answers to something else or with state bits of an error, an answer missing for two seconds.
+    pub fn hear(&mut self) -> Result<Duration, RigError> {
+        let heard = self.take_answers();
+        if heard.is_err() {
+            self.end_servo();
+        }
+        heard
+    }
+
+    fn take_answers(&mut self) -> Result<Duration, RigError> {
+        for _ in 0..MOST_FRAMES {
+            let Some(frame) = self.reader.next(None)? else {
+                break;
+            };
+            let Incoming::Response(response) = Incoming::decode(&frame)? else {
+                continue;
+            };
+            let Some(waiting) = self.take_unanswered(&response) else {
+                let found = response.transaction;
+                return Err(RigError::malformed(
+                    Device::Robot,
+                    "transaction",
+                    "one that was sent",
+                    found,
+                ));
+            };
+            if waiting.is_pose {
+                response.answer(&waiting.request)?;
+                self.check(response.state, &waiting.request.command, PERIOD)?;
+            }
+        }
+        let Some(oldest) = self.unanswered.iter().find(|waiting| waiting.is_pose) else {
+            return Ok(Duration::ZERO);
+        };
+        let missing = oldest.sent.elapsed();
+        if missing > ANSWER_WITHIN {
+            return Err(late(&oldest.request, ANSWER_WITHIN));
+        }
+        Ok(missing)
+    }
+
+    /// No pose goes out any more; answers to those that did may still come.
+    pub(super) fn end_servo(&mut self) {
+        self.servo = None;
+        for waiting in &mut self.unanswered {
+            waiting.is_pose = false;
+        }
     }
 }
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 /// A connection in both directions.
 pub trait Wire: Read + Write {
-    /// Lets the next reads wait no longer than this; they then fail with [`io::ErrorKind::TimedOut`] or
-    /// [`io::ErrorKind::WouldBlock`].
+    /// Lets the next reads wait no longer than this, or not at all if it is zero; they then fail with
+    /// [`io::ErrorKind::TimedOut`] or [`io::ErrorKind::WouldBlock`].
     ///
     /// # Errors
     /// What the operating system says.
@@ -16,8 +16,11 @@ pub trait Wire: Read + Write {
 
 impl Wire for TcpStream {
     fn limit_reads(&mut self, to: Duration) -> io::Result<()> {
-        // Zero would mean to wait for ever.
-        self.set_read_timeout(Some(to.max(Duration::from_micros(1))))
+        self.set_nonblocking(to.is_zero())?;
+        if to.is_zero() {
+            return Ok(());
+        }
+        self.set_read_timeout(Some(to))
     }
 }
 

@@ -1,0 +1,58 @@
+//! What all fuzz targets share: the call, and an allocator that refuses what no wire or file may ask for.
+//!
+//! libFuzzer bounds the memory of the whole process, but sees single allocations only with a sanitizer, which stable compilers lack.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+#[doc(hidden)]
+pub use libfuzzer_sys;
+#[doc(hidden)]
+pub use twintac_fuzz::run;
+
+/// Most bytes of one allocation, and of all that live together. The largest input has 16 KiB.
+const LARGEST: usize = 16 << 20;
+const MOST: usize = 64 << 20;
+
+/// The target of a name.
+#[macro_export]
+macro_rules! fuzz {
+    ($name:literal) => {
+        $crate::libfuzzer_sys::fuzz_target!(|bytes: &[u8]| $crate::run($name, bytes));
+    };
+}
+
+struct Bounded;
+
+#[global_allocator]
+static ALLOCATOR: Bounded = Bounded;
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+
+impl Bounded {
+    fn take(size: usize) {
+        let live = LIVE.fetch_add(size, Ordering::Relaxed) + size;
+        if size > LARGEST || live > MOST {
+            // Nothing that would allocate: libFuzzer keeps the input of a process that aborts.
+            std::process::abort();
+        }
+    }
+}
+
+// SAFETY: all is handed on to the system's allocator.
+unsafe impl GlobalAlloc for Bounded {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        Self::take(layout.size());
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        unsafe { System.dealloc(place, layout) }
+    }
+
+    unsafe fn realloc(&self, place: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        Self::take(size);
+        unsafe { System.realloc(place, layout, size) }
+    }
+}
