@@ -223,11 +223,7 @@ impl Curves {
         if depth_mm <= 0.0 {
             return [0.0; VALUES];
         }
-        std::array::from_fn(|value| {
-            self.of[value]
-                .as_ref()
-                .map_or(0.0, |curve| curve.at(depth_mm))
-        })
+        std::array::from_fn(|value| self.of[value].as_ref().map_or(0.0, |curve| curve.at(depth_mm)))
     }
 }
 

@@ -28,7 +28,11 @@ pub type LinuxPhysTac = PhysTac<LinuxBus, Delay, BoxedClock, TAXELS>;
 ///
 /// # Errors
 /// The bus cannot be opened.
-pub fn open_linux(path: &Path, settings: Settings<TAXELS>, clock: BoxedClock) -> Result<LinuxPhysTac, LiveError> {
+pub fn open_linux(
+    path: &Path,
+    settings: Settings<TAXELS>,
+    clock: BoxedClock,
+) -> Result<LinuxPhysTac, LiveError> {
     let bus = I2cdev::new(path).map_err(|error| LiveError::Open {
         bus: path.display().to_string(),
         problem: error.to_string(),

@@ -8,8 +8,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DQuat, DVec3};
-use phystac::{PhysTac, Transfer};
 use phystac::recovery::{free_bus, reset_switch};
+use phystac::{PhysTac, Transfer};
 use tempfile::TempDir;
 use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
 use twintac_log::{

@@ -226,7 +226,11 @@ impl Checker<'_> {
         self.above_zero("readout.resolution_kpa", readout.resolution_kpa)?;
         if readout.counts_per_pa == Some(0) {
             let problem = "is 0".to_owned();
-            return Err(self.error("readout.counts_per_pa", problem, "give the counts of a pascal, or leave it out"));
+            return Err(self.error(
+                "readout.counts_per_pa",
+                problem,
+                "give the counts of a pascal, or leave it out",
+            ));
         }
         self.above_zero("readout.rate_hz", readout.rate_hz)
     }

@@ -386,7 +386,13 @@ fn readout_indenters_and_inferred_fields() {
     );
     expect("rate_hz = 50.0", "rate_hz = -1.0", "readout.rate_hz", "above 0");
     let limited = |force_n: &str| format!("[limits]\nforce_n = {force_n}\ndepth_mm = 4.0\n\n[readout]");
-    expect("[readout]", &limited("0.0"), "limits.force_n", "above 0");
+    expect_at(
+        "[readout]",
+        &limited("0.0"),
+        "force_n = 0.0",
+        "limits.force_n",
+        "above 0",
+    );
     let ball = "shape = { kind = \"sphere\", radius_mm = 2.0 }";
     expect(
         ball,
@@ -407,7 +413,13 @@ fn readout_indenters_and_inferred_fields() {
         "does not have",
     );
     expect("rate_hz = 50.0", "rate_hz = nan", "readout.rate_hz", "finite");
-    expect("rate_hz = 50.0", "rate_hz = 50.0\ncounts_per_pa = 0", "readout.counts_per_pa", "leave it out");
+    expect_at(
+        "rate_hz = 50.0",
+        "rate_hz = 50.0\ncounts_per_pa = 0",
+        "counts_per_pa = 0",
+        "readout.counts_per_pa",
+        "leave it out",
+    );
 }
 
 #[test]

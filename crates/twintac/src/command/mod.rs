@@ -17,8 +17,8 @@ use anyhow::Result;
 use crate::arguments::{Command, SensorCommand};
 
 pub(crate) use follow::indenter;
-pub(crate) use record::Stopped;
 pub(crate) use mesh::{mesh_of, write_mesh};
+pub(crate) use record::Stopped;
 
 /// Does what was asked for.
 pub(crate) fn run(command: Command) -> Result<()> {

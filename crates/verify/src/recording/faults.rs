@@ -16,24 +16,72 @@ const BEGINS_S: f64 = 2.5;
 /// Name, what as TOML, and how long it lasts, as TOML.
 const FAULTS: [(&str, &str, Option<&str>); 20] = [
     ("a taxel is gone", "{ no_acknowledge = { channel = 2 } }", None),
-    ("the switch is gone for 0.2 s", "{ no_acknowledge = {} }", Some("{ time_s = 0.2 }")),
+    (
+        "the switch is gone for 0.2 s",
+        "{ no_acknowledge = {} }",
+        Some("{ time_s = 0.2 }"),
+    ),
     ("the switch is gone", "{ no_acknowledge = {} }", None),
-    ("a channel is shorted to ground", "{ short = { channel = 3 } }", None),
-    ("a barometer hangs the bus", "{ stuck_bus = { channel = 1 } }", None),
+    (
+        "a channel is shorted to ground",
+        "{ short = { channel = 3 } }",
+        None,
+    ),
+    (
+        "a barometer hangs the bus",
+        "{ stuck_bus = { channel = 1 } }",
+        None,
+    ),
     ("the switch hangs the bus", "{ stuck_bus = {} }", None),
-    ("the clock is stretched by 0.5 ms", "{ clock_stretch = { by_s = 0.0005 } }", None),
-    ("the switch loses power for a moment", "\"switch_brown_out\"", None),
-    ("a barometer loses power for a moment", "{ barometer_brown_out = { channel = 4 } }", None),
-    ("a conversion never ends", "{ endless_conversion = { channel = 5 } }", None),
-    ("10 datagrams are lost", "\"lost_datagrams\"", Some("{ count = 10 }")),
+    (
+        "the clock is stretched by 0.5 ms",
+        "{ clock_stretch = { by_s = 0.0005 } }",
+        None,
+    ),
+    (
+        "the switch loses power for a moment",
+        "\"switch_brown_out\"",
+        None,
+    ),
+    (
+        "a barometer loses power for a moment",
+        "{ barometer_brown_out = { channel = 4 } }",
+        None,
+    ),
+    (
+        "a conversion never ends",
+        "{ endless_conversion = { channel = 5 } }",
+        None,
+    ),
+    (
+        "10 datagrams are lost",
+        "\"lost_datagrams\"",
+        Some("{ count = 10 }"),
+    ),
     ("all datagrams are lost", "\"lost_datagrams\"", None),
-    ("10 datagrams are 20 ms late", "{ late_datagrams = { by_s = 0.02 } }", Some("{ count = 10 }")),
+    (
+        "10 datagrams are 20 ms late",
+        "{ late_datagrams = { by_s = 0.02 } }",
+        Some("{ count = 10 }"),
+    ),
     ("datagrams are doubled", "\"doubled_datagrams\"", None),
-    ("10 datagrams are out of order", "\"reordered_datagrams\"", Some("{ count = 10 }")),
+    (
+        "10 datagrams are out of order",
+        "\"reordered_datagrams\"",
+        Some("{ count = 10 }"),
+    ),
     ("the force sensor saturates", "\"saturated_force\"", None),
     ("the robot's connections are reset", "\"connection_reset\"", None),
-    ("the robot reports error 31", "{ robot_error = { code = 31 } }", None),
-    ("the robot does not answer for 0.1 s", "\"unanswered_requests\"", Some("{ time_s = 0.1 }")),
+    (
+        "the robot reports error 31",
+        "{ robot_error = { code = 31 } }",
+        None,
+    ),
+    (
+        "the robot does not answer for 0.1 s",
+        "\"unanswered_requests\"",
+        Some("{ time_s = 0.1 }"),
+    ),
     ("the robot does not answer", "\"unanswered_requests\"", None),
 ];
 
@@ -87,7 +135,8 @@ fn suffer(bench: &LabBench, name: &str, what: &str, lasts: Option<&str>) -> Resu
         for event in reading.events {
             match event {
                 Event::Gap { stream, .. } => {
-                    let stream = stream.map_or("all".to_owned(), |stream| format!("{stream:?}").to_lowercase());
+                    let stream =
+                        stream.map_or("all".to_owned(), |stream| format!("{stream:?}").to_lowercase());
                     *gaps.entry(stream).or_insert(0) += 1;
                 }
                 Event::Note { text } if !text.starts_with("first touch") => notes.push(text),

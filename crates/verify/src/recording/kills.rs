@@ -62,7 +62,9 @@ pub(crate) fn run(bench: &LabBench, options: &Options) -> Result<Kills> {
                     // One that was killed before its first message lacks nothing older than itself.
                     let begun_ns = unix_ns(std::fs::metadata(&log)?.created()?)?;
                     let last_ns = reading.last_unix_ns.unwrap_or(begun_ns);
-                    kills.missing_s.push(killed_ns.saturating_sub(last_ns) as f64 * 1e-9);
+                    kills
+                        .missing_s
+                        .push(killed_ns.saturating_sub(last_ns) as f64 * 1e-9);
                 }
                 Ok(_) => {}
             }

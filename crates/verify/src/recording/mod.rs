@@ -86,7 +86,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let is_sound = results.whole.lost_unmarked == 0
         && results.faults.iter().all(faults::Outcome::is_sound)
         && results.kills.is_sound();
-    ensure!(is_sound, "see {RESULTS}/recording.md: something was lost in silence");
+    ensure!(
+        is_sound,
+        "see {RESULTS}/recording.md: something was lost in silence"
+    );
     Ok(())
 }
 

@@ -57,8 +57,7 @@ pub(super) fn open(
     devices.board.seed = reality.seed;
     devices.force.noise_n = reality.robot.force_noise_n;
     devices.force.seed = reality.seed;
-    devices.robot.first_pose =
-        placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
+    devices.robot.first_pose = placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
     let lab_clock = LabClock::real();
     let devices = twintac_emulate::Bench::start(lab_clock.clone(), gel, &devices)?;
 
@@ -71,12 +70,7 @@ pub(super) fn open(
     let clock = BenchClock::start();
     let mut driver = twintac_live::driver_settings(sensor)?;
     driver.conversion_us = settings.conversion_us;
-    let taxels = PhysTac::new(
-        devices.board.bus(),
-        lab_clock,
-        move || clock.now_us(),
-        driver,
-    );
+    let taxels = PhysTac::new(devices.board.bus(), lab_clock, move || clock.now_us(), driver);
     let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
     let free = move |_: &mut _, delay: &mut LabClock| {
         // A bus that stays hung fails the next frame as well.

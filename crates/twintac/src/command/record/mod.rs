@@ -72,7 +72,11 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
         return preview::run(&settings, &plans, &sensor.sensor, &out, arguments.json);
     }
     let limits = limits(&sensor)?;
-    let whose = if reality.is_some() { "the emulated" } else { "a real" };
+    let whose = if reality.is_some() {
+        "the emulated"
+    } else {
+        "a real"
+    };
     let source = format!("{} presses on {whose} bench, over its wires", plans.len());
     let run = Run::start(&out, sensor, source, seed, RunSettings::of(&arguments.start)?)?;
     let mut bench = match &reality {
@@ -95,12 +99,7 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
 }
 
 /// Carries the presses out, with a bar, and stops on Ctrl-C.
-fn press_all(
-    runner: &Runner,
-    bench: &mut OpenBench,
-    plans: &[PressPlan],
-    logs: &Path,
-) -> Result<RunSummary> {
+fn press_all(runner: &Runner, bench: &mut OpenBench, plans: &[PressPlan], logs: &Path) -> Result<RunSummary> {
     ctrlc::set_handler(|| INTERRUPT.store(true, Ordering::Relaxed)).context("listening to Ctrl-C")?;
     let bar = progress::bar("pressing", plans.len() as u64);
     let OpenBench {
@@ -148,11 +147,7 @@ fn tell(summary: &RunSummary, presses: usize, bench: &OpenBench, folder: &Path, 
     } else {
         super::print(&format!(
             "{} of {presses} presses are done ({} data): {} frames at {:.1} Hz, {} lost without a mark",
-            summary.presses_done,
-            bench.provenance,
-            summary.frames,
-            summary.rate_hz,
-            summary.lost_unmarked
+            summary.presses_done, bench.provenance, summary.frames, summary.rate_hz, summary.lost_unmarked
         ))?;
         super::print(&format!("logs    {}", folder.join("logs").display()))?;
     }
