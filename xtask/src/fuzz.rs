@@ -17,8 +17,9 @@ const FLAGS: &str = "--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module -Cll
     -Cllvm-args=-sanitizer-coverage-trace-compares";
 /// Largest input, bytes: a log has a head of 5 KiB, frames and datagrams have less than one.
 const LARGEST_INPUT: usize = 16 << 10;
-/// Largest input that is kept, bytes: what is committed stays small.
+/// Largest input that is kept, and most of a target's inputs together, bytes: what is committed stays small.
 const LARGEST_KEPT: usize = 8 << 10;
+const MOST_KEPT: usize = 48 << 10;
 /// Memory of the process, MiB. The harness bounds what is allocated more tightly.
 const MOST_MIB: usize = 512;
 /// Longest that one input may take, s.
@@ -216,7 +217,7 @@ fn run(root: &Path, programs: &Path, work: &Path, target: &str, options: &Option
     Ok(outcome)
 }
 
-/// Puts the smallest inputs that reach all that was reached into `kept`.
+/// Puts the smallest inputs that reach all code that was reached, however often, into `kept`; as many as there is room for.
 fn minimise(programs: &Path, work: &Path, target: &str, from: &[&PathBuf], kept: &Path) -> Result<()> {
     let merged = work.join("merged").join(target);
     if merged.exists() {
@@ -224,10 +225,8 @@ fn minimise(programs: &Path, work: &Path, target: &str, from: &[&PathBuf], kept:
     }
     fs::create_dir_all(&merged)?;
     let output = Command::new(programs.join(target))
-        .args([
-            "-set_cover_merge=1".to_owned(),
-            format!("-max_len={LARGEST_KEPT}"),
-        ])
+        .args(["-set_cover_merge=1", "-use_counters=0"])
+        .arg(format!("-max_len={LARGEST_KEPT}"))
         .arg(&merged)
         .args(from)
         .stdin(Stdio::null())
@@ -239,9 +238,19 @@ fn minimise(programs: &Path, work: &Path, target: &str, from: &[&PathBuf], kept:
     for entry in fs::read_dir(kept)? {
         fs::remove_file(entry?.path())?;
     }
+    let mut inputs = Vec::new();
     for entry in fs::read_dir(&merged)? {
         let path = entry?.path();
-        fs::copy(&path, kept.join(path.file_name().unwrap_or_default()))?;
+        inputs.push((fs::read(&path)?, path));
+    }
+    inputs.sort_by(|(one, _), (other, _)| (one.len(), one).cmp(&(other.len(), other)));
+    let mut n_bytes = 0;
+    for (input, path) in inputs {
+        n_bytes += input.len();
+        if n_bytes > MOST_KEPT {
+            break;
+        }
+        fs::write(kept.join(path.file_name().unwrap_or_default()), input)?;
     }
     Ok(())
 }
@@ -318,7 +327,7 @@ fn record(root: &Path, options: &Options, outcomes: &[Outcome], table: &str) -> 
          (`crates/fuzz`): what decodes encodes again, nothing grows beyond its bound, nothing panics. libFuzzer looks for inputs that \
          reach new code; an input may take {TIME_OUT_S} s, and allocate 16 MiB at once and 64 MiB in all. Edges are branches \
          of the compiled code that inputs reached, features those with how often.\n\n{table}\n\
-         The smallest inputs that reach as much are in `fuzz/corpus`, and a test of `crates/fuzz` runs them without a fuzzer. It takes a \
+         Small inputs that reach these edges are in `fuzz/corpus`, and a test of `crates/fuzz` runs them without a fuzzer. It takes a \
          C++ compiler (`apt-get install g++`), and no nightly Rust; who has cargo-fuzz can say `cargo fuzz run --sanitizer none <target>`.\n"
     );
     for (name, text) in [("fuzz.json", figures + "\n"), ("fuzz.md", page)] {
