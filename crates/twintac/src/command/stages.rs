@@ -6,7 +6,7 @@ use twintac_recording::Recording;
 
 use super::files::expand;
 use crate::arguments::{Align, Evaluate, Record, Report, Train};
-use crate::run::{Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan};
+use crate::run::{Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan, plan_loads};
 use crate::sensor_file::read_sensor;
 
 /// Everything after the recordings; prints the headline.
@@ -29,8 +29,9 @@ pub(crate) fn record(arguments: &Record) -> Result<()> {
     let settings = RunSettings::of(&arguments.start)?;
     let seed = arguments.start.seed;
     let plans = plan(&arguments.protocol, &sensor.sensor, seed)?;
-    let source = format!("{} presses on the emulated bench", plans.len());
-    Run::start(&arguments.out, sensor, source, seed, settings)?.record(&reality, &plans)
+    let loads = plan_loads(&arguments.protocol, &sensor.sensor, seed)?;
+    let source = format!("{} presses on the emulated bench", plans.len() + loads.len());
+    Run::start(&arguments.out, sensor, source, seed, settings)?.record(&reality, &plans, &loads)
 }
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
-use twintac_lab::{Bench, Reality};
-use twintac_protocol::{PressPlan, Protocol};
+use twintac_lab::{Bench, LabError, Reality};
+use twintac_protocol::{LoadPlan, PressPlan, Protocol, Target};
 use twintac_recording::{Import, ImportSummary, Press, Recording};
+use twintac_sensor::Sensor;
 
 use super::Run;
 use crate::progress;
@@ -28,17 +29,25 @@ impl Run {
         })
     }
 
-    /// Records planned presses on the emulated bench, each kept as soon as it is done.
-    pub(crate) fn record(&self, reality: &Reality, plans: &[PressPlan]) -> Result<()> {
+    /// Records planned presses and weights on the emulated bench, each kept as soon as it is done.
+    pub(crate) fn record(&self, reality: &Reality, plans: &[PressPlan], loads: &[LoadPlan]) -> Result<()> {
         let inputs = Inputs::new()?
             .settings("reality", reality)?
             .settings("plans", &plans)?
+            .settings("loads", &loads)?
             .file(&self.folder.join("sensor.toml"))?;
         self.run_stage("recordings", inputs, |folder| {
             let bench = Bench::new(Arc::clone(&self.sensor.sensor), reality.clone());
-            let recording = record_on_bench(&bench, plans, &folder.join("presses"))?;
+            let keep = folder.join("presses");
+            let mut presses = kept("recording", plans, |plan| &plan.name, &keep, |plan| bench.press(plan))?;
+            presses.extend(kept("weighing", loads, |load| &load.name, &keep, |load| bench.load(load))?);
+            let recording = bench.recording(presses);
             recording.write_parquet(&folder.join("presses.parquet"))?;
-            write_json(&folder.join("plans.json"), &plans)
+            write_json(&folder.join("plans.json"), &plans)?;
+            if loads.is_empty() {
+                return Ok(());
+            }
+            write_json(&folder.join("loads.json"), &loads)
         })
     }
 
@@ -69,18 +78,24 @@ pub(crate) fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recordin
     Ok(import.read_all(files)?)
 }
 
-/// Performs presses over all cores; those that `folder` already holds are not repeated.
-pub(crate) fn record_on_bench(bench: &Bench, plans: &[PressPlan], folder: &Path) -> Result<Recording> {
-    let bar = progress::bar("recording", plans.len() as u64);
+/// Records each of `plans` over all cores; those that `folder` already holds are not repeated.
+fn kept<P: Sync>(
+    what: &'static str,
+    plans: &[P],
+    name: impl Fn(&P) -> &String + Sync,
+    folder: &Path,
+    record: impl Fn(&P) -> Result<Press, LabError> + Sync,
+) -> Result<Vec<Press>> {
+    let bar = progress::bar(what, plans.len() as u64);
     let presses = plans
         .par_iter()
         .with_max_len(1)
         .map(|plan| -> Result<Press> {
-            let path = folder.join(format!("{}.json", plan.name.replace('#', "-")));
+            let path = folder.join(format!("{}.json", name(plan).replace('#', "-")));
             let press = match read_json(&path) {
                 Ok(press) => press,
                 Err(_) => {
-                    let press = bench.press(plan)?;
+                    let press = record(plan)?;
                     write_json(&path, &press)?;
                     press
                 }
@@ -90,27 +105,38 @@ pub(crate) fn record_on_bench(bench: &Bench, plans: &[PressPlan], folder: &Path)
         })
         .collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
-    Ok(bench.recording(presses))
+    Ok(presses)
 }
 
 /// The presses that a protocol plans for a sensor.
-pub(crate) fn plan(protocol: &Path, sensor: &twintac_sensor::Sensor, seed: u64) -> Result<Vec<PressPlan>> {
-    let text =
-        std::fs::read_to_string(protocol).with_context(|| format!("reading {}", protocol.display()))?;
-    plan_text(&protocol.display().to_string(), &text, sensor, seed)
+pub(crate) fn plan(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
+    let protocol = read_protocol(protocol)?;
+    Ok(protocol.plan(&target(sensor), seed)?)
+}
+
+/// The weights that a protocol puts on a sensor.
+pub(crate) fn plan_loads(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<LoadPlan>> {
+    let protocol = read_protocol(protocol)?;
+    Ok(protocol.loads(&target(sensor), seed)?)
+}
+
+fn read_protocol(path: &Path) -> Result<Protocol> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
+    Ok(Protocol::parse(&path.display().to_string(), &text)?)
 }
 
 /// The presses that a protocol's text plans for a sensor.
-pub(crate) fn plan_text(
-    file: &str,
-    text: &str,
-    sensor: &twintac_sensor::Sensor,
-    seed: u64,
-) -> Result<Vec<PressPlan>> {
-    let names: Vec<String> = sensor
-        .indenters
-        .iter()
-        .map(|indenter| indenter.name.clone())
-        .collect();
-    Ok(Protocol::parse(file, text)?.plan(&names, seed)?)
+pub(crate) fn plan_text(file: &str, text: &str, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
+    Ok(Protocol::parse(file, text)?.plan(&target(sensor), seed)?)
+}
+
+fn target(sensor: &Sensor) -> Target {
+    let indenters = sensor.indenters.iter().map(|indenter| indenter.name.clone());
+    let taxels = sensor.taxels.iter();
+    Target {
+        indenters: indenters.collect(),
+        taxels: taxels
+            .map(|taxel| (taxel.name.clone(), [taxel.position_mm.x, taxel.position_mm.y]))
+            .collect(),
+    }
 }
