@@ -97,7 +97,7 @@ mod tests {
         let found = finding.found().unwrap();
         assert_eq!(found.len(), 2);
         assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
-        assert_eq!(found[0].n_readings, 2 * 251);
+        assert_eq!(found[0].n_readings, 2 * 250);
     }
 
     #[test]

@@ -167,7 +167,7 @@ mod tests {
         let found = found(|force_n, _, _| 7.24 * force_n);
         assert!((found.sensitivity_kpa_per_n - 7.24).abs() < 1e-9);
         assert!(found.is_linear_to_end && found.linearity_percent < 1e-6);
-        assert!((found.data_to_n - 4.0).abs() < 1e-9);
+        assert!((found.data_to_n - 4.0).abs() < 0.05);
     }
 
     #[test]
