@@ -6,8 +6,8 @@ use twintac_recording::{Control, Press};
 
 use crate::statistics::{deviation, mean};
 
-/// Fewest frames before contact that tell the force's noise.
-const FEWEST_FRAMES: usize = 4;
+/// A twentieth of the frames, but no fewer and no more than these, come before contact and tell the force's noise.
+const FRAMES: [usize; 2] = [4, 20];
 
 /// Standard deviations of the unloaded force that a contact exceeds.
 const CONTACT_SIGMAS: f64 = 5.0;
@@ -43,7 +43,7 @@ impl Phases {
         let threshold_n = if is_weight {
             CONTACT_PART * most_n
         } else {
-            let early = &force_n[..(n / 20).max(FEWEST_FRAMES).min(n)];
+            let early = &force_n[..(n / 20).clamp(FRAMES[0], FRAMES[1]).min(n)];
             let (zero_n, noise_n) = (mean(early)?, deviation(early)?);
             (zero_n + CONTACT_SIGMAS * noise_n).max(CONTACT_PART * most_n)
         };

@@ -8,9 +8,9 @@ use crate::{DetectionLimit, Finding};
 /// The largest force and reading in the data. Nothing is said of what lies beyond.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CoveredRange {
-    /// Largest force with a valid reading of the taxel under the indenter, N.
+    /// Largest force with valid readings of all taxels, N, wherever it was.
     pub force_n: f64,
-    /// That taxel's name.
+    /// The taxel that reads most then.
     pub taxel: String,
     /// Its reading above its baseline then, kPa.
     pub reading_kpa: f64,
@@ -33,13 +33,16 @@ pub(crate) fn covered(
         let frames = press.phases.loading.start..press.phases.unloading.end;
         let invalid = frames.clone().flat_map(|frame| &press.press.valid[frame]);
         n_invalid += invalid.filter(|valid| !**valid).count();
-        let Some(taxel) = press.taxel else { continue };
-        for [force_n, reading_kpa] in press.points(taxel, &frames) {
+        for frame in frames.filter(|&frame| press.press.valid[frame].iter().all(|valid| *valid)) {
+            let readings_kpa = &press.press.taxels_kpa[frame];
+            let force_n = press.force_n(frame);
+            let most = (0..taxels.len()).max_by(|&a, &b| readings_kpa[a].total_cmp(&readings_kpa[b]));
+            let Some(taxel) = most else { continue };
             if best.as_ref().is_none_or(|best| force_n > best.force_n) {
                 best = Some(CoveredRange {
                     force_n,
                     taxel: taxels[taxel].clone(),
-                    reading_kpa,
+                    reading_kpa: readings_kpa[taxel],
                     press: press.press.name.clone(),
                     n_invalid: 0,
                     dynamic_range_db: None,
@@ -54,7 +57,7 @@ pub(crate) fn covered(
         .map(|limit| limit.single_reading_n);
     let smallest_n = limits_n.fold(f64::INFINITY, f64::min);
     best.map_or_else(
-        || Finding::NotGiven("no press of known force stands above a taxel".to_owned()),
+        || Finding::NotGiven("there is no press of known force with valid readings".to_owned()),
         |best| {
             let ratio = best.force_n / smallest_n;
             Finding::Found(CoveredRange {

@@ -10,7 +10,7 @@ use crate::chain::Chain;
 use crate::imperfect::Chance;
 
 /// The depth that is tried first for a weight, mm.
-const FIRST_DEPTH_MM: f64 = 0.05;
+const FIRST_DEPTH_MM: f64 = 0.1;
 
 /// A table goes this much beyond the weight.
 const MARGIN: f64 = 1.05;

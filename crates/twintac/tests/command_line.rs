@@ -35,6 +35,7 @@ fn help_on_each_command() {
         "mesh",
         "simulate",
         "calibrate",
+        "characterize",
         "record",
         "import",
         "align",

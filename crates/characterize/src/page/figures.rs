@@ -176,17 +176,22 @@ pub(super) fn smallest_step(found: &Characterization, recorded: &[Recorded<'_>])
 }
 
 /// The press with the largest force.
-pub(super) fn largest_force(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
+pub(super) fn largest_force(
+    found: &Characterization,
+    recording: &Recording,
+    recorded: &[Recorded<'_>],
+) -> Option<Plot> {
     let range = found.range.found()?;
     let press = recorded.iter().find(|press| press.press.name == range.press)?;
+    let taxel = recording.taxels.iter().position(|taxel| *taxel == range.taxel)?;
     let n = press.press.time_s.len();
     let scene = force_and_reading(
         &format!("B  Up to {} N", number(range.force_n, 3)),
         &range.taxel,
-        courses(press, press.taxel?, 0..n, 0.0),
+        courses(press, taxel, 0..n, 0.0),
     );
     let caption = format!(
-        "The largest force in the data, {} N above taxel {}. Nothing is known beyond.",
+        "The largest force in the data, {} N, and the taxel that reads most then, {}. Nothing is known beyond.",
         number(range.force_n, 3),
         range.taxel
     );

@@ -24,7 +24,7 @@ pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) 
     };
     let mut range = plots(vec![
         figures::smallest_step(found, &recorded),
-        figures::largest_force(found, &recorded),
+        figures::largest_force(found, recording, &recorded),
         figures::responses(found),
         figures::linearity(found),
     ]);

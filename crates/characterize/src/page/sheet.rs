@@ -14,7 +14,7 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
     let recorded = super::recorded(found, recording, sensor);
     let plots = [
         figures::smallest_step(found, &recorded),
-        figures::largest_force(found, &recorded),
+        figures::largest_force(found, recording, &recorded),
         figures::responses(found),
     ];
     let plots: Vec<_> = plots.into_iter().flatten().collect();
@@ -48,8 +48,15 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
     }
 }
 
-/// Name, value and condition of each figure.
-pub(super) fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
+impl Characterization {
+    /// Name, value and condition of each figure, as text.
+    #[must_use]
+    pub fn rows(&self, sensor: &Sensor) -> Vec<[String; 3]> {
+        rows(self, sensor)
+    }
+}
+
+fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
     let options = &found.options;
     let sigmas = number(options.sigmas, 2);
     let row = |name: &str, value: String, condition: String| [name.to_owned(), value, condition];
@@ -104,7 +111,7 @@ pub(super) fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]
                 )
             }),
             or_not(&found.range, |range| {
-                format!("above taxel {}; nothing is known beyond", range.taxel)
+                format!("taxel {} reads most; nothing is known beyond", range.taxel)
             }),
         ),
         row(

@@ -1,6 +1,7 @@
 //! What each command does.
 
 mod calibrate;
+mod characterize;
 mod demo;
 mod files;
 mod follow;
@@ -26,6 +27,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Characterize(arguments) => characterize::run(&arguments),
         Command::Record(arguments) => stages::record(&arguments),
         Command::Import(arguments) => reproduce::import(&arguments),
         Command::Align(arguments) => stages::align(&arguments),
