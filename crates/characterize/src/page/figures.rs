@@ -1,6 +1,6 @@
 //! The plots, in the order of the paper's: time, small and large force, sensitivity; then what it does not show.
 
-use twintac_recording::Recording;
+use twintac_recording::{Control, Recording};
 use twintac_report::plot::{Bar, Bars, Panel, Panels, Series};
 use twintac_report::{Anchor, Ink, Mark, Scene, viridis};
 
@@ -87,7 +87,8 @@ pub(super) fn over_time(recording: &Recording, recorded: &[Recorded<'_>]) -> Opt
         let end = press.phases.unloading.end.min(press.press.time_s.len() - 1);
         press.press.time_s[end] - press.press.time_s[press.phases.loading.start]
     };
-    let is_shown = |press: &&Recorded<'_>| touched_s(press) <= LONGEST_SHOWN_S;
+    let is_shown =
+        |press: &&Recorded<'_>| press.press.control == Control::Pose && touched_s(press) <= LONGEST_SHOWN_S;
     let of_taxel = |taxel: usize| above(recorded, taxel).filter(is_shown);
     let taxel = (0..recording.taxels.len())
         .rev()
@@ -170,7 +171,7 @@ pub(super) fn smallest_step(found: &Characterization, recorded: &[Recorded<'_>])
         number(step.step_kpa, 2),
         number(step.z_single, 2),
         number(step.z_averaged, 2),
-        number(found.options.window_s, 2)
+        found.options.window_s
     );
     Some((scene, caption))
 }
@@ -218,9 +219,12 @@ pub(super) fn responses(found: &Characterization) -> Option<Plot> {
         .collect();
     let name = format!("{} kPa/N", number(overall.mean_kpa_per_n, 3));
     let end_n = overall.linear_to_n.min(common_n);
+    let offset_kpa = mean(&taxels.iter().map(|taxel| taxel.offset_kpa).collect::<Vec<_>>())?;
     series.push(line(
         &name,
-        vec![[0.0, 0.0], [end_n, overall.mean_kpa_per_n * end_n]],
+        [0.0, end_n]
+            .map(|force_n| [force_n, offset_kpa + overall.mean_kpa_per_n * force_n])
+            .to_vec(),
         Ink::Twin,
         2.5,
     ));
@@ -254,10 +258,7 @@ pub(super) fn linearity(found: &Characterization) -> Option<Plot> {
         end_n = points.last().map_or(end_n, |point| end_n.max(point[0]));
         series.push(line("taxels", points, Ink::Sensor, 1.5));
     }
-    for (name, level) in [
-        (format!("± {} %", number(limit, 2)), limit),
-        (String::new(), -limit),
-    ] {
+    for (name, level) in [(format!("± {} %", limit), limit), (String::new(), -limit)] {
         series.push(dashed(&name, vec![[0.0, level], [end_n, level]], Ink::Twin));
     }
     let scene = panels(
@@ -267,7 +268,7 @@ pub(super) fn linearity(found: &Characterization) -> Option<Plot> {
     );
     let caption = format!(
         "Response less the taxel’s own line, in % of the response at the end of its linear range: the range ends where no line keeps within {} %.",
-        number(limit, 2)
+        limit
     );
     Some((scene, caption))
 }

@@ -173,7 +173,7 @@ fn result(found: &Characterization, sensor: &Sensor) -> Vec<Block> {
             .map(|percent| format!("{} %", number(percent, 2))),
         "largest hysteresis",
     );
-    let rows = super::sheet::rows(found, sensor);
+    let rows = found.rows(sensor);
     let rows = rows
         .into_iter()
         .map(|row| row.map(Cell::Words).to_vec())
@@ -242,8 +242,7 @@ fn step_table(found: &Characterization) -> Option<Block> {
     let caption = format!(
         "Steps of known force. z is the step over the standard deviation of one reading, and of the change of the mean over {} s while nothing happens; \
          detected from z = {} of the mean on.",
-        number(found.options.window_s, 2),
-        number(found.options.sigmas, 2)
+        found.options.window_s, found.options.sigmas
     );
     Some(Block::Table(
         caption,
@@ -282,7 +281,7 @@ fn missing(found: &Characterization) -> Vec<Block> {
 
 fn definitions(found: &Characterization) -> Vec<Block> {
     let options = &found.options;
-    let words = |value: f64| number(value, 2);
+    let words = |value: f64| value.to_string();
     let row = |name: &str, text: String| vec![Cell::Words(name.to_owned()), Cell::Words(text)];
     let rows = vec![
         row("above a taxel", format!("the indenter’s centre within {} mm of the taxel’s, in plan", words(options.above_mm))),

@@ -5,7 +5,7 @@ use twintac_report::{Block, Cell, Page, PageSection};
 use twintac_sensor::Sensor;
 
 use super::figures;
-use super::words::{number, or_not, span};
+use super::words::{if_found, number, or_not, span};
 use crate::Characterization;
 
 /// The figures of a characterization on one page.
@@ -58,7 +58,7 @@ impl Characterization {
 
 fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
     let options = &found.options;
-    let sigmas = number(options.sigmas, 2);
+    let sigmas = options.sigmas;
     let row = |name: &str, value: String, condition: String| [name.to_owned(), value, condition];
     let readout = &sensor.readout;
     vec![
@@ -82,7 +82,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             or_not(&found.overall, |overall| {
                 format!("{} kPa/N", number(overall.mean_kpa_per_n, 3))
             }),
-            or_not(&found.sensitivity, |taxels| {
+            if_found(&found.sensitivity, |taxels| {
                 let slopes = taxels.iter().map(|taxel| taxel.sensitivity_kpa_per_n);
                 format!(
                     "mean of {} taxels, which have {} kPa/N",
@@ -94,11 +94,15 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
         row(
             "Linear range",
             or_not(&found.sensitivity, |taxels| {
-                format!("0 to {} N", span(taxels.iter().map(|taxel| taxel.linear_to_n), 2))
+                let least_n = taxels
+                    .iter()
+                    .map(|taxel| taxel.linear_to_n)
+                    .fold(f64::INFINITY, f64::min);
+                format!("0 to {} N", number(least_n, 2))
             }),
             format!(
-                "within {} % of the range’s end from a least-squares line (independent linearity), by taxel",
-                number(options.linear_percent, 2)
+                "within {} % of the range’s end from a least-squares line, all taxels",
+                options.linear_percent
             ),
         ),
         row(
@@ -110,7 +114,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
                     number(range.reading_kpa, 3)
                 )
             }),
-            or_not(&found.range, |range| {
+            if_found(&found.range, |range| {
                 format!("taxel {} reads most; nothing is known beyond", range.taxel)
             }),
         ),
@@ -141,10 +145,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
                     )
                 })
             }),
-            format!(
-                "known weight, mean over {} s, z ≥ {sigmas}",
-                number(options.window_s, 2)
-            ),
+            format!("known weight, mean over {} s, z ≥ {sigmas}", options.window_s),
         ),
         row(
             "Dynamic range",
@@ -181,7 +182,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
                 let shorter = if rise.is_as_fast_as_force { "at most " } else { "" };
                 format!("{shorter}{} s", number(rise.rise_s, 2))
             }),
-            or_not(&found.rise_time, |rise| {
+            if_found(&found.rise_time, |rise| {
                 let (force_s, frame_s) = (number(rise.force_rise_s, 2), number(rise.frame_s, 2));
                 let word = if rise.is_as_fast_as_force {
                     "as fast as the force"
@@ -196,7 +197,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             or_not(&found.creep, |holds| {
                 format!("{} %", span(holds.iter().map(|hold| hold.percent), 2))
             }),
-            or_not(&found.creep, |holds| {
+            if_found(&found.creep, |holds| {
                 let [from_s, to_s] = holds[0].between_s;
                 format!(
                     "reading over force, from {} to {} s of a hold",
@@ -210,7 +211,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             or_not(&found.cross_talk, |talk| {
                 format!("at most {} %", number(talk.largest_percent, 2))
             }),
-            or_not(&found.cross_talk, |talk| {
+            if_found(&found.cross_talk, |talk| {
                 format!("of the pressed taxel’s reading, at {} N", number(talk.force_n, 2))
             }),
         ),

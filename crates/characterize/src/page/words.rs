@@ -36,6 +36,11 @@ pub(super) fn or_not<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) 
     }
 }
 
+/// The finding in words; nothing of a missing one.
+pub(super) fn if_found<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) -> String {
+    finding.found().map_or(String::new(), words)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
