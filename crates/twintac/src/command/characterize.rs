@@ -58,7 +58,16 @@ fn read(patterns: &[String]) -> Result<(Recording, Vec<UnloadedCourse>)> {
             all.sensor,
             all.provenance
         );
-        all.presses.extend(next.presses);
+        for mut press in next.presses {
+            let is_taken = |name: &str| all.presses.iter().any(|other| other.name == name);
+            let numbered = (2..).map(|number| format!("{} ({number})", press.name));
+            if is_taken(&press.name)
+                && let Some(free) = numbered.into_iter().find(|name| !is_taken(name))
+            {
+                press.name = free;
+            }
+            all.presses.push(press);
+        }
     }
     let recording = all.context("there are no recordings")?;
     let courses = recording.taxels.iter().map(|taxel| {
