@@ -42,7 +42,10 @@ impl Bench {
             let frames = sweep.frames.iter();
             let mut force_n: Vec<f64> = frames.clone().map(|frame| frame.force_n).collect();
             force_n[0] = 0.0;
-            Pchip::new(force_n, frames.map(|frame| frame.port_pressure_kpa[taxel]).collect())
+            Pchip::new(
+                force_n,
+                frames.map(|frame| frame.port_pressure_kpa[taxel]).collect(),
+            )
         };
         let curves: Vec<Option<Pchip>> = (0..self.drawing.taxels.len()).map(over_force).collect();
         let course = plan.course(self.drawing.readout.rate_hz);
@@ -56,7 +59,9 @@ impl Bench {
         let mut frames = Frames::default();
         for &(scheduled_s, weight_n) in &course {
             let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {
-                curves[taxel].as_ref().map_or(0.0, |curve| curve.at(force_n(time_s)))
+                curves[taxel]
+                    .as_ref()
+                    .map_or(0.0, |curve| curve.at(force_n(time_s)))
             });
             frames.push(Moment {
                 time_s,
@@ -78,7 +83,12 @@ impl Bench {
                 press: plan.name.clone(),
                 source,
             })?;
-            if sweep.frames.last().map_or(0.0, |frame: &SweepFrame| frame.force_n) >= plan.force_n {
+            if sweep
+                .frames
+                .last()
+                .map_or(0.0, |frame: &SweepFrame| frame.force_n)
+                >= plan.force_n
+            {
                 return Ok(sweep);
             }
             let press = plan.name.clone();

@@ -39,8 +39,20 @@ impl Run {
         self.run_stage("recordings", inputs, |folder| {
             let bench = Bench::new(Arc::clone(&self.sensor.sensor), reality.clone());
             let keep = folder.join("presses");
-            let mut presses = kept("recording", plans, |plan| &plan.name, &keep, |plan| bench.press(plan))?;
-            presses.extend(kept("weighing", loads, |load| &load.name, &keep, |load| bench.load(load))?);
+            let mut presses = kept(
+                "recording",
+                plans,
+                |plan| &plan.name,
+                &keep,
+                |plan| bench.press(plan),
+            )?;
+            presses.extend(kept(
+                "weighing",
+                loads,
+                |load| &load.name,
+                &keep,
+                |load| bench.load(load),
+            )?);
             let recording = bench.recording(presses);
             recording.write_parquet(&folder.join("presses.parquet"))?;
             write_json(&folder.join("plans.json"), &plans)?;
