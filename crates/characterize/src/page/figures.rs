@@ -17,7 +17,7 @@ pub(super) type Plot = (Scene, String);
 const MOST_SHOWN: usize = 8;
 
 /// Longest of them, s.
-const LONGEST_SHOWN_S: f64 = 15.0;
+const LONGEST_SHOWN_S: f64 = 8.0;
 
 fn line(name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64) -> Series {
     Series {
@@ -136,6 +136,10 @@ pub(super) fn smallest_step(found: &Characterization, recorded: &[Recorded<'_>])
     let (taxel, phases, time_s) = (press.taxel?, &press.phases, &press.press.time_s);
     let n = time_s.len();
     let [force, reading] = courses(press, taxel, 0..n, 0.0);
+    let force_mn = force
+        .into_iter()
+        .map(|[time_s, force_n]| [time_s, 1000.0 * force_n])
+        .collect();
     let level = |frames: &std::ops::Range<usize>| -> Option<Vec<[f64; 2]>> {
         let level_kpa = mean(&press.readings_kpa(taxel, frames))?;
         Some(vec![
@@ -157,10 +161,10 @@ pub(super) fn smallest_step(found: &Characterization, recorded: &[Recorded<'_>])
         line("means", means, Ink::Twin, 2.0),
     ];
     let scene = panels(
-        &format!("A  A step of {} N", number(step.force_n, 2)),
+        &format!("A  Step of {} N", number(step.force_n, 2)),
         "time, s",
         vec![
-            panel("force, N", vec![line("force", force, Ink::Series(0), 1.5)]),
+            panel("force, mN", vec![line("force", force_mn, Ink::Series(0), 1.5)]),
             panel("pressure, kPa", readings),
         ],
     );

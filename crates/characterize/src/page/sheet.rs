@@ -5,7 +5,7 @@ use twintac_report::{Block, Cell, Page, PageSection};
 use twintac_sensor::Sensor;
 
 use super::figures;
-use super::words::{if_found, number, or_not, span};
+use super::words::{NOT_GIVEN, if_found, number, or_not, span};
 use crate::Characterization;
 
 /// The figures of a characterization on one page.
@@ -59,7 +59,14 @@ impl Characterization {
 fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
     let options = &found.options;
     let sigmas = options.sigmas;
-    let row = |name: &str, value: String, condition: String| [name.to_owned(), value, condition];
+    let row = |name: &str, value: String, condition: String| {
+        let is_missing = value.starts_with(NOT_GIVEN);
+        [
+            name.to_owned(),
+            value,
+            if is_missing { String::new() } else { condition },
+        ]
+    };
     let readout = &sensor.readout;
     vec![
         row(
@@ -152,7 +159,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             or_not(&found.range, |range| {
                 range
                     .dynamic_range_db
-                    .map_or("not given".to_owned(), |db| format!("{} dB", number(db, 2)))
+                    .map_or(NOT_GIVEN.to_owned(), |db| format!("{} dB", number(db, 2)))
             }),
             "largest force in the data over the smallest detection limit".into(),
         ),

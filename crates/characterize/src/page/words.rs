@@ -2,6 +2,9 @@
 
 use crate::Finding;
 
+/// Begins the words of a figure that was not found.
+pub(super) const NOT_GIVEN: &str = "not given";
+
 /// A number with so many significant digits, and a true minus sign.
 pub(super) fn number(value: f64, digits: i32) -> String {
     if !value.is_finite() {
@@ -32,7 +35,7 @@ pub(super) fn span(values: impl Iterator<Item = f64> + Clone, digits: i32) -> St
 pub(super) fn or_not<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) -> String {
     match finding {
         Finding::Found(figure) => words(figure),
-        Finding::NotGiven(why) => format!("not given: {why}"),
+        Finding::NotGiven(why) => format!("{NOT_GIVEN}: {why}"),
     }
 }
 
