@@ -114,7 +114,7 @@ mod tests {
         ]
         .map(str::to_owned)
         .to_vec();
-        let taxels = vec![("t0".to_owned(), [-4.0, 1.0]), ("t1".to_owned(), [4.0, 2.0])];
+        let taxels = vec![("t0".to_owned(), [-4.0, 1.0]), ("t5".to_owned(), [4.0, 2.0])];
         Target { indenters, taxels }
     }
 
@@ -235,6 +235,6 @@ mod tests {
             names: Some(vec!["t9".into()]),
         };
         let error = protocol.plan(&known(), 1).unwrap_err();
-        assert_eq!((error.how, error.known.as_str()), ("above", "t0, t1"));
+        assert_eq!((error.how, error.known.as_str()), ("above", "t0, t5"));
     }
 }
