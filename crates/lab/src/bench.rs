@@ -14,6 +14,7 @@ use twintac_simulate::{
 use twintac_softbody::{Material, PronyTerm, SolverSettings};
 
 use crate::Reality;
+use crate::chain::Chain;
 use crate::imperfect::Chance;
 
 /// Pressure of the air, kPa.
@@ -21,6 +22,9 @@ pub(crate) const ATMOSPHERE_KPA: f64 = 101.325;
 
 /// Moments computed in a hold, as fractions of it: most happens early.
 const HOLD_FRACTIONS: [f64; 4] = [0.05, 0.2, 0.5, 1.0];
+
+/// The first of them comes at most this long after the hold begins, s; in long holds, others three times as early come before it.
+const FIRST_IN_HOLD_S: f64 = 0.2;
 
 /// What can go wrong on the emulated bench.
 #[derive(Debug, thiserror::Error)]
@@ -53,10 +57,10 @@ pub enum LabError {
 
 /// One cast of a sensor on one bench.
 pub struct Bench {
-    drawing: Arc<Sensor>,
+    pub(crate) drawing: Arc<Sensor>,
     gel: Gel,
-    gains: Vec<f64>,
-    offsets_kpa: Vec<f64>,
+    pub(crate) gains: Vec<f64>,
+    pub(crate) offsets_kpa: Vec<f64>,
     reality: Reality,
 }
 
@@ -73,7 +77,7 @@ impl Bench {
         let gains = drawing
             .taxels
             .iter()
-            .map(|_| 1.0 + chance.normal(reality.readout.gain_deviation))
+            .map(|_| reality.readout.gain_mean * (1.0 + chance.normal(reality.readout.gain_deviation)))
             .collect();
         let offsets_kpa = drawing
             .taxels
@@ -106,7 +110,7 @@ impl Bench {
     /// Performs one press and records it.
     pub fn press(&self, plan: &PressPlan) -> Result<Press, LabError> {
         let mut chance = Chance::new(self.reality.seed, &plan.name);
-        let (robot, readout) = (&self.reality.robot, &self.reality.readout);
+        let robot = &self.reality.robot;
         let place = self.true_place(plan, &mut chance)?;
         let deeper_mm = self.depth_offset_mm(&mut chance);
 
@@ -127,25 +131,12 @@ impl Bench {
         }
 
         let history = History::new(&sweep, &keyframes);
-        let mut walk_kpa: Vec<f64> = vec![0.0; self.gains.len()];
-        let mut previous_s = 0.0;
+        let mut chain = Chain::new(self);
         let mut frames = Frames::default();
         for &(scheduled_s, depth_mm) in &schedule {
-            let time_s = scheduled_s
-                + chance
-                    .normal(readout.jitter_s)
-                    .clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
-            let step_s = (time_s - previous_s).max(0.0);
-            previous_s = time_s;
-            let raw_kpa: Vec<f64> = (0..self.gains.len())
-                .map(|taxel| {
-                    let late_s = readout.lag_s + taxel as f64 * readout.lag_per_taxel_s;
-                    walk_kpa[taxel] += chance.normal(readout.drift_kpa_per_sqrt_s * step_s.sqrt());
-                    let pressure_kpa = self.gains[taxel] * history.pressure_kpa(taxel, time_s + late_s);
-                    let clean_kpa = ATMOSPHERE_KPA + self.offsets_kpa[taxel] + walk_kpa[taxel] + pressure_kpa;
-                    self.quantize(clean_kpa + chance.normal(readout.noise_kpa))
-                })
-                .collect();
+            let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {
+                history.pressure_kpa(taxel, time_s)
+            });
             let commanded = Pose {
                 position_mm: sweep
                     .gel_from_indenter_at_touch
@@ -158,12 +149,12 @@ impl Bench {
             frames.push(Moment {
                 time_s,
                 commanded,
-                depth_mm,
+                is_touching: depth_mm >= -0.1,
                 force_n: history.force_n(time_s - robot.force_lag_s) + chance.normal(robot.force_noise_n),
                 raw_kpa,
             });
         }
-        Ok(frames.into_press(plan, &self.drawing))
+        Ok(frames.into_press(&plan.name, &plan.indenter, Control::Pose, &self.drawing))
     }
 
     /// A recording of presses that this bench performed.
@@ -238,7 +229,7 @@ impl Bench {
         })
     }
 
-    fn quantize(&self, kpa: f64) -> f64 {
+    pub(crate) fn quantize(&self, kpa: f64) -> f64 {
         let step_kpa = self.drawing.readout.resolution_kpa;
         (kpa / step_kpa).round() * step_kpa
     }
@@ -286,8 +277,9 @@ fn keyframes(schedule: &[(f64, f64)], deeper_mm: f64, step_mm: f64) -> Vec<Keyfr
             - 1;
         if hold_end > at + 1 && true_mm > 0.0 {
             let hold = (hold_end - at) as f64;
+            let hold_s = schedule[hold_end].0 - time_s;
             let mut last = at;
-            for fraction in HOLD_FRACTIONS {
+            for fraction in hold_fractions(hold_s) {
                 let index = at + (fraction * hold).round() as usize;
                 if index > last {
                     chosen.push(Keyframe {
@@ -311,6 +303,15 @@ fn keyframes(schedule: &[(f64, f64)], deeper_mm: f64, step_mm: f64) -> Vec<Keyfr
         }
     }
     chosen
+}
+
+/// When to compute in a hold of this length, as fractions of it.
+fn hold_fractions(hold_s: f64) -> Vec<f64> {
+    let mut fractions = HOLD_FRACTIONS.to_vec();
+    while fractions[0] * hold_s > FIRST_IN_HOLD_S {
+        fractions.insert(0, fractions[0] / 3.0);
+    }
+    fractions
 }
 
 /// Whether a depth is the deepest of the schedule, where the motion turns or holds.
@@ -351,28 +352,29 @@ impl History {
     }
 }
 
-struct Moment {
-    time_s: f64,
-    commanded: Pose,
-    depth_mm: f64,
-    force_n: f64,
-    raw_kpa: Vec<f64>,
+pub(crate) struct Moment {
+    pub(crate) time_s: f64,
+    pub(crate) commanded: Pose,
+    /// Whether the gel may be touched.
+    pub(crate) is_touching: bool,
+    pub(crate) force_n: f64,
+    pub(crate) raw_kpa: Vec<f64>,
 }
 
 #[derive(Default)]
-struct Frames(Vec<Moment>);
+pub(crate) struct Frames(Vec<Moment>);
 
 impl Frames {
-    fn push(&mut self, moment: Moment) {
+    pub(crate) fn push(&mut self, moment: Moment) {
         self.0.push(moment);
     }
 
     /// Zeroes each taxel on the frames above the gel, as a recorder does before each press.
-    fn into_press(self, plan: &PressPlan, sensor: &Sensor) -> Press {
+    pub(crate) fn into_press(self, name: &str, indenter: &str, control: Control, sensor: &Sensor) -> Press {
         let n_before = self
             .0
             .iter()
-            .take_while(|moment| moment.depth_mm < -0.1)
+            .take_while(|moment| !moment.is_touching)
             .count()
             .max(1);
         let baseline_kpa: Vec<f64> = (0..sensor.taxels.len())
@@ -380,10 +382,10 @@ impl Frames {
             .collect();
         let range = sensor.readout.min_kpa..=sensor.readout.max_kpa;
         Press {
-            name: plan.name.clone(),
+            name: name.to_owned(),
             file: "lab".into(),
-            indenter: plan.indenter.clone(),
-            control: Control::Pose,
+            indenter: indenter.to_owned(),
+            control,
             time_s: self.0.iter().map(|m| m.time_s).collect(),
             gel_from_indenter: self.0.iter().map(|m| m.commanded).collect(),
             force_n: Some(self.0.iter().map(|m| m.force_n).collect()),

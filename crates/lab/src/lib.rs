@@ -5,11 +5,13 @@
 //! differently from the drawing, noise, quantization, late and jittery clocks, a robot that misses its place. All of that is in a
 //! [`Reality`], read from a TOML file. What it records is marked `emulated`.
 //!
-//! [`Bench::press`] records a planned press at once; [`Bench::live`] is felt by emulated devices (`twintac-emulate`) while a robot moves.
+//! [`Bench::press`] records a planned press at once, [`Bench::load`] a weight put on the gel; [`Bench::live`] is felt by emulated devices (`twintac-emulate`) while a robot moves.
 
 mod bench;
+mod chain;
 mod imperfect;
 mod live;
+mod load;
 mod reality;
 
 pub use bench::{Bench, LabError};

@@ -102,7 +102,11 @@ impl Bench {
                 press: plan.name.clone(),
                 source,
             })?;
-        if let Some(why) = &sweep.failure {
+        // What is spare may be blocked by the shell.
+        let deepest_mm = sweep.frames.last().map_or(0.0, |frame| frame.depth_mm);
+        if let Some(why) = &sweep.failure
+            && deepest_mm < plan.depth_mm + deeper_mm.max(0.0)
+        {
             return Err(LabError::NotConverged {
                 press: plan.name.clone(),
                 why: why.clone(),

@@ -51,7 +51,11 @@ pub struct Relaxation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReadoutReality {
-    /// Standard deviation of a taxel's gain about 1.
+    /// Mean gain of the taxels: what one reads over the pressure that the gel has at its port. A cast that bonds badly or keeps bubbles has less,
+    /// a cavity that gathers pressure more. Default 1.
+    #[serde(default = "one")]
+    pub gain_mean: f64,
+    /// Standard deviation of a taxel's gain, as a part of the mean.
     pub gain_deviation: f64,
     /// Standard deviation of a taxel's offset, kPa.
     pub offset_deviation_kpa: f64,
@@ -85,6 +89,10 @@ pub struct RobotReality {
     pub force_lag_s: f64,
 }
 
+fn one() -> f64 {
+    1.0
+}
+
 impl Reality {
     /// Reads a reality from the text of a TOML file; errors name file, line and field.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
@@ -101,6 +109,7 @@ impl Reality {
             ("gel.yeoh_kpa[0]", gel.yeoh_kpa[0]),
             ("gel.bulk_modulus_kpa", gel.bulk_modulus_kpa),
             ("gel.depth_step_mm", gel.depth_step_mm),
+            ("readout.gain_mean", readout.gain_mean),
         ];
         for (field, value) in positive {
             if value <= 0.0 {

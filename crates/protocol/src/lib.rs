@@ -1,13 +1,24 @@
 //! The press protocol: which indenter, where, how deep, how fast.
 //!
 //! A protocol is a TOML file that people write; [`Protocol::plan`] turns it into presses. What is drawn at
-//! random in a press depends on the seed and the press's number alone. A [`PressPath`] takes one indenter through given poses
+//! random in a press depends on the seed and the press's name alone. A [`Load`] puts weights on instead. A [`PressPath`] takes one indenter through given poses
 //! and forces.
 
+mod chance;
+mod load;
+mod part;
 mod path;
+mod places;
 mod plan;
 mod protocol;
+mod range;
+mod target;
 
+pub use load::{Load, LoadPlan};
+pub use part::Part;
 pub use path::{PathFrame, Point, PressPath, Waypoint, Zero};
+pub use places::{Area, Places};
 pub use plan::PressPlan;
-pub use protocol::{Area, Indenters, Places, PlanError, Protocol, Range};
+pub use protocol::Protocol;
+pub use range::Range;
+pub use target::{AllWord, Indenters, PlanError, Target};

@@ -1,136 +1,31 @@
 //! The protocol as people write it.
 
-use glam::{DQuat, DVec3};
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use twintac_config::{ConfigError, Document};
+use twintac_config::ConfigError;
 
-use crate::PressPlan;
+use crate::{Load, LoadPlan, Part, PlanError, PressPlan, Target};
 
-/// Most presses that one indenter can be planned to do.
-const MOST_PRESSES: u64 = 1_000_000;
-
-/// A protocol of presses.
+/// What is pressed, and what is put on the gel.
+///
+/// A file is one [`Part`], or has a summary and lists of `[[parts]]` and `[[loads]]`, each with a name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
     /// What the protocol is for.
     pub summary: String,
-    /// Which indenters press, one after the other.
-    pub indenters: Indenters,
-    /// Where they press.
-    pub places: Places,
-    /// Depth below first touch, mm.
-    pub depth_mm: Range,
-    /// Speed of approach and retreat, mm/s.
-    pub speed_mm_per_s: Range,
-    /// Time at full depth, s.
-    pub hold_s: Range,
-    /// Turn about the vertical, radians.
+    /// Presses to a depth, kind by kind.
     #[serde(default)]
-    pub spin_rad: Range,
-    /// Tilt away from the vertical, in a random direction, radians.
+    pub parts: Vec<Part>,
+    /// Weights put on the gel.
     #[serde(default)]
-    pub tilt_rad: Range,
-    /// Height above first touch at which a press starts and ends, mm.
-    pub clearance_mm: f64,
-    /// How often the whole list of places is pressed.
-    #[serde(default = "once")]
-    pub repeats: u32,
+    pub loads: Vec<Load>,
 }
 
-/// Which indenters press.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "expected a list of names or \"all\"")]
-pub enum Indenters {
-    /// Those named, in this order.
-    Named(Vec<String>),
-    /// The word `all`: every indenter of the sensor description.
-    All(AllWord),
-}
-
-/// The word `all`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum AllWord {
-    /// Every indenter of the sensor description.
-    All,
-}
-
-/// Where to press.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Places {
-    /// A regular grid over a rectangle, its border included, x running fastest.
-    Grid {
-        /// The rectangle.
-        #[serde(flatten)]
-        area: Area,
-        /// Places along x and y.
-        count: [u32; 2],
-    },
-    /// Places drawn evenly from a rectangle, others for each indenter.
-    Random {
-        /// The rectangle.
-        #[serde(flatten)]
-        area: Area,
-        /// Places an indenter.
-        count: u32,
-    },
-}
-
-/// A rectangle in the gel's plane.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Area {
-    /// From and to along x, mm.
-    pub x_mm: [f64; 2],
-    /// From and to along y, mm.
-    pub y_mm: [f64; 2],
-}
-
-/// One number, or two between which a press's value is drawn evenly.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "expected a number or [from, to]")]
-pub enum Range {
-    /// Always the same.
-    Fixed(f64),
-    /// Drawn between the two.
-    Between([f64; 2]),
-}
-
-impl Default for Range {
-    fn default() -> Self {
-        Self::Fixed(0.0)
-    }
-}
-
-impl Range {
-    fn ends(&self) -> [f64; 2] {
-        match *self {
-            Self::Fixed(value) => [value, value],
-            Self::Between(ends) => ends,
-        }
-    }
-
-    fn draw(&self, chance: &mut ChaCha8Rng) -> f64 {
-        let [low, high] = self.ends();
-        low + (high - low) * chance.random::<f64>()
-    }
-}
-
-fn once() -> u32 {
-    1
-}
-
-/// A protocol that does not fit the sensor.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the protocol presses with `{asked}`, the sensor's description has {known}")]
-pub struct PlanError {
-    /// The indenter that the protocol names.
-    pub asked: String,
-    /// The indenters that there are.
-    pub known: String,
+/// What tells a file of parts from a file that is one.
+#[derive(Deserialize)]
+struct Lists {
+    parts: Option<serde::de::IgnoredAny>,
+    loads: Option<serde::de::IgnoredAny>,
 }
 
 impl Protocol {
@@ -139,182 +34,75 @@ impl Protocol {
     /// # Errors
     /// The first field that is wrong, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
+        let lists = twintac_config::parse::<Lists>(file, text)?.value;
+        if lists.parts.is_none() && lists.loads.is_none() {
+            let document = twintac_config::parse::<Part>(file, text)?;
+            document.value.check(&document, "")?;
+            return Ok(Self {
+                summary: document.value.summary.clone(),
+                parts: vec![document.value],
+                loads: Vec::new(),
+            });
+        }
         let document = twintac_config::parse::<Self>(file, text)?;
-        document.value.check(&document)?;
+        let protocol = &document.value;
+        for (index, part) in protocol.parts.iter().enumerate() {
+            part.check(&document, &format!("parts[{index}]."))?;
+        }
+        for (index, load) in protocol.loads.iter().enumerate() {
+            load.check(&document, &format!("loads[{index}]."))?;
+        }
+        let parts = protocol.parts.iter().map(|part| &part.name);
+        let names: Vec<&String> = parts
+            .chain(protocol.loads.iter().map(|load| &load.name))
+            .collect();
+        for (index, name) in names.iter().enumerate() {
+            let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+            if name.is_empty() || !name.chars().all(is_plain) || names[..index].contains(name) {
+                let n_parts = protocol.parts.len();
+                let field = match index.checked_sub(n_parts) {
+                    None => format!("parts[{index}].name"),
+                    Some(load) => format!("loads[{load}].name"),
+                };
+                let problem = format!("is `{name}`");
+                let hint = "give each part and load a name of its own, of letters, digits and dashes";
+                return Err(document.error(&field, problem, hint));
+            }
+        }
         Ok(document.value)
     }
 
-    fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
-        let smallest = [
-            ("depth_mm", self.depth_mm, 1e-3),
-            ("speed_mm_per_s", self.speed_mm_per_s, 1e-3),
-            ("hold_s", self.hold_s, 0.0),
-            ("spin_rad", self.spin_rad, f64::NEG_INFINITY),
-            ("tilt_rad", self.tilt_rad, 0.0),
-            ("clearance_mm", Range::Fixed(self.clearance_mm), 0.0),
-        ];
-        for (field, range, least) in smallest {
-            let [low, high] = range.ends();
-            if low > high {
-                return Err(document.error(
-                    field,
-                    format!("runs from {low} to {high}"),
-                    "give the smaller number first",
-                ));
-            }
-            if low < least {
-                return Err(document.error(field, format!("is {low}"), format!("give {least} or more")));
-            }
-        }
-        let tilt_rad = self.tilt_rad.ends()[1];
-        if tilt_rad > 1.0 {
-            return Err(document.error(
-                "tilt_rad",
-                format!("is {tilt_rad}"),
-                "keep the tilt at 1 rad or below",
-            ));
-        }
-        if let Indenters::Named(names) = &self.indenters {
-            if names.is_empty() {
-                return Err(document.error("indenters", "names none", "name at least one, or give \"all\""));
-            }
-            for (index, name) in names.iter().enumerate() {
-                if names[..index].contains(name) {
-                    let problem = format!("is `{name}` again");
-                    return Err(document.error(
-                        &format!("indenters[{index}]"),
-                        problem,
-                        "name each indenter once",
-                    ));
-                }
-            }
-        }
-        let (area, n_places) = match &self.places {
-            Places::Grid { area, count } => (area, u64::from(count[0]) * u64::from(count[1])),
-            Places::Random { area, count } => (area, u64::from(*count)),
-        };
-        for (field, [low, high]) in [("places.x_mm", area.x_mm), ("places.y_mm", area.y_mm)] {
-            if low > high {
-                return Err(document.error(
-                    field,
-                    format!("runs from {low} to {high}"),
-                    "give the smaller number first",
-                ));
-            }
-        }
-        if n_places == 0 {
-            return Err(document.error("places.count", "is zero", "plan at least one place"));
-        }
-        if self.repeats == 0 {
-            return Err(document.error("repeats", "is zero", "press at least once"));
-        }
-        if n_places.saturating_mul(u64::from(self.repeats)) > MOST_PRESSES {
-            let problem = format!("makes {n_places} places, pressed {} times", self.repeats);
-            return Err(document.error(
-                "places.count",
-                problem,
-                format!("keep to {MOST_PRESSES} presses an indenter"),
-            ));
-        }
-        Ok(())
-    }
-
-    /// The presses, for a sensor with these indenters: for each indenter, the whole list of places as often
-    /// as it is repeated.
+    /// The presses on a sensor: for each part and each indenter, the whole list of places as often as it is repeated.
     ///
     /// # Errors
-    /// An indenter that the sensor does not have.
-    pub fn plan(&self, known: &[String], seed: u64) -> Result<Vec<PressPlan>, PlanError> {
-        let indenters = match &self.indenters {
-            Indenters::All(_) => known,
-            Indenters::Named(names) => names,
-        };
-        let mut plans = Vec::new();
-        for indenter in indenters {
-            if !known.contains(indenter) {
-                return Err(PlanError {
-                    asked: indenter.clone(),
-                    known: known.join(", "),
-                });
-            }
-            let mut number = 0;
-            for _ in 0..self.repeats {
-                for place in 0..self.n_places() {
-                    plans.push(self.press(indenter, place, number, seed));
-                    number += 1;
-                }
-            }
-        }
-        Ok(plans)
+    /// An indenter or a taxel that the sensor does not have.
+    pub fn plan(&self, target: &Target, seed: u64) -> Result<Vec<PressPlan>, PlanError> {
+        let plans: Result<Vec<_>, _> = self.parts.iter().map(|part| part.plan(target, seed)).collect();
+        Ok(plans?.concat())
     }
 
-    fn n_places(&self) -> u32 {
-        match &self.places {
-            Places::Grid { count, .. } => count[0] * count[1],
-            Places::Random { count, .. } => *count,
-        }
+    /// The weights put on a sensor, in the same order.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn loads(&self, target: &Target, seed: u64) -> Result<Vec<LoadPlan>, PlanError> {
+        let plans: Result<Vec<_>, _> = self.loads.iter().map(|load| load.plan(target, seed)).collect();
+        Ok(plans?.concat())
     }
-
-    fn press(&self, indenter: &str, place: u32, number: u32, seed: u64) -> PressPlan {
-        let name = format!("{indenter}#{number:03}");
-        let mut chance = stream(seed, &name);
-        let (x_mm, y_mm) = match &self.places {
-            Places::Grid { area, count } => {
-                let at = |[low, high]: [f64; 2], index: u32, count: u32| {
-                    let fraction = if count > 1 {
-                        f64::from(index) / f64::from(count - 1)
-                    } else {
-                        0.5
-                    };
-                    low + (high - low) * fraction
-                };
-                (
-                    at(area.x_mm, place % count[0], count[0]),
-                    at(area.y_mm, place / count[0], count[1]),
-                )
-            }
-            Places::Random { area, .. } => {
-                let x_mm = Range::Between(area.x_mm).draw(&mut chance);
-                (x_mm, Range::Between(area.y_mm).draw(&mut chance))
-            }
-        };
-        let tilt_towards = DQuat::from_rotation_z(std::f64::consts::TAU * chance.random::<f64>()) * DVec3::X;
-        let tilt = DQuat::from_axis_angle(tilt_towards, self.tilt_rad.draw(&mut chance));
-        let spin = DQuat::from_rotation_z(self.spin_rad.draw(&mut chance));
-        PressPlan {
-            name,
-            indenter: indenter.to_owned(),
-            x_mm,
-            y_mm,
-            rotation: tilt * spin,
-            clearance_mm: self.clearance_mm,
-            depth_mm: self.depth_mm.draw(&mut chance),
-            speed_mm_per_s: self.speed_mm_per_s.draw(&mut chance),
-            hold_s: self.hold_s.draw(&mut chance),
-        }
-    }
-}
-
-/// Random numbers of one press: of the seed and its name alone.
-fn stream(seed: u64, name: &str) -> ChaCha8Rng {
-    // FNV-1a.
-    let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
-        (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)
-    });
-    let mut stream = ChaCha8Rng::seed_from_u64(seed);
-    stream.set_stream(hash);
-    stream
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::target::AllWord;
+    use crate::{Indenters, Places};
 
     const DEMO: &str = include_str!("../../../protocols/demo.toml");
+    const CHARACTERIZE: &str = include_str!("../../../protocols/characterize.toml");
     const REAL_TO_SIM: &str = include_str!("../../../protocols/real2sim.toml");
 
-    fn known() -> Vec<String> {
-        [
+    fn known() -> Target {
+        let indenters = [
             "sphere-25",
             "cube",
             "x",
@@ -325,31 +113,36 @@ mod tests {
             "sphere",
         ]
         .map(str::to_owned)
-        .to_vec()
+        .to_vec();
+        let taxels = vec![("t0".to_owned(), [-4.0, 1.0]), ("t5".to_owned(), [4.0, 2.0])];
+        Target { indenters, taxels }
     }
 
     #[test]
     fn shipped_protocols_are_valid_and_stay_within_their_ranges() {
         for (file, text) in [("demo.toml", DEMO), ("real2sim.toml", REAL_TO_SIM)] {
-            let mut protocol = Protocol::parse(file, text).unwrap();
-            protocol.indenters = Indenters::All(AllWord::All);
-            let plans = protocol.plan(&known(), 3).unwrap();
-            let [shallow, deep] = protocol.depth_mm.ends();
-            assert!(plans.iter().all(|plan| (shallow..=deep).contains(&plan.depth_mm)));
-            assert!(
-                plans
-                    .iter()
-                    .all(|plan| (plan.rotation.length() - 1.0).abs() < 1e-12)
-            );
+            let protocol = Protocol::parse(file, text).unwrap();
+            for part in &protocol.parts {
+                let [shallow, deep] = part.depth_mm.ends();
+                let mut alone = Protocol {
+                    parts: vec![part.clone()],
+                    ..protocol.clone()
+                };
+                alone.parts[0].indenters = Indenters::All(AllWord::All);
+                for plan in alone.plan(&known(), 3).unwrap() {
+                    assert!((shallow..=deep).contains(&plan.depth_mm), "{plan:?}");
+                    assert!((plan.rotation.length() - 1.0).abs() < 1e-12, "{plan:?}");
+                }
+            }
         }
     }
 
     #[test]
     fn a_press_depends_on_seed_and_name_alone() {
         let mut protocol = Protocol::parse("demo.toml", DEMO).unwrap();
-        protocol.indenters = Indenters::Named(vec!["cube".into(), "ring".into()]);
+        protocol.parts[0].indenters = Indenters::Named(vec!["cube".into(), "ring".into()]);
         let both = protocol.plan(&known(), 3).unwrap();
-        protocol.indenters = Indenters::Named(vec!["ring".into()]);
+        protocol.parts[0].indenters = Indenters::Named(vec!["ring".into()]);
         let ring = protocol.plan(&known(), 3).unwrap();
         assert_eq!(both[both.len() / 2..], ring[..]);
         assert_ne!(protocol.plan(&known(), 4).unwrap(), ring);
@@ -396,6 +189,55 @@ mod tests {
             "indenters[2]"
         );
         let protocol = Protocol::parse("demo.toml", DEMO).unwrap();
-        assert!(protocol.plan(&["needle".to_owned()], 1).is_err());
+        assert!(protocol.plan(&Target::default(), 1).is_err());
+    }
+
+    #[test]
+    fn parts_and_loads_stand_in_one_file_and_have_names_of_their_own() {
+        let protocol = Protocol::parse("characterize.toml", CHARACTERIZE).unwrap();
+        assert!(protocol.parts.len() > 1 && !protocol.loads.is_empty());
+        let (plans, loads) = (protocol.plan(&known(), 3).unwrap(), protocol.loads(&known(), 3));
+        let names = plans.iter().map(|plan| &plan.name);
+        let mut names: Vec<String> = names
+            .chain(loads.unwrap().iter().map(|load| &load.name))
+            .cloned()
+            .collect();
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+        let first = &protocol.parts[0].name;
+        let wrong = CHARACTERIZE.replacen("clearance_mm = ", "clearance_mm = -", 1);
+        let error = Protocol::parse("characterize.toml", &wrong).unwrap_err();
+        assert_eq!(error.field, "parts[0].clearance_mm");
+        let again = CHARACTERIZE.replacen(
+            &format!("name = \"{}\"", protocol.parts[1].name),
+            &format!("name = \"{first}\""),
+            1,
+        );
+        assert_eq!(
+            Protocol::parse("characterize.toml", &again).unwrap_err().field,
+            "parts[1].name"
+        );
+    }
+
+    #[test]
+    fn taxels_are_pressed_from_above_where_they_are() {
+        let mut protocol = Protocol::parse("demo.toml", DEMO).unwrap();
+        protocol.parts[0].indenters = Indenters::Named(vec!["cube".into()]);
+        protocol.parts[0].places = Places::Taxels { names: None };
+        protocol.parts[0].repeats = 2;
+        let places: Vec<_> = protocol
+            .plan(&known(), 1)
+            .unwrap()
+            .iter()
+            .map(|plan| [plan.x_mm, plan.y_mm])
+            .collect();
+        assert_eq!(places, [[-4.0, 1.0], [4.0, 2.0], [-4.0, 1.0], [4.0, 2.0]]);
+        protocol.parts[0].places = Places::Taxels {
+            names: Some(vec!["t9".into()]),
+        };
+        let error = protocol.plan(&known(), 1).unwrap_err();
+        assert_eq!((error.how, error.known.as_str()), ("above", "t0, t5"));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Charts and drawings are plain data that turn into a [`Scene`]; [`svg`] and [`png`] paint it without any font of the
 //! system. [`render`] makes one self-contained page of a [`ReportData`] that other crates fill in: this crate computes
-//! no results.
+//! no results. A [`Page`] has the same look and contents of the caller's choice.
 //!
 //! ```
 //! use twintac_report::data::Headline;
@@ -30,7 +30,7 @@ mod svg;
 pub use color::{Ink, PALETTE, viridis};
 pub use data::{Provenance, ReportData};
 pub use error::ReportError;
-pub use html::{render, write};
+pub use html::{Block, Cell, Page, PageSection, render, write};
 pub use pressure_map::{
     Kernel, MapSettings, PreparedMap, PressureMap, Rectangle, Weights, leave_one_out_width_mm, pitch_mm,
     pressure_map,

@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
+    /// Find out what a sensor does from recorded presses: sensitivity, noise, hysteresis, and more.
+    Characterize(Characterize),
     /// Watch a sensor as it is touched: on a dashboard, or as rows of text.
     Stream(Stream),
     /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
@@ -203,6 +205,22 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print everything as JSON instead of the material as TOML.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Characterize {
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Recordings: presses.parquet files, MCAP logs, or patterns of them.
+    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
+    pub(crate) recordings: Vec<String>,
+    /// Folder to write characterization.json, report.html and datasheet.html to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print everything as JSON instead of a table.
     #[arg(long)]
     pub(crate) json: bool,
 }

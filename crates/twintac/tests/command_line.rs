@@ -36,6 +36,7 @@ fn help_on_each_command() {
         "simulate",
         "calibrate",
         "stream",
+        "characterize",
         "record",
         "import",
         "align",

@@ -240,7 +240,7 @@ pub(super) fn making_of(data: &ReportData) -> Option<Section> {
     Section::new("making-of", "How it was made", body)
 }
 
-fn fact_list(facts: &[Fact]) -> String {
+pub(super) fn fact_list(facts: &[Fact]) -> String {
     if facts.is_empty() {
         return String::new();
     }

@@ -23,13 +23,21 @@ pub(super) fn paragraphs(data: &ReportData) -> String {
              two figures cannot be compared directly.</p>"
         );
     }
-    if !data.warnings.is_empty() {
-        out.push_str("<aside class=\"warnings\" role=\"note\"><b>Before you trust a number</b><ul>\n");
-        for warning in &data.warnings {
-            let _ = writeln!(out, "<li>{}</li>", escape(warning));
-        }
-        out.push_str("</ul></aside>\n");
+    out.push_str(&warnings(&data.warnings));
+    out
+}
+
+/// What the reader must know first; nothing if there is nothing.
+pub(super) fn warnings(warnings: &[String]) -> String {
+    if warnings.is_empty() {
+        return String::new();
     }
+    let mut out =
+        String::from("<aside class=\"warnings\" role=\"note\"><b>Before you trust a number</b><ul>\n");
+    for warning in warnings {
+        let _ = writeln!(out, "<li>{}</li>", escape(warning));
+    }
+    out.push_str("</ul></aside>\n");
     out
 }
 

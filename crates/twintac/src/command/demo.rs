@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Demo) -> Result<()> {
     let run = Run::start(&arguments.out, sensor, source, arguments.seed, settings())?;
     write_file(&run.folder.join("protocol.toml"), PROTOCOL.as_bytes())?;
     write_file(&run.folder.join("reality.toml"), REALITY.as_bytes())?;
-    run.record(&reality, &plans)?;
+    run.record(&reality, &plans, &[])?;
     super::stages::finish(&run)
 }
 

@@ -1,6 +1,7 @@
 //! What each command does.
 
 mod calibrate;
+mod characterize;
 mod demo;
 mod files;
 mod follow;
@@ -29,6 +30,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Characterize(arguments) => characterize::run(&arguments),
         Command::Stream(arguments) => stream::run(&arguments),
         Command::Record(arguments) => record::run(&arguments),
         Command::Import(arguments) => reproduce::import(&arguments),

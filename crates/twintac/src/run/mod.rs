@@ -39,7 +39,7 @@ use crate::stage::{self, read_json, write_json};
 
 pub(crate) use evaluate::{UnseenEvaluation, evaluate_elsewhere};
 pub(crate) use metrics::Metrics;
-pub(crate) use record::{import_files, plan, plan_text};
+pub(crate) use record::{import_files, plan, plan_loads, plan_text};
 pub(crate) use settings::RunSettings;
 
 /// What a run is made from: `run.json`.

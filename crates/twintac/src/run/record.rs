@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
-use twintac_lab::{Bench, LiveTable, Reality};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use twintac_lab::{Bench, LabError, LiveTable, Reality};
 use twintac_log::ReadOptions;
-use twintac_protocol::{PressPlan, Protocol};
+use twintac_protocol::{LoadPlan, PressPlan, Protocol, Target};
 use twintac_recording::{Import, ImportSummary, Recording};
+use twintac_sensor::Sensor;
 
 use super::Run;
 use crate::progress;
@@ -29,17 +32,37 @@ impl Run {
         })
     }
 
-    /// Records planned presses on the emulated bench, each kept as soon as it is done.
-    pub(crate) fn record(&self, reality: &Reality, plans: &[PressPlan]) -> Result<()> {
+    /// Records planned presses and weights on the emulated bench, each kept as soon as it is done.
+    pub(crate) fn record(&self, reality: &Reality, plans: &[PressPlan], loads: &[LoadPlan]) -> Result<()> {
         let inputs = Inputs::new()?
             .settings("reality", reality)?
             .settings("plans", &plans)?
+            .settings("loads", &loads)?
             .file(&self.folder.join("sensor.toml"))?;
         self.run_stage("recordings", inputs, |folder| {
             let bench = Bench::new(Arc::clone(&self.sensor.sensor), reality.clone());
-            let recording = record_on_bench(&bench, plans, &folder.join("presses"))?;
+            let keep = folder.join("presses");
+            let mut presses = kept(
+                "recording",
+                plans,
+                |plan| &plan.name,
+                &keep,
+                |plan| bench.press(plan),
+            )?;
+            presses.extend(kept(
+                "weighing",
+                loads,
+                |load| &load.name,
+                &keep,
+                |load| bench.load(load),
+            )?);
+            let recording = bench.recording(presses);
             recording.write_parquet(&folder.join("presses.parquet"))?;
-            write_json(&folder.join("plans.json"), &plans)
+            write_json(&folder.join("plans.json"), &plans)?;
+            if loads.is_empty() {
+                return Ok(());
+            }
+            write_json(&folder.join("loads.json"), &loads)
         })
     }
 
@@ -54,19 +77,19 @@ impl Run {
             .settings("reality", reality)?
             .settings("plans", &plans)?
             .file(&self.folder.join("sensor.toml"))?;
-        let file = |folder: &Path, plan: &PressPlan| folder.join(format!("{}.json", file_stem(plan)));
         self.run_stage("lab", inputs, |folder| {
-            for_each_plan("computing", plans, |plan| {
-                let path = file(folder, plan);
-                if read_json::<LiveTable>(&path).is_err() {
-                    write_json(&path, &lab.live_table(plan)?)?;
-                }
-                Ok(())
-            })
+            kept(
+                "computing",
+                plans,
+                |plan| &plan.name,
+                folder,
+                |plan| lab.live_table(plan),
+            )
             .map(|_| ())
         })?;
         let folder = self.stage("lab");
-        plans.iter().map(|plan| read_json(&file(&folder, plan))).collect()
+        let table = |plan: &PressPlan| read_json(&kept_in(&folder, &plan.name));
+        plans.iter().map(table).collect()
     }
 
     /// Makes the run's recordings of the logs of its presses, as far as they are done.
@@ -130,63 +153,69 @@ pub(crate) fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recordin
     Ok(import.read_all(files)?)
 }
 
-/// Performs presses over all cores; those that `folder` already holds are not repeated.
-pub(crate) fn record_on_bench(bench: &Bench, plans: &[PressPlan], folder: &Path) -> Result<Recording> {
-    let presses = for_each_plan("recording", plans, |plan| {
-        let path = folder.join(format!("{}.json", file_stem(plan)));
-        if let Ok(press) = read_json(&path) {
-            return Ok(press);
-        }
-        let press = bench.press(plan)?;
-        write_json(&path, &press)?;
-        Ok(press)
-    })?;
-    Ok(bench.recording(presses))
-}
-
-/// Does something for each plan over all cores, with a bar.
-fn for_each_plan<T: Send>(
-    stage: &str,
-    plans: &[PressPlan],
-    work: impl Fn(&PressPlan) -> Result<T> + Sync,
+/// Makes something of each of `plans` over all cores, with a bar; what `folder` already holds is not made again.
+fn kept<P: Sync, T: Serialize + DeserializeOwned + Send>(
+    what: &'static str,
+    plans: &[P],
+    name: impl Fn(&P) -> &String + Sync,
+    folder: &Path,
+    make: impl Fn(&P) -> Result<T, LabError> + Sync,
 ) -> Result<Vec<T>> {
-    let bar = progress::bar(stage, plans.len() as u64);
-    let done = plans
+    let bar = progress::bar(what, plans.len() as u64);
+    let made = plans
         .par_iter()
         .with_max_len(1)
-        .map(|plan| {
-            let result = work(plan);
+        .map(|plan| -> Result<T> {
+            let path = kept_in(folder, name(plan));
+            let made = match read_json(&path) {
+                Ok(made) => made,
+                Err(_) => {
+                    let made = make(plan)?;
+                    write_json(&path, &made)?;
+                    made
+                }
+            };
             bar.inc(1);
-            result
+            Ok(made)
         })
         .collect();
     bar.finish_and_clear();
-    done
+    made
 }
 
-/// A press's name, fit for files.
-fn file_stem(plan: &PressPlan) -> String {
-    plan.name.replace('#', "-")
+fn kept_in(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{}.json", name.replace('#', "-")))
 }
 
 /// The presses that a protocol plans for a sensor.
-pub(crate) fn plan(protocol: &Path, sensor: &twintac_sensor::Sensor, seed: u64) -> Result<Vec<PressPlan>> {
-    let text =
-        std::fs::read_to_string(protocol).with_context(|| format!("reading {}", protocol.display()))?;
-    plan_text(&protocol.display().to_string(), &text, sensor, seed)
+pub(crate) fn plan(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
+    let protocol = read_protocol(protocol)?;
+    Ok(protocol.plan(&target(sensor), seed)?)
+}
+
+/// The weights that a protocol puts on a sensor.
+pub(crate) fn plan_loads(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<LoadPlan>> {
+    let protocol = read_protocol(protocol)?;
+    Ok(protocol.loads(&target(sensor), seed)?)
+}
+
+fn read_protocol(path: &Path) -> Result<Protocol> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
+    Ok(Protocol::parse(&path.display().to_string(), &text)?)
 }
 
 /// The presses that a protocol's text plans for a sensor.
-pub(crate) fn plan_text(
-    file: &str,
-    text: &str,
-    sensor: &twintac_sensor::Sensor,
-    seed: u64,
-) -> Result<Vec<PressPlan>> {
-    let names: Vec<String> = sensor
-        .indenters
-        .iter()
-        .map(|indenter| indenter.name.clone())
-        .collect();
-    Ok(Protocol::parse(file, text)?.plan(&names, seed)?)
+pub(crate) fn plan_text(file: &str, text: &str, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
+    Ok(Protocol::parse(file, text)?.plan(&target(sensor), seed)?)
+}
+
+fn target(sensor: &Sensor) -> Target {
+    let indenters = sensor.indenters.iter().map(|indenter| indenter.name.clone());
+    let taxels = sensor.taxels.iter();
+    Target {
+        indenters: indenters.collect(),
+        taxels: taxels
+            .map(|taxel| (taxel.name.clone(), [taxel.position_mm.x, taxel.position_mm.y]))
+            .collect(),
+    }
 }

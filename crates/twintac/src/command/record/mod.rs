@@ -21,7 +21,7 @@ use twintac_rig::SensorLimits;
 use super::demo::{REALITY, SENSOR};
 use crate::arguments::Record;
 use crate::progress;
-use crate::run::{Run, RunSettings, plan};
+use crate::run::{Run, RunSettings, plan, plan_loads};
 use crate::sensor_file::{SensorFile, read_sensor};
 use bench::OpenBench;
 
@@ -56,6 +56,7 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     };
     let seed = arguments.start.seed;
     let plans = plan(&arguments.protocol, &sensor.sensor, seed)?;
+    let loads = plan_loads(&arguments.protocol, &sensor.sensor, seed)?;
     let reality = arguments.lab.as_ref().map(|file| read_reality(file.as_deref()));
     let reality = reality.transpose()?;
     let out = match &arguments.out {
@@ -63,9 +64,15 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
         None => Path::new("runs").join(arguments.protocol.file_stem().unwrap_or_default()),
     };
     if let (Some(reality), true) = (&reality, arguments.at_once) {
-        let source = format!("{} presses on the emulated bench", plans.len());
+        let source = format!("{} presses on the emulated bench", plans.len() + loads.len());
         let settings = RunSettings::of(&arguments.start)?;
-        return Run::start(&out, sensor, source, seed, settings)?.record(reality, &plans);
+        return Run::start(&out, sensor, source, seed, settings)?.record(reality, &plans, &loads);
+    }
+    if !loads.is_empty() {
+        say(&format!(
+            "{} loads of the protocol are left out: no robot puts weights on",
+            loads.len()
+        ));
     }
     let settings = press_settings(arguments.bench.as_deref())?;
     if arguments.dry_run {

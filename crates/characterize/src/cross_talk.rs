@@ -1,0 +1,112 @@
+//! Cross-talk: what other taxels read while one is pressed.
+//!
+//! The reading of each taxel over that of the pressed one, at the same force and the same time, in slow loadings. In a gel most of it is no fault: a
+//! load spreads. It is what a map between taxels is made of.
+
+use serde::Serialize;
+
+use crate::recorded::{Recorded, above};
+use crate::statistics::{between, binned, mean};
+use crate::{Finding, Options};
+
+/// Steps of force that readings are averaged in.
+const BINS: usize = 25;
+
+/// What all taxels read while each is pressed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CrossTalk {
+    /// The force at which they are compared: the largest that all slow presses above taxels reach, N.
+    pub force_n: f64,
+    /// Names of the pressed taxels: the rows.
+    pub pressed: Vec<String>,
+    /// Names of the taxels: the columns.
+    pub taxels: Vec<String>,
+    /// Reading over that of the pressed taxel, %; rows, then columns. Mean over presses.
+    pub percent: Vec<Vec<f64>>,
+    /// The largest but for the pressed taxels themselves, %.
+    pub largest_percent: f64,
+}
+
+pub(crate) fn cross_talk(
+    recorded: &[Recorded<'_>],
+    taxels: &[String],
+    options: &Options,
+) -> Finding<CrossTalk> {
+    let slow = |taxel: usize| above(recorded, taxel).filter(|press| press.is_slow(options));
+    let peaks_n = (0..taxels.len()).flat_map(slow).map(Recorded::peak_n);
+    let force_n = peaks_n.fold(f64::INFINITY, f64::min) * (1.0 - 1.0 / BINS as f64);
+    let (mut pressed, mut percent) = (Vec::new(), Vec::new());
+    for (taxel, name) in taxels.iter().enumerate() {
+        let rows: Vec<Vec<f64>> = slow(taxel)
+            .filter_map(|press| row(press, taxel, taxels.len(), force_n))
+            .collect();
+        if rows.is_empty() {
+            continue;
+        }
+        let column = |other: usize| rows.iter().map(|row| row[other]).sum::<f64>() / rows.len() as f64;
+        pressed.push(name.clone());
+        percent.push((0..taxels.len()).map(column).collect::<Vec<f64>>());
+    }
+    let others = percent.iter().zip(&pressed).flat_map(|(row, name)| {
+        row.iter()
+            .zip(taxels)
+            .filter(move |(_, other)| *other != name)
+            .map(|(percent, _)| *percent)
+    });
+    let largest_percent = others.fold(f64::NEG_INFINITY, f64::max);
+    if pressed.is_empty() || taxels.len() < 2 {
+        return Finding::NotGiven("it takes slow presses above a taxel, and another taxel".to_owned());
+    }
+    Finding::Found(CrossTalk {
+        force_n,
+        pressed,
+        taxels: taxels.to_vec(),
+        percent,
+        largest_percent,
+    })
+}
+
+fn row(press: &Recorded<'_>, taxel: usize, n_taxels: usize, force_n: f64) -> Option<Vec<f64>> {
+    let reading_kpa = |other: usize| {
+        let response = binned(&press.points(other, &press.up()), press.peak_n(), BINS);
+        between(&response, force_n)
+    };
+    let pressed_kpa = reading_kpa(taxel)?;
+    (0..n_taxels)
+        .map(|other| Some(100.0 * reading_kpa(other)? / pressed_kpa))
+        .collect()
+}
+
+/// Mean over all taxels that were not pressed, %.
+impl CrossTalk {
+    /// Mean over all pairs of a pressed taxel and another, %.
+    #[must_use]
+    pub fn mean_percent(&self) -> Option<f64> {
+        let rows = self.percent.iter().zip(&self.pressed);
+        let others: Vec<f64> = rows
+            .flat_map(|(row, name)| {
+                row.iter()
+                    .zip(&self.taxels)
+                    .filter(move |(_, other)| *other != name)
+            })
+            .map(|(percent, _)| *percent)
+            .collect();
+        mean(&others)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{Shape, all, options, press};
+
+    #[test]
+    fn the_neighbour_reads_its_quarter() {
+        let presses = [press(&Shape::default())];
+        let finding = cross_talk(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let found = finding.found().unwrap();
+        assert_eq!(found.pressed, ["a"]);
+        assert!((found.percent[0][0] - 100.0).abs() < 1e-9 && (found.percent[0][1] - 25.0).abs() < 1e-9);
+        assert!((found.largest_percent - 25.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,43 @@
+//! What a sensor does, from recorded presses: noise, detection limit, sensitivity, linearity, range, hysteresis, rise time, creep, cross-talk,
+//! repeatability and drift, each by the definition that stands in its file.
+//!
+//! [`characterize`] picks for each figure the presses that are suited for it, by what they are and not by what they are called: slow ones above a
+//! taxel for sensitivity, fast ones for rise time, long ones for creep, weights for the smallest force. What the recordings do not give is
+//! a [`Finding::NotGiven`] that says why. [`write_pages`] makes the report and the data sheet.
+
+mod characterization;
+mod creep;
+mod cross_talk;
+mod detection;
+mod drift;
+mod error;
+mod finding;
+mod hysteresis;
+mod noise;
+mod options;
+mod page;
+mod phases;
+mod range;
+mod recorded;
+mod repeatability;
+mod rise;
+mod sensitivity;
+mod statistics;
+#[cfg(test)]
+mod synthetic;
+
+pub use characterization::{Characterization, characterize};
+pub use creep::Creep;
+pub use cross_talk::CrossTalk;
+pub use detection::{DetectionLimit, Step};
+pub use drift::{TemperatureDrift, UnloadedCourse, ZeroReturn};
+pub use error::CharacterizeError;
+pub use finding::Finding;
+pub use hysteresis::Hysteresis;
+pub use noise::Noise;
+pub use options::Options;
+pub use page::{data_sheet, report, write_pages};
+pub use range::CoveredRange;
+pub use repeatability::Repeatability;
+pub use rise::RiseTime;
+pub use sensitivity::{Overall, Sensitivity};

@@ -1,0 +1,113 @@
+//! What taxels read while nothing touches the gel.
+
+use serde::Serialize;
+
+use crate::recorded::Recorded;
+use crate::statistics::{deviation, mean};
+use crate::{Finding, Options};
+
+/// Fewest unloaded frames of a press that count.
+const FEWEST_FRAMES: usize = 8;
+
+/// A taxel's noise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Noise {
+    /// The taxel's name.
+    pub taxel: String,
+    /// Noise floor: standard deviation of unloaded readings about the mean of their press, all presses pooled, kPa.
+    pub deviation_kpa: f64,
+    /// Standard deviation of the change of the mean from one averaging window to the next, unloaded, kPa: noise that averaging leaves, and drift.
+    pub window_deviation_kpa: Option<f64>,
+    /// Pairs of windows that it was found from.
+    pub n_windows: usize,
+    /// Unloaded readings.
+    pub n_readings: usize,
+}
+
+pub(crate) fn noise(recorded: &[Recorded<'_>], taxels: &[String], options: &Options) -> Finding<Vec<Noise>> {
+    let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
+        let (mut squares, mut freedom, mut n_readings) = (0.0, 0, 0);
+        let mut changes_kpa = Vec::new();
+        for press in recorded {
+            let rest = press.readings_kpa(taxel, &press.phases.rest);
+            if let Some(deviation_kpa) = deviation(&rest).filter(|_| rest.len() >= FEWEST_FRAMES) {
+                squares += deviation_kpa.powi(2) * (rest.len() - 1) as f64;
+                freedom += rest.len() - 1;
+                n_readings += rest.len();
+            }
+            changes_kpa.extend(window_changes_kpa(press, taxel, options.window_s));
+        }
+        (freedom > 0).then(|| Noise {
+            taxel: name.clone(),
+            deviation_kpa: (squares / freedom as f64).sqrt(),
+            window_deviation_kpa: (changes_kpa.len() >= FEWEST_FRAMES)
+                .then(|| root_mean_square(&changes_kpa)),
+            n_windows: changes_kpa.len(),
+            n_readings,
+        })
+    });
+    Finding::<()>::of_list(
+        found.collect(),
+        "no press begins with eight or more unloaded frames",
+    )
+}
+
+/// Changes of the mean between neighbouring windows before a press. Their true mean is zero.
+fn window_changes_kpa(press: &Recorded<'_>, taxel: usize, window_s: f64) -> Vec<f64> {
+    let rest = press.phases.rest.clone();
+    let times_s = &press.press.time_s[rest.clone()];
+    let Some(first_s) = times_s.first() else {
+        return Vec::new();
+    };
+    let end_s = times_s[times_s.len() - 1];
+    let n_windows = ((end_s - first_s) / window_s + 1e-9) as usize;
+    let means: Option<Vec<f64>> = (0..n_windows)
+        .map(|window| {
+            let edge = |number: usize| {
+                let at_s = first_s + number as f64 * window_s;
+                rest.start + times_s.partition_point(|time_s| *time_s < at_s)
+            };
+            mean(&press.readings_kpa(taxel, &(edge(window)..edge(window + 1))))
+        })
+        .collect();
+    let means = means.unwrap_or_default();
+    // Pairs that share no window are independent, but for the drift.
+    means.chunks_exact(2).map(|pair| pair[1] - pair[0]).collect()
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{Shape, all, options, press};
+
+    #[test]
+    fn known_noise_is_found() {
+        let shape = Shape {
+            noise_kpa: 0.02,
+            rest_s: 10.0,
+            ..Shape::default()
+        };
+        let presses = [press(&shape), press(&shape)];
+        let names = ["a".to_owned(), "b".to_owned()];
+        let finding = noise(&all(&presses), &names, &options());
+        let found = finding.found().unwrap();
+        assert_eq!(found.len(), 2);
+        assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
+        assert_eq!(found[0].n_readings, 2 * 250);
+    }
+
+    #[test]
+    fn no_rest_is_said() {
+        let shape = Shape {
+            rest_s: 0.1,
+            ..Shape::default()
+        };
+        let presses = [press(&shape)];
+        let finding = noise(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        assert!(finding.why_not().unwrap().contains("unloaded"));
+    }
+}

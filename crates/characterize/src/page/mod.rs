@@ -1,0 +1,73 @@
+//! The report and the data sheet.
+
+mod figures;
+mod report;
+mod sheet;
+mod words;
+
+use std::path::Path;
+
+use twintac_recording::{Provenance, Recording};
+use twintac_sensor::Sensor;
+
+use crate::recorded::Recorded;
+use crate::{Characterization, CharacterizeError};
+
+pub use report::report;
+pub use sheet::data_sheet;
+
+/// Writes `report.html` and `datasheet.html` into a folder.
+///
+/// # Errors
+/// A folder or a file that cannot be written.
+pub fn write_pages(
+    folder: &Path,
+    found: &Characterization,
+    recording: &Recording,
+    sensor: &Sensor,
+) -> Result<(), CharacterizeError> {
+    std::fs::create_dir_all(folder).map_err(|source| CharacterizeError::Folder {
+        path: folder.to_owned(),
+        source,
+    })?;
+    report(found, recording, sensor).write(&folder.join("report.html"))?;
+    data_sheet(found, recording, sensor).write(&folder.join("datasheet.html"))?;
+    Ok(())
+}
+
+fn badge(provenance: Provenance) -> twintac_report::Provenance {
+    match provenance {
+        Provenance::Real => twintac_report::Provenance::Real,
+        Provenance::Emulated => twintac_report::Provenance::Emulated,
+        Provenance::Simulated => twintac_report::Provenance::Simulated,
+    }
+}
+
+/// What the reader must know first.
+fn warnings(found: &Characterization) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if found.provenance != Provenance::Real {
+        warnings.push(format!(
+            "All figures are {}: they say how the analysis works, and nothing about a physical sensor.",
+            found.provenance
+        ));
+    }
+    let n_left_out = found.n_presses - found.n_used;
+    if n_left_out > 0 {
+        warnings.push(format!(
+            "{n_left_out} of {} presses are left out: their force is not known, or they do not touch.",
+            found.n_presses
+        ));
+    }
+    if let Some(range) = found.range.found().filter(|range| range.n_invalid > 0) {
+        warnings.push(format!(
+            "{} readings under load are not valid (at an end of the barometers’ range, or missing) and left out.",
+            range.n_invalid
+        ));
+    }
+    warnings
+}
+
+fn recorded<'a>(found: &Characterization, recording: &'a Recording, sensor: &Sensor) -> Vec<Recorded<'a>> {
+    Recorded::all(recording, sensor, &found.options)
+}

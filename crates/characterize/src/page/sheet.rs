@@ -1,0 +1,246 @@
+//! The data sheet: one page.
+
+use twintac_recording::Recording;
+use twintac_report::{Block, Cell, Page, PageSection};
+use twintac_sensor::Sensor;
+
+use super::figures;
+use super::words::{NOT_GIVEN, if_found, number, or_not, span};
+use crate::Characterization;
+
+/// The figures of a characterization on one page.
+#[must_use]
+pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
+    let recorded = super::recorded(found, recording, sensor);
+    let plots = [
+        figures::smallest_step(found, &recorded),
+        figures::largest_force(found, recording, &recorded),
+        figures::responses(found),
+    ];
+    let plots: Vec<_> = plots.into_iter().flatten().collect();
+    let section = |id, title, blocks| PageSection { id, title, blocks };
+    let head = ["", "value", "condition"].map(str::to_owned).to_vec();
+    let rows = rows(found, sensor);
+    let rows = rows
+        .into_iter()
+        .map(|row| row.map(Cell::Words).to_vec())
+        .collect();
+    let mut sections = vec![section(
+        "figures",
+        "Characteristics",
+        vec![Block::Table(String::new(), head, rows)],
+    )];
+    if !plots.is_empty() {
+        sections.push(section(
+            "plots",
+            "Range and sensitivity",
+            vec![Block::Figures(plots)],
+        ));
+    }
+    Page {
+        kind: "Data sheet".into(),
+        title: found.sensor.clone(),
+        provenance: super::badge(found.provenance),
+        lead: sensor.summary.clone(),
+        warnings: super::warnings(found),
+        sections,
+        is_sheet: true,
+    }
+}
+
+impl Characterization {
+    /// Name, value and condition of each figure, as text.
+    #[must_use]
+    pub fn rows(&self, sensor: &Sensor) -> Vec<[String; 3]> {
+        rows(self, sensor)
+    }
+}
+
+fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
+    let options = &found.options;
+    let sigmas = options.sigmas;
+    let row = |name: &str, value: String, condition: String| {
+        let is_missing = value.starts_with(NOT_GIVEN);
+        [
+            name.to_owned(),
+            value,
+            if is_missing { String::new() } else { condition },
+        ]
+    };
+    let readout = &sensor.readout;
+    vec![
+        row(
+            "Taxels",
+            sensor.taxels.len().to_string(),
+            format!("indenters: {}", found.indenters.join(", ")),
+        ),
+        row(
+            "Barometers’ range",
+            format!("{} to {} kPa absolute", readout.min_kpa, readout.max_kpa),
+            "from the sensor’s description, not measured here".into(),
+        ),
+        row(
+            "Resolution and rate",
+            format!("{} kPa, {} Hz", readout.resolution_kpa, readout.rate_hz),
+            "from the sensor’s description, not measured here".into(),
+        ),
+        row(
+            "Sensitivity",
+            or_not(&found.overall, |overall| {
+                format!("{} kPa/N", number(overall.mean_kpa_per_n, 3))
+            }),
+            if_found(&found.sensitivity, |taxels| {
+                let slopes = taxels.iter().map(|taxel| taxel.sensitivity_kpa_per_n);
+                format!(
+                    "mean of {} taxels, which have {} kPa/N",
+                    taxels.len(),
+                    span(slopes, 3)
+                )
+            }),
+        ),
+        row(
+            "Linear range",
+            or_not(&found.sensitivity, |taxels| {
+                let least_n = taxels
+                    .iter()
+                    .map(|taxel| taxel.linear_to_n)
+                    .fold(f64::INFINITY, f64::min);
+                format!("0 to {} N", number(least_n, 2))
+            }),
+            format!(
+                "within {} % of the range’s end from a least-squares line, all taxels",
+                options.linear_percent
+            ),
+        ),
+        row(
+            "Largest force in the data",
+            or_not(&found.range, |range| {
+                format!(
+                    "{} N, {} kPa",
+                    number(range.force_n, 3),
+                    number(range.reading_kpa, 3)
+                )
+            }),
+            if_found(&found.range, |range| {
+                format!("taxel {} reads most; nothing is known beyond", range.taxel)
+            }),
+        ),
+        row(
+            "Noise floor",
+            or_not(&found.noise, |taxels| {
+                format!("{} kPa", span(taxels.iter().map(|taxel| taxel.deviation_kpa), 2))
+            }),
+            "standard deviation of single unloaded readings, by taxel".into(),
+        ),
+        row(
+            "Detection limit",
+            or_not(&found.detection_limit, |taxels| {
+                format!("{} N", span(taxels.iter().map(|taxel| taxel.single_reading_n), 2))
+            }),
+            format!("{sigmas} σ of a single reading over the sensitivity, by taxel"),
+        ),
+        row(
+            "Smallest step detected",
+            or_not(&found.steps, |steps| {
+                let detected = steps.iter().filter(|step| step.is_detected);
+                let smallest = detected.min_by(|a, b| a.force_n.total_cmp(&b.force_n));
+                smallest.map_or("none".to_owned(), |step| {
+                    format!(
+                        "{} N (z = {})",
+                        number(step.force_n, 2),
+                        number(step.z_averaged, 2)
+                    )
+                })
+            }),
+            format!("known weight, mean over {} s, z ≥ {sigmas}", options.window_s),
+        ),
+        row(
+            "Dynamic range",
+            or_not(&found.range, |range| {
+                range
+                    .dynamic_range_db
+                    .map_or(NOT_GIVEN.to_owned(), |db| format!("{} dB", number(db, 2)))
+            }),
+            "largest force in the data over the smallest detection limit".into(),
+        ),
+        row(
+            "Hysteresis",
+            or_not(&found.hysteresis, |taxels| {
+                format!(
+                    "{} % of full scale",
+                    span(taxels.iter().map(|taxel| taxel.percent), 2)
+                )
+            }),
+            "largest difference of unloading from loading at the same force, by taxel".into(),
+        ),
+        row(
+            "Repeatability",
+            or_not(&found.repeatability, |taxels| {
+                format!(
+                    "{} % of full scale",
+                    span(taxels.iter().map(|taxel| taxel.percent), 2)
+                )
+            }),
+            "largest standard deviation at the same force, by taxel".into(),
+        ),
+        row(
+            "Rise time (10–90 %)",
+            or_not(&found.rise_time, |rise| {
+                let shorter = if rise.is_as_fast_as_force { "at most " } else { "" };
+                format!("{shorter}{} s", number(rise.rise_s, 2))
+            }),
+            if_found(&found.rise_time, |rise| {
+                let (force_s, frame_s) = (number(rise.force_rise_s, 2), number(rise.frame_s, 2));
+                let word = if rise.is_as_fast_as_force {
+                    "as fast as the force"
+                } else {
+                    "slower than the force"
+                };
+                format!("{word}, which takes {force_s} s; a frame takes {frame_s} s")
+            }),
+        ),
+        row(
+            "Creep",
+            or_not(&found.creep, |holds| {
+                format!("{} %", span(holds.iter().map(|hold| hold.percent), 2))
+            }),
+            if_found(&found.creep, |holds| {
+                let [from_s, to_s] = holds[0].between_s;
+                format!(
+                    "reading over force, from {} to {} s of a hold",
+                    number(from_s, 2),
+                    number(to_s, 3)
+                )
+            }),
+        ),
+        row(
+            "Cross-talk",
+            or_not(&found.cross_talk, |talk| {
+                format!("at most {} %", number(talk.largest_percent, 2))
+            }),
+            if_found(&found.cross_talk, |talk| {
+                format!("of the pressed taxel’s reading, at {} N", number(talk.force_n, 2))
+            }),
+        ),
+        row(
+            "Return to zero",
+            or_not(&found.zero_return, |taxels| {
+                format!("{} kPa", span(taxels.iter().map(|taxel| taxel.rms_kpa), 2))
+            }),
+            "root mean square over presses, by taxel".into(),
+        ),
+        row(
+            "Drift with temperature",
+            or_not(&found.temperature_drift, |taxels| {
+                format!(
+                    "{} kPa/K",
+                    span(taxels.iter().map(|taxel| taxel.coefficient_kpa_per_k), 2)
+                )
+            }),
+            found
+                .temperature_drift
+                .found()
+                .map_or(String::new(), |_| "unloaded, by taxel".into()),
+        ),
+    ]
+}

@@ -1,0 +1,59 @@
+//! Figures as text.
+
+use crate::Finding;
+
+/// Begins the words of a figure that was not found.
+pub(super) const NOT_GIVEN: &str = "not given";
+
+/// A number with so many significant digits, and a true minus sign.
+pub(super) fn number(value: f64, digits: i32) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let power = value.abs().log10().floor() as i32;
+    let scale = 10f64.powi(digits - 1 - power);
+    let rounded = (value * scale).round() / scale;
+    let decimals = (digits - 1 - power).max(0) as usize;
+    format!("{rounded:.decimals$}").replace('-', "−")
+}
+
+/// The smallest and the largest as `a to b`, or one of them where they look alike.
+pub(super) fn span(values: impl Iterator<Item = f64> + Clone, digits: i32) -> String {
+    let low = number(values.clone().fold(f64::INFINITY, f64::min), digits);
+    let high = number(values.fold(f64::NEG_INFINITY, f64::max), digits);
+    if low == high {
+        low
+    } else {
+        format!("{low} to {high}")
+    }
+}
+
+/// The finding in words; a missing one says so.
+pub(super) fn or_not<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) -> String {
+    match finding {
+        Finding::Found(figure) => words(figure),
+        Finding::NotGiven(why) => format!("{NOT_GIVEN}: {why}"),
+    }
+}
+
+/// The finding in words; nothing of a missing one.
+pub(super) fn if_found<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String) -> String {
+    finding.found().map_or(String::new(), words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_digits() {
+        assert_eq!(number(7.2412, 3), "7.24");
+        assert_eq!(number(0.006_78, 2), "0.0068");
+        assert_eq!(number(-212.4, 3), "−212");
+        assert_eq!(number(9.996, 3), "10.00");
+        assert_eq!(span([1.0, 2.0, 1.5].into_iter(), 2), "1.0 to 2.0");
+    }
+}

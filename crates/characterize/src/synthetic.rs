@@ -1,0 +1,111 @@
+//! Presses of known answer, for tests.
+
+use glam::DVec3;
+use twintac_recording::{Control, Press};
+use twintac_shape::Pose;
+
+use crate::recorded::Recorded;
+use crate::{Options, phases::Phases};
+
+/// A trapezoid of force on one taxel, a second after the start; a second taxel feels a part of it.
+pub(crate) struct Shape {
+    pub(crate) peak_n: f64,
+    pub(crate) loading_s: f64,
+    pub(crate) hold_s: f64,
+    pub(crate) rate_hz: f64,
+    pub(crate) control: Control,
+    /// Standard deviation of both taxels' readings, kPa.
+    pub(crate) noise_kpa: f64,
+    pub(crate) rest_s: f64,
+    /// What the taxel reads under a force, N, in a phase (0 loading, 1 hold, 2 unloading), so long, s, into it, kPa.
+    pub(crate) reads: fn(f64, u32, f64) -> f64,
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Self {
+            peak_n: 2.0,
+            loading_s: 2.0,
+            hold_s: 0.0,
+            rate_hz: 50.0,
+            control: Control::Pose,
+            noise_kpa: 0.0,
+            rest_s: 1.0,
+            reads: |force_n, _, _| 7.0 * force_n,
+        }
+    }
+}
+
+/// Evenly spread numbers of mean 0 and deviation 1 that look like noise: fractions of a multiple of the golden ratio.
+pub(crate) fn noise(seed: f64, index: usize) -> f64 {
+    (((index as f64 + seed) * 0.618_033_988_749_895).fract() - 0.5) * 12.0_f64.sqrt()
+}
+
+pub(crate) fn press(shape: &Shape) -> Press {
+    let total_s = 2.0 * shape.rest_s + 2.0 * shape.loading_s + shape.hold_s;
+    let n = (total_s * shape.rate_hz).round() as usize + 1;
+    let mut made = Press {
+        name: "ball#0".into(),
+        file: "synthetic".into(),
+        indenter: "ball".into(),
+        control: shape.control,
+        time_s: Vec::new(),
+        gel_from_indenter: Vec::new(),
+        force_n: Some(Vec::new()),
+        taxels_kpa: Vec::new(),
+        taxels_raw: Vec::new(),
+        valid: vec![vec![true; 2]; n],
+    };
+    for frame in 0..n {
+        let time_s = frame as f64 / shape.rate_hz;
+        let since_s = time_s - shape.rest_s;
+        let (phase, into_s) = if since_s < shape.loading_s {
+            (0, since_s)
+        } else if since_s <= shape.loading_s + shape.hold_s {
+            (1, since_s - shape.loading_s)
+        } else {
+            (2, since_s - shape.loading_s - shape.hold_s)
+        };
+        let part = match phase {
+            0 => since_s / shape.loading_s,
+            1 => 1.0,
+            _ => 1.0 - into_s / shape.loading_s,
+        };
+        let force_n = shape.peak_n * part.clamp(0.0, 1.0);
+        let reading_kpa = (shape.reads)(force_n, phase, into_s);
+        let readings = vec![
+            reading_kpa + shape.noise_kpa * noise(0.0, frame),
+            0.25 * reading_kpa + shape.noise_kpa * noise(0.3, frame),
+        ];
+        made.time_s.push(time_s);
+        made.gel_from_indenter.push(Pose {
+            position_mm: DVec3::new(0.0, 0.0, 8.0 - part.max(-0.5)),
+            ..Pose::IDENTITY
+        });
+        if let Some(forces_n) = &mut made.force_n {
+            forces_n.push(force_n);
+        }
+        made.taxels_raw
+            .push(readings.iter().map(|kpa| kpa + 101.0).collect());
+        made.taxels_kpa.push(readings);
+    }
+    made
+}
+
+/// A press above taxel 0 of two, cut into phases.
+pub(crate) fn recorded(press: &Press) -> Recorded<'_> {
+    Recorded {
+        press,
+        phases: Phases::of(press).unwrap(),
+        taxel: Some(0),
+    }
+}
+
+/// As [`recorded`], of many.
+pub(crate) fn all(presses: &[Press]) -> Vec<Recorded<'_>> {
+    presses.iter().map(recorded).collect()
+}
+
+pub(crate) fn options() -> Options {
+    Options::default()
+}

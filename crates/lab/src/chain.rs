@@ -1,0 +1,46 @@
+//! The read-out chain: what becomes of the pressures at the ports before they are recorded.
+
+use crate::bench::{ATMOSPHERE_KPA, Bench};
+use crate::imperfect::Chance;
+
+/// The read-out of one press: its offsets walk from where the cast put them.
+pub(crate) struct Chain<'a> {
+    bench: &'a Bench,
+    walk_kpa: Vec<f64>,
+    previous_s: f64,
+}
+
+impl<'a> Chain<'a> {
+    pub(crate) fn new(bench: &'a Bench) -> Self {
+        Self {
+            bench,
+            walk_kpa: vec![0.0; bench.gains.len()],
+            previous_s: 0.0,
+        }
+    }
+
+    /// The time stamp, s, and the readings, kPa, of the frame that is due at a time. `port_kpa` is the pressure at a taxel's port at a time.
+    pub(crate) fn read(
+        &mut self,
+        scheduled_s: f64,
+        chance: &mut Chance,
+        port_kpa: impl Fn(usize, f64) -> f64,
+    ) -> (f64, Vec<f64>) {
+        let readout = &self.bench.reality().readout;
+        let jitter_s = chance.normal(readout.jitter_s);
+        let time_s = scheduled_s + jitter_s.clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
+        let step_s = (time_s - self.previous_s).max(0.0);
+        self.previous_s = time_s;
+        let readings_kpa = (0..self.walk_kpa.len())
+            .map(|taxel| {
+                let late_s = readout.lag_s + taxel as f64 * readout.lag_per_taxel_s;
+                self.walk_kpa[taxel] += chance.normal(readout.drift_kpa_per_sqrt_s * step_s.sqrt());
+                let pressure_kpa = self.bench.gains[taxel] * port_kpa(taxel, time_s + late_s);
+                let clean_kpa =
+                    ATMOSPHERE_KPA + self.bench.offsets_kpa[taxel] + self.walk_kpa[taxel] + pressure_kpa;
+                self.bench.quantize(clean_kpa + chance.normal(readout.noise_kpa))
+            })
+            .collect();
+        (time_s, readings_kpa)
+    }
+}

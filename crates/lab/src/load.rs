@@ -1,0 +1,105 @@
+//! A weight put on the imperfect sensor.
+
+use glam::DQuat;
+use twintac_protocol::{LoadPlan, PressPlan};
+use twintac_recording::{Control, Press};
+use twintac_simulate::{Pchip, PressPlace, Sweep, SweepFrame};
+
+use crate::bench::{Bench, Frames, LabError, Moment};
+use crate::chain::Chain;
+use crate::imperfect::Chance;
+
+/// The depth that is tried first for a weight, mm.
+const FIRST_DEPTH_MM: f64 = 0.1;
+
+/// A table goes this much beyond the weight.
+const MARGIN: f64 = 1.05;
+
+impl Bench {
+    /// Puts a weight on the gel, takes it off again, and records it. The recorded force is the weight.
+    ///
+    /// The pressure under a constant force is read off the table of the gel's instantaneous answer: what relaxes changes how deep a weight
+    /// sinks, but in a nearly incompressible gel hardly the pressures that carry it. So loads show no creep.
+    ///
+    /// # Errors
+    /// A place that can't be pressed, or a weight that the gel does not carry.
+    pub fn load(&self, plan: &LoadPlan) -> Result<Press, LabError> {
+        let mut chance = Chance::new(self.reality().seed, &plan.name);
+        let as_press = PressPlan {
+            name: plan.name.clone(),
+            indenter: plan.indenter.clone(),
+            x_mm: plan.x_mm,
+            y_mm: plan.y_mm,
+            rotation: DQuat::IDENTITY,
+            clearance_mm: 0.0,
+            depth_mm: FIRST_DEPTH_MM,
+            speed_mm_per_s: 1.0,
+            hold_s: plan.hold_s,
+        };
+        let place = self.true_place(&as_press, &mut chance)?;
+        let sweep = self.sweep_to(plan, place)?;
+        let over_force = |taxel: usize| {
+            let frames = sweep.frames.iter();
+            let mut force_n: Vec<f64> = frames.clone().map(|frame| frame.force_n).collect();
+            force_n[0] = 0.0;
+            Pchip::new(
+                force_n,
+                frames.map(|frame| frame.port_pressure_kpa[taxel]).collect(),
+            )
+        };
+        let curves: Vec<Option<Pchip>> = (0..self.drawing.taxels.len()).map(over_force).collect();
+        let course = plan.course(self.drawing.readout.rate_hz);
+        let force = Pchip::new(
+            course.iter().map(|(time_s, _)| *time_s).collect(),
+            course.iter().map(|(_, force_n)| *force_n).collect(),
+        );
+        let force_n = |time_s: f64| force.as_ref().map_or(0.0, |force| force.at(time_s));
+
+        let mut chain = Chain::new(self);
+        let mut frames = Frames::default();
+        for &(scheduled_s, weight_n) in &course {
+            let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {
+                curves[taxel]
+                    .as_ref()
+                    .map_or(0.0, |curve| curve.at(force_n(time_s)))
+            });
+            frames.push(Moment {
+                time_s,
+                commanded: sweep.gel_from_indenter_at_touch,
+                is_touching: weight_n > 0.0,
+                force_n: weight_n,
+                raw_kpa,
+            });
+        }
+        Ok(frames.into_press(&plan.name, &plan.indenter, Control::Force, &self.drawing))
+    }
+
+    /// A table that goes as deep as the weight needs, and not much deeper: its mesh is as fine as the contact is small.
+    fn sweep_to(&self, plan: &LoadPlan, mut place: PressPlace) -> Result<Sweep, LabError> {
+        let gel = self.instantaneous();
+        place.enough_force_n = Some(MARGIN * plan.force_n);
+        loop {
+            let sweep = gel.sweep(&place).map_err(|source| LabError::Simulate {
+                press: plan.name.clone(),
+                source,
+            })?;
+            if sweep
+                .frames
+                .last()
+                .map_or(0.0, |frame: &SweepFrame| frame.force_n)
+                >= plan.force_n
+            {
+                return Ok(sweep);
+            }
+            let press = plan.name.clone();
+            if let Some(why) = sweep.failure {
+                return Err(LabError::NotConverged { press, why });
+            }
+            place.depth_mm *= 2.0;
+            if place.depth_mm > gel.height_mm() {
+                let why = format!("under {} N, which it does not carry", plan.force_n);
+                return Err(LabError::NotConverged { press, why });
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Presses of one kind, as people write them.
+
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+use twintac_config::{ConfigError, Document};
+
+use crate::chance::stream;
+use crate::places::Spots;
+use crate::{Indenters, Places, PlanError, PressPlan, Range, Target};
+
+/// Presses to a depth: a whole protocol, or a part of one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// Begins the names of its presses. A protocol of one part needs none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// What it is for.
+    pub summary: String,
+    /// Which indenters press, one after the other.
+    pub indenters: Indenters,
+    /// Where they press.
+    pub places: Places,
+    /// Depth below first touch, mm.
+    pub depth_mm: Range,
+    /// Speed of approach and retreat, mm/s.
+    pub speed_mm_per_s: Range,
+    /// Time at full depth, s.
+    pub hold_s: Range,
+    /// Turn about the vertical, radians.
+    #[serde(default)]
+    pub spin_rad: Range,
+    /// Tilt away from the vertical, in a random direction, radians.
+    #[serde(default)]
+    pub tilt_rad: Range,
+    /// Height above first touch at which a press starts and ends, mm.
+    pub clearance_mm: f64,
+    /// How often the whole list of places is pressed.
+    #[serde(default = "once")]
+    pub repeats: u32,
+}
+
+pub(crate) fn once() -> u32 {
+    1
+}
+
+/// What a press or a load is called.
+pub(crate) fn name_of(part: &str, indenter: &str, number: u32) -> String {
+    let dash = if part.is_empty() { "" } else { "-" };
+    format!("{part}{dash}{indenter}#{number:03}")
+}
+
+impl Part {
+    /// `within` is where the part's fields stand in the document.
+    pub(crate) fn check<T>(&self, document: &Document<T>, within: &str) -> Result<(), ConfigError> {
+        let error = |field: &str, problem: String, hint: &str| {
+            Err(document.error(&format!("{within}{field}"), problem, hint))
+        };
+        let smallest = [
+            ("depth_mm", self.depth_mm, 1e-3),
+            ("speed_mm_per_s", self.speed_mm_per_s, 1e-3),
+            ("hold_s", self.hold_s, 0.0),
+            ("spin_rad", self.spin_rad, f64::NEG_INFINITY),
+            ("tilt_rad", self.tilt_rad, 0.0),
+            ("clearance_mm", Range::Fixed(self.clearance_mm), 0.0),
+        ];
+        for (field, range, least) in smallest {
+            if let Some((problem, hint)) = range.problem(least) {
+                return error(field, problem, &hint);
+            }
+        }
+        let tilt_rad = self.tilt_rad.ends()[1];
+        if tilt_rad > 1.0 {
+            return error(
+                "tilt_rad",
+                format!("is {tilt_rad}"),
+                "keep the tilt at 1 rad or below",
+            );
+        }
+        if let Some((field, problem, hint)) = self.indenters.problem() {
+            return error(&field, problem, hint);
+        }
+        if let Some((field, problem, hint)) = self.places.problem(self.repeats) {
+            return error(&field, problem, &hint);
+        }
+        Ok(())
+    }
+
+    /// The presses: for each indenter, the whole list of places as often as it is repeated.
+    pub(crate) fn plan(&self, target: &Target, seed: u64) -> Result<Vec<PressPlan>, PlanError> {
+        let spots = self.places.on(target)?;
+        let mut plans = Vec::new();
+        for indenter in self.indenters.named(target)? {
+            for number in 0..self.repeats * spots.count() {
+                plans.push(self.press(indenter, &spots, number, seed));
+            }
+        }
+        Ok(plans)
+    }
+
+    fn press(&self, indenter: &str, spots: &Spots<'_>, number: u32, seed: u64) -> PressPlan {
+        let name = name_of(&self.name, indenter, number);
+        let mut chance = stream(seed, &name);
+        let [x_mm, y_mm] = spots.at(number % spots.count(), &mut chance);
+        let tilt_towards = DQuat::from_rotation_z(std::f64::consts::TAU * chance.random::<f64>()) * DVec3::X;
+        let tilt = DQuat::from_axis_angle(tilt_towards, self.tilt_rad.draw(&mut chance));
+        let spin = DQuat::from_rotation_z(self.spin_rad.draw(&mut chance));
+        PressPlan {
+            name,
+            indenter: indenter.to_owned(),
+            x_mm,
+            y_mm,
+            rotation: tilt * spin,
+            clearance_mm: self.clearance_mm,
+            depth_mm: self.depth_mm.draw(&mut chance),
+            speed_mm_per_s: self.speed_mm_per_s.draw(&mut chance),
+            hold_s: self.hold_s.draw(&mut chance),
+        }
+    }
+}
