@@ -6,7 +6,9 @@ use twintac_recording::Recording;
 
 use super::files::expand;
 use crate::arguments::{Align, Evaluate, Record, Report, Train};
-use crate::run::{Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan, plan_loads};
+use crate::run::{
+    Metrics, Run, RunSettings, UnseenEvaluation, evaluate_elsewhere, import_files, plan, plan_loads,
+};
 use crate::sensor_file::read_sensor;
 
 /// Everything after the recordings; prints the headline.
