@@ -77,7 +77,6 @@ fn row(press: &Recorded<'_>, taxel: usize, n_taxels: usize, force_n: f64) -> Opt
         .collect()
 }
 
-/// Mean over all taxels that were not pressed, %.
 impl CrossTalk {
     /// Mean over all pairs of a pressed taxel and another, %.
     #[must_use]

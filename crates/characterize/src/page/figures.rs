@@ -2,7 +2,7 @@
 
 use twintac_recording::{Control, Recording};
 use twintac_report::plot::{Bar, Bars, Panel, Panels, Series};
-use twintac_report::{Anchor, Ink, Mark, Scene, viridis};
+use twintac_report::{Anchor, Ink, Scene, viridis};
 
 use super::words::number;
 use crate::phases::duration_s;
@@ -397,24 +397,14 @@ pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
     let (width, height) = (CELL * columns as f64, CELL * rows as f64);
     let mut scene = Scene::new("Cross-talk", LEFT + width + 8.0, TOP + height + 30.0);
     scene.title([0.0, 14.0], "Cross-talk, %");
-    let pixels = talk
-        .percent
-        .iter()
-        .flatten()
-        .map(|percent| viridis(percent / 100.0))
-        .collect();
-    scene.marks.push(Mark::Image {
-        at: [LEFT, TOP],
-        size: [width, height],
-        columns,
-        pixels,
-    });
     for (row, name) in talk.pressed.iter().enumerate() {
         let y = TOP + CELL * (row as f64 + 0.5) + 4.0;
         scene.small([LEFT - 6.0, y], name, Ink::Text, Anchor::End);
         for (column, percent) in talk.percent[row].iter().enumerate() {
             let ink = Ink::Rgb(if *percent > 55.0 { [0; 3] } else { [255; 3] });
             let x = LEFT + CELL * (column as f64 + 0.5);
+            let corner = [x - 0.5 * CELL, TOP + CELL * row as f64];
+            scene.rectangle(corner, [CELL; 2], Ink::Rgb(viridis(percent / 100.0)), 1.0);
             scene.small(
                 [x, y],
                 number(*percent, if percent.abs() < 10.0 { 1 } else { 2 }),
