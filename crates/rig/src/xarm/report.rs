@@ -170,9 +170,8 @@ impl Report {
             put_f32s(&mut frame, at + 24, &wrench.raw);
         }
         if let (Some(version), ReportPort::Rich) = (&self.version, port) {
-            for (place, byte) in frame[151..180].iter_mut().zip(version.bytes()) {
-                *place = byte;
-            }
+            let whole_characters = version.floor_char_boundary(29);
+            frame[151..151 + whole_characters].copy_from_slice(&version.as_bytes()[..whole_characters]);
         }
         frame
     }
@@ -305,6 +304,16 @@ mod tests {
             longer[4..size].copy_from_slice(&frame[4..]);
             assert_eq!(Report::decode(port, &longer).unwrap(), on(port));
         }
+    }
+
+    #[test]
+    fn a_version_that_is_too_long_is_cut_between_characters() {
+        let long = Report {
+            version: Some("v".to_owned() + &"…".repeat(10)),
+            ..report()
+        };
+        let found = Report::decode(ReportPort::Rich, &long.encode(ReportPort::Rich)).unwrap();
+        assert_eq!(found.version.unwrap(), "v".to_owned() + &"…".repeat(9));
     }
 
     #[test]
