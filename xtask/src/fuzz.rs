@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail, ensure};
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 /// What `cargo fuzz --sanitizer none` compiles with.
 const FLAGS: &str = "--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
@@ -34,8 +34,15 @@ struct Options {
     keep: bool,
 }
 
+/// What came of all targets.
+#[derive(Default, Serialize, Deserialize)]
+struct Results {
+    command: String,
+    targets: Vec<Outcome>,
+}
+
 /// What came of a target.
-#[derive(Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct Outcome {
     target: String,
     executions: u64,
@@ -51,7 +58,8 @@ pub(crate) fn fuzz(given: &[String]) -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .context("the workspace's folder")?;
-    let options = Options::parse(given, &all_targets(root)?)?;
+    let all = all_targets(root)?;
+    let options = Options::parse(given, &all)?;
     let programs = build(root)?;
     let work = programs.join("fuzz-work");
     crate::cargo(&[
@@ -91,10 +99,9 @@ pub(crate) fn fuzz(given: &[String]) -> Result<()> {
             .iter()
             .position(|target| *target == outcome.target)
     });
-    let text = table(&outcomes);
-    eprintln!("{text}");
+    eprintln!("{}", table(&outcomes));
     if options.keep {
-        record(root, &options, &outcomes, &text)?;
+        record(root, &options, &outcomes, &all)?;
     }
     let crashes: usize = outcomes.iter().map(|outcome| outcome.crashes).sum();
     ensure!(crashes == 0, "{crashes} crashes: see `fuzz/artifacts`");
@@ -206,7 +213,7 @@ fn run(root: &Path, programs: &Path, work: &Path, target: &str, options: &Option
     fs::write(work.join(format!("{target}.txt")), &talk)?;
     let mut outcome = read_talk(&talk);
     outcome.target = target.to_owned();
-    outcome.seconds = begun.elapsed().as_secs_f64();
+    outcome.seconds = begun.elapsed().as_secs_f64().round();
     outcome.crashes = broken(&artifacts)?.saturating_sub(before);
     if outcome.crashes == 0 && !output.status.success() {
         bail!("{target} ended with {}:\n{talk}", output.status);
@@ -311,27 +318,29 @@ fn table(outcomes: &[Outcome]) -> String {
 }
 
 /// Writes the figures down.
-fn record(root: &Path, options: &Options, outcomes: &[Outcome], table: &str) -> Result<()> {
+fn record(root: &Path, options: &Options, outcomes: &[Outcome], all: &[String]) -> Result<()> {
     let command = format!(
         "cargo xtask fuzz --seconds {} --jobs {} --keep",
         options.seconds, options.jobs
     );
-    let targets: Vec<Value> = outcomes
+    let results = root.join("docs/benchmarks");
+    // Targets that were not fuzzed this time keep their rows.
+    let earlier: Results = match fs::read(results.join("fuzz.json")) {
+        Ok(bytes) => serde_json::from_slice(&bytes).context("docs/benchmarks/fuzz.json")?,
+        Err(_) => Results::default(),
+    };
+    let targets: Vec<Outcome> = all
         .iter()
-        .map(|outcome| {
-            json!({
-                "target": outcome.target,
-                "executions": outcome.executions,
-                "seconds": outcome.seconds.round(),
-                "corpus": outcome.corpus,
-                "edges": outcome.edges,
-                "features": outcome.features,
-                "peak_mib": outcome.peak_mib,
-                "crashes": outcome.crashes,
-            })
+        .filter_map(|target| {
+            let mut rows = outcomes.iter().chain(&earlier.targets);
+            rows.find(|outcome| outcome.target == *target).cloned()
         })
         .collect();
-    let figures = serde_json::to_string_pretty(&json!({ "command": command, "targets": targets }))?;
+    let table = table(&targets);
+    let figures = serde_json::to_string_pretty(&Results {
+        command: command.clone(),
+        targets,
+    })?;
     let page = format!(
         "# Fuzzing\n\nMade by `{command}`.\n\nEach target is a kind of bytes that comes from a wire or a file, and what must hold for them \
          (`crates/fuzz`): what decodes encodes again, nothing grows beyond its bound, nothing panics. libFuzzer looks for inputs that \
@@ -341,7 +350,7 @@ fn record(root: &Path, options: &Options, outcomes: &[Outcome], table: &str) -> 
          C++ compiler (`apt-get install g++`), and no nightly Rust; who has cargo-fuzz can say `cargo fuzz run --sanitizer none <target>`.\n"
     );
     for (name, text) in [("fuzz.json", figures + "\n"), ("fuzz.md", page)] {
-        let path = root.join("docs/benchmarks").join(name);
+        let path = results.join(name);
         let partial = path.with_extension("tmp");
         fs::write(&partial, text)?;
         fs::rename(&partial, &path)?;
