@@ -37,6 +37,7 @@ pub mod i2c;
 pub mod robot;
 
 pub use bench::{Bench, Settings};
+pub use chance::Chance;
 pub use clock::LabClock;
 pub use error::EmulateError;
 pub use fault::{Fault, Moment, What, Wire};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use twintac_emulate::CHANNELS;
+use twintac_emulate::{CHANNELS, Chance};
 use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
@@ -15,7 +15,6 @@ use twintac_softbody::{Material, PronyTerm, SolverSettings};
 
 use crate::Reality;
 use crate::chain::Chain;
-use crate::imperfect::Chance;
 
 /// Pressure of the air, kPa.
 pub(crate) const ATMOSPHERE_KPA: f64 = 101.325;

@@ -1,7 +1,8 @@
 //! The read-out chain: what becomes of the pressures at the ports before they are recorded.
 
+use twintac_emulate::Chance;
+
 use crate::bench::{ATMOSPHERE_KPA, Bench};
-use crate::imperfect::Chance;
 
 /// The read-out of one press: its offsets walk from where the cast put them.
 pub(crate) struct Chain<'a> {

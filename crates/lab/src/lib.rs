@@ -9,7 +9,6 @@
 
 mod bench;
 mod chain;
-mod imperfect;
 mod live;
 mod load;
 mod reality;

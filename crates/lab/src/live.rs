@@ -9,14 +9,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use twintac_emulate::{CHANNELS, Physics, Sensed};
+use twintac_emulate::{CHANNELS, Chance, Physics, Sensed};
 use twintac_protocol::PressPlan;
 use twintac_rig::{TcpPose, Wrench};
 use twintac_shape::Pose;
 use twintac_simulate::{Pchip, SweepFrame};
 
 use crate::bench::{ATMOSPHERE_KPA, Bench, LabError};
-use crate::imperfect::Chance;
 use crate::reality::Relaxation;
 
 /// Temperature of the barometers, °C.

@@ -1,13 +1,13 @@
 //! A weight put on the imperfect sensor.
 
 use glam::DQuat;
+use twintac_emulate::Chance;
 use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::{Control, Press};
 use twintac_simulate::{Pchip, PressPlace, Sweep, SweepFrame};
 
 use crate::bench::{Bench, Frames, LabError, Moment};
 use crate::chain::Chain;
-use crate::imperfect::Chance;
 
 /// The depth that is tried first for a weight, mm.
 const FIRST_DEPTH_MM: f64 = 0.1;

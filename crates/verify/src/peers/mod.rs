@@ -59,8 +59,11 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let work = Path::new(WORK);
     fs::create_dir_all(work).with_context(|| format!("creating {WORK}"))?;
     let plan = Plan::read()?;
-    let mesh_file = std::path::absolute(work.join("mesh.json"))?;
-    write_whole(&mesh_file, cases::block(plan::RATIOS[0])?.mesh_json()?.as_bytes())?;
+    let mesh_file = Path::new("mesh.json"); // engines run in that folder
+    write_whole(
+        &work.join(mesh_file),
+        cases::block(plan::RATIOS[0])?.mesh_json()?.as_bytes(),
+    )?;
 
     let mut rows = Vec::new();
     for &poissons_ratio in ratios {
@@ -69,7 +72,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     }
     let python = Python::prepare(work, &plan.packages);
     for engine in &plan.engines {
-        let runs = plan.runs(engine, &mesh_file, ratios, options.limit_s);
+        let runs = plan.runs(engine, mesh_file, ratios, options.limit_s);
         let first_start_s = match &python {
             Ok(python) if !options.keep_kernels => python.first_start(engine, &runs),
             _ => None,
