@@ -17,7 +17,7 @@ use crate::Reality;
 use crate::chain::Chain;
 
 /// Pressure of the air, kPa.
-pub(crate) const ATMOSPHERE_KPA: f64 = 101.325;
+const ATMOSPHERE_KPA: f64 = 101.325;
 
 /// Moments computed in a hold, as fractions of it: most happens early.
 const HOLD_FRACTIONS: [f64; 4] = [0.05, 0.2, 0.5, 1.0];
@@ -58,9 +58,31 @@ pub enum LabError {
 pub struct Bench {
     pub(crate) drawing: Arc<Sensor>,
     gel: Gel,
-    pub(crate) gains: Vec<f64>,
-    pub(crate) offsets_kpa: Vec<f64>,
+    /// Of each taxel.
+    pub(crate) ports: Vec<Port>,
     reality: Reality,
+}
+
+/// What becomes of the gel's pressure at a barometer's port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Port {
+    gain: f64,
+    offset_kpa: f64,
+    offset_kpa_per_k: f64,
+}
+
+impl Port {
+    /// A perfect one.
+    pub(crate) const PERFECT: Self = Self {
+        gain: 1.0,
+        offset_kpa: 0.0,
+        offset_kpa_per_k: 0.0,
+    };
+
+    /// Absolute pressure in it, kPa, under a pressure of the gel, kPa, so much warmer than when it was cast, K.
+    pub(crate) fn absolute_kpa(&self, gel_kpa: f64, warmed_k: f64) -> f64 {
+        ATMOSPHERE_KPA + self.offset_kpa + self.offset_kpa_per_k * warmed_k + self.gain * gel_kpa
+    }
 }
 
 impl Bench {
@@ -73,16 +95,18 @@ impl Bench {
             taxel.position_mm.x += chance.normal(reality.readout.position_deviation_mm);
             taxel.position_mm.y += chance.normal(reality.readout.position_deviation_mm);
         }
-        let gains = drawing
-            .taxels
-            .iter()
-            .map(|_| reality.readout.gain_mean * (1.0 + chance.normal(reality.readout.gain_deviation)))
-            .collect();
-        let offsets_kpa = drawing
-            .taxels
-            .iter()
-            .map(|_| chance.normal(reality.readout.offset_deviation_kpa))
-            .collect();
+        let readout = &reality.readout;
+        let mut ports = vec![Port::PERFECT; drawing.taxels.len()];
+        for port in &mut ports {
+            port.gain = readout.gain_mean * (1.0 + chance.normal(readout.gain_deviation));
+        }
+        for port in &mut ports {
+            port.offset_kpa = chance.normal(readout.offset_deviation_kpa);
+        }
+        for port in &mut ports {
+            port.offset_kpa_per_k =
+                readout.offset_kpa_per_k + chance.normal(readout.offset_deviation_kpa_per_k);
+        }
         let settings = SimulateSettings {
             edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
@@ -100,13 +124,12 @@ impl Bench {
         Self {
             drawing,
             gel,
-            gains,
-            offsets_kpa,
+            ports,
             reality,
         }
     }
 
-    /// Performs one press and records it.
+    /// Performs one press and records it. The sensor is as warm as when it was switched on.
     pub fn press(&self, plan: &PressPlan) -> Result<Press, LabError> {
         let mut chance = Chance::new(self.reality.seed, &plan.name);
         let robot = &self.reality.robot;
@@ -191,13 +214,13 @@ impl Bench {
         channels.enumerate().filter(|&(_, channel)| channel < CHANNELS)
     }
 
-    /// Gain and offset, kPa, of each channel; of one without a taxel, those of a perfect one.
-    pub(crate) fn channels(&self) -> ([f64; CHANNELS], [f64; CHANNELS]) {
-        let (mut gains, mut offsets_kpa) = ([1.0; CHANNELS], [0.0; CHANNELS]);
+    /// The port of each channel; of one without a taxel, a perfect one.
+    pub(crate) fn channels(&self) -> [Port; CHANNELS] {
+        let mut channels = [Port::PERFECT; CHANNELS];
         for (taxel, channel) in self.taxel_channels() {
-            (gains[channel], offsets_kpa[channel]) = (self.gains[taxel], self.offsets_kpa[taxel]);
+            channels[channel] = self.ports[taxel];
         }
-        (gains, offsets_kpa)
+        channels
     }
 
     /// How much deeper than the robot believes the indenter is in a press, mm.

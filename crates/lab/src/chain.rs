@@ -2,7 +2,7 @@
 
 use twintac_emulate::Chance;
 
-use crate::bench::{ATMOSPHERE_KPA, Bench};
+use crate::bench::Bench;
 
 /// The read-out of one press: its offsets walk from where the cast put them.
 pub(crate) struct Chain<'a> {
@@ -15,7 +15,7 @@ impl<'a> Chain<'a> {
     pub(crate) fn new(bench: &'a Bench) -> Self {
         Self {
             bench,
-            walk_kpa: vec![0.0; bench.gains.len()],
+            walk_kpa: vec![0.0; bench.ports.len()],
             previous_s: 0.0,
         }
     }
@@ -36,9 +36,8 @@ impl<'a> Chain<'a> {
             .map(|taxel| {
                 let late_s = readout.lag_s + taxel as f64 * readout.lag_per_taxel_s;
                 self.walk_kpa[taxel] += chance.normal(readout.drift_kpa_per_sqrt_s * step_s.sqrt());
-                let pressure_kpa = self.bench.gains[taxel] * port_kpa(taxel, time_s + late_s);
-                let clean_kpa =
-                    ATMOSPHERE_KPA + self.bench.offsets_kpa[taxel] + self.walk_kpa[taxel] + pressure_kpa;
+                let gel_kpa = port_kpa(taxel, time_s + late_s);
+                let clean_kpa = self.bench.ports[taxel].absolute_kpa(gel_kpa, 0.0) + self.walk_kpa[taxel];
                 self.bench.quantize(clean_kpa + chance.normal(readout.noise_kpa))
             })
             .collect();

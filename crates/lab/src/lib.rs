@@ -15,4 +15,4 @@ mod reality;
 
 pub use bench::{Bench, LabError};
 pub use live::{LiveGel, LiveTable, Selector};
-pub use reality::{GelReality, ReadoutReality, Reality, RobotReality};
+pub use reality::{ClimateReality, GelReality, ReadoutReality, Reality, RobotReality};

@@ -15,11 +15,9 @@ use twintac_rig::{TcpPose, Wrench};
 use twintac_shape::Pose;
 use twintac_simulate::{Pchip, SweepFrame};
 
-use crate::bench::{ATMOSPHERE_KPA, Bench, LabError};
+use crate::ClimateReality;
+use crate::bench::{Bench, LabError, Port};
 use crate::reality::Relaxation;
-
-/// Temperature of the barometers, °C.
-const TEMPERATURE_C: f64 = 25.0;
 
 /// How much deeper than planned the tables go, mm.
 const SPARE_MM: f64 = 0.5;
@@ -34,9 +32,9 @@ pub struct LiveGel {
     tables: Vec<Curves>,
     selected: Arc<AtomicUsize>,
     relaxation: Vec<Relaxation>,
+    climate: ClimateReality,
     /// Of each channel.
-    gains: [f64; CHANNELS],
-    offsets_kpa: [f64; CHANNELS],
+    ports: [Port; CHANNELS],
     drift_kpa_per_sqrt_s: f64,
     chance: Chance,
     memory: Memory,
@@ -140,7 +138,6 @@ impl Bench {
             names: Arc::new(tables.iter().map(|table| table.name.clone()).collect()),
             selected: Arc::clone(&selected),
         };
-        let (gains, offsets_kpa) = self.channels();
         let gel = LiveGel {
             base_from_gel,
             tool_from_indenter,
@@ -153,8 +150,8 @@ impl Bench {
                 walk_kpa: [0.0; CHANNELS],
             },
             relaxation: reality.gel.relaxation.clone(),
-            gains,
-            offsets_kpa,
+            climate: reality.climate.clone(),
+            ports: self.channels(),
             drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
             chance: Chance::new(reality.seed, "live"),
         };
@@ -200,17 +197,18 @@ impl Physics for LiveGel {
         let step_s = time_s - self.memory.time_s;
         let felt = self.memory.advance(elastic, time_s, &self.relaxation);
         let force_n = self.base_from_gel.rotation * (DVec3::NEG_Z * felt[0]);
+        let warmed_k = self.climate.warmed_k(time_s);
         let arm_mm = tool.position_mm - self.base_from_gel.position_mm;
         let taxel_pressures_kpa = std::array::from_fn(|channel| {
             let walk_kpa = &mut self.memory.walk_kpa[channel];
             *walk_kpa += self
                 .chance
                 .normal(self.drift_kpa_per_sqrt_s * step_s.max(0.0).sqrt());
-            ATMOSPHERE_KPA + self.offsets_kpa[channel] + *walk_kpa + self.gains[channel] * felt[1 + channel]
+            self.ports[channel].absolute_kpa(felt[1 + channel], warmed_k) + *walk_kpa
         });
         Sensed {
             taxel_pressures_kpa,
-            temperature_c: TEMPERATURE_C,
+            temperature_c: self.climate.start_c + warmed_k,
             wrench: Wrench {
                 force_n,
                 torque_n_mm: arm_mm.cross(force_n),

@@ -17,6 +17,9 @@ pub struct Reality {
     pub readout: ReadoutReality,
     /// The robot and the force sensor.
     pub robot: RobotReality,
+    /// How warm the sensor is. Default: always 25 °C.
+    #[serde(default)]
+    pub climate: ClimateReality,
 }
 
 /// The gel as it was cast, and how finely it is computed.
@@ -65,6 +68,12 @@ pub struct ReadoutReality {
     pub noise_kpa: f64,
     /// Standard deviation of a random walk of each offset over one second, kPa.
     pub drift_kpa_per_sqrt_s: f64,
+    /// By how much an offset moves with temperature, mean of the taxels, kPa/K. Default 0.
+    #[serde(default)]
+    pub offset_kpa_per_k: f64,
+    /// Standard deviation of that between taxels, kPa/K. Default 0.
+    #[serde(default)]
+    pub offset_deviation_kpa_per_k: f64,
     /// How long after the time stamp the first taxel is read, s.
     pub lag_s: f64,
     /// How much later each next taxel is read, s.
@@ -89,6 +98,36 @@ pub struct RobotReality {
     pub force_lag_s: f64,
 }
 
+/// How warm the sensor is: from when it is switched on it warms up, by what its own chips and a robot above it give off.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClimateReality {
+    /// Temperature when the bench is switched on, °C.
+    pub start_c: f64,
+    /// By how much it rises in the end, K.
+    pub warming_k: f64,
+    /// Time constant of that, s.
+    pub warming_time_s: f64,
+}
+
+impl Default for ClimateReality {
+    /// Always 25 °C.
+    fn default() -> Self {
+        Self {
+            start_c: 25.0,
+            warming_k: 0.0,
+            warming_time_s: 300.0,
+        }
+    }
+}
+
+impl ClimateReality {
+    /// How much warmer than at its start the sensor is, K, so long after the bench was switched on, s.
+    pub(crate) fn warmed_k(&self, time_s: f64) -> f64 {
+        -self.warming_k * (-time_s / self.warming_time_s).exp_m1()
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -102,7 +141,7 @@ impl Reality {
     }
 
     fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
-        let (gel, readout, robot) = (&self.gel, &self.readout, &self.robot);
+        let (gel, readout, robot, climate) = (&self.gel, &self.readout, &self.robot, &self.climate);
         let positive = [
             ("gel.edges_per_height", gel.edges_per_height),
             ("gel.edges_per_contact_radius", gel.edges_per_contact_radius),
@@ -110,6 +149,7 @@ impl Reality {
             ("gel.bulk_modulus_kpa", gel.bulk_modulus_kpa),
             ("gel.depth_step_mm", gel.depth_step_mm),
             ("readout.gain_mean", readout.gain_mean),
+            ("climate.warming_time_s", climate.warming_time_s),
         ];
         for (field, value) in positive {
             if value <= 0.0 {
@@ -122,6 +162,10 @@ impl Reality {
             ("readout.position_deviation_mm", readout.position_deviation_mm),
             ("readout.noise_kpa", readout.noise_kpa),
             ("readout.drift_kpa_per_sqrt_s", readout.drift_kpa_per_sqrt_s),
+            (
+                "readout.offset_deviation_kpa_per_k",
+                readout.offset_deviation_kpa_per_k,
+            ),
             ("readout.lag_s", readout.lag_s),
             ("readout.lag_per_taxel_s", readout.lag_per_taxel_s),
             ("readout.jitter_s", readout.jitter_s),
@@ -133,6 +177,16 @@ impl Reality {
         for (field, value) in not_negative {
             if value < 0.0 {
                 return Err(document.error(field, format!("is {value}"), "give zero or more"));
+            }
+        }
+        // What the barometers' registers can say.
+        for (field, temperature_c) in [
+            ("climate.start_c", climate.start_c),
+            ("climate.warming_k", climate.start_c + climate.warming_k),
+        ] {
+            if !(-128.0..128.0).contains(&temperature_c) {
+                let problem = format!("makes the sensor {temperature_c} °C");
+                return Err(document.error(field, problem, "keep it between -128 and 128 °C"));
             }
         }
         for (index, term) in gel.relaxation.iter().enumerate() {
@@ -173,6 +227,32 @@ mod tests {
             error.contains("gel.relaxation") && error.contains("below 1"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_bench_without_a_climate_keeps_its_temperature() {
+        let (before, _) = SHIPPED.split_once("[climate]").unwrap();
+        let reality = Reality::parse("default.toml", before).unwrap();
+        assert_eq!(reality.climate.warmed_k(1000.0), 0.0);
+    }
+
+    #[test]
+    fn it_warms_by_two_thirds_in_its_time_constant_and_no_further_than_said() {
+        let climate = ClimateReality {
+            start_c: 20.0,
+            warming_k: 3.0,
+            warming_time_s: 100.0,
+        };
+        assert_eq!(climate.warmed_k(0.0), 0.0);
+        assert!((climate.warmed_k(100.0) - 3.0 * (1.0 - (-1.0_f64).exp())).abs() < 1e-12);
+        assert!((climate.warmed_k(1e5) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_temperature_that_no_register_can_say_is_refused() {
+        let text = SHIPPED.replace("start_c = ", "start_c = 2");
+        let error = Reality::parse("default.toml", &text).unwrap_err();
+        assert_eq!(error.field, "climate.start_c");
     }
 
     #[test]

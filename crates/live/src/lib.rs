@@ -12,7 +12,7 @@
 //! let mut phystac = Lab::new(&sensor, LabClock::virtual_time(), &[])?.phystac;
 //! assert!(power_on(&mut phystac, &sensor, None).is_err()); // nobody has confirmed a scale
 //! let checked = power_on(&mut phystac, &sensor, Some(8))?;
-//! let reading = FrameReader::new(phystac, checked.transfer).read()?;
+//! let reading = FrameReader::new(phystac, &checked).read()?;
 //! assert!((reading.frame.taxels[0].pressure_pa.unwrap() - 101_325.0).abs() < 200.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -67,7 +67,7 @@ impl Live {
         (provenance, start_unix_ns): (Provenance, u64),
     ) -> Result<Self, LiveError> {
         let checked = power_on(&mut phystac, sensor, counts_per_pa)?;
-        let reader = FrameReader::new(phystac, checked.transfer);
+        let reader = FrameReader::new(phystac, &checked);
         Ok(Self {
             source: FrameSource::start(reader, FrameSource::USUAL_CAPACITY)?,
             about: About::new(sensor, sensor_toml, provenance, checked.transfer, start_unix_ns),

@@ -2,15 +2,15 @@
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use phystac::{Clock, Health, PhysTac, Thresholds, Transfer};
-use twintac_log::{TactileFrame, TaxelState};
+use phystac::{Clock, PhysTac};
+use twintac_log::{Screening, TactileFrame};
 
-use crate::LiveError;
+use crate::{LiveError, PowerOn};
 
 /// A frame as it is handed out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Its number, of all that were read: numbers that are missing were missed.
+    /// Its number, of all that were asked for: numbers that are missing were missed, or the bus gave none.
     pub sequence: u64,
     /// When the taxels were triggered, s of the bench's clock.
     pub bench_s: f64,
@@ -22,19 +22,17 @@ pub struct Reading {
 #[derive(Debug)]
 pub struct FrameReader<I2C, D, C, const N: usize> {
     phystac: PhysTac<I2C, D, C, N>,
-    transfer: Transfer,
-    health: Health<N>,
+    screening: Screening<N>,
     sequence: u64,
 }
 
 impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
-    /// Of a sensor whose counts stand for this.
+    /// Of a sensor that was switched on.
     #[must_use]
-    pub fn new(phystac: PhysTac<I2C, D, C, N>, transfer: Transfer) -> Self {
+    pub fn new(phystac: PhysTac<I2C, D, C, N>, checked: &PowerOn) -> Self {
         Self {
             phystac,
-            transfer,
-            health: Health::new(transfer, Thresholds::default()),
+            screening: checked.screening(),
             sequence: 0,
         }
     }
@@ -44,19 +42,13 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
     /// # Errors
     /// [`LiveError::Bus`]: what stops all taxels. The next call starts over.
     pub fn read(&mut self) -> Result<Reading, LiveError> {
-        let mut screened = self.phystac.frame().map_err(bus_error)?;
-        let mut frame = TactileFrame::from_driver(&screened, &self.transfer);
-        self.health.screen(&mut screened);
-        for (index, fault) in screened.faults() {
-            frame.taxels[index].state = TaxelState::from(fault);
-            frame.taxels[index].pressure_pa = None;
-        }
         let sequence = self.sequence;
         self.sequence += 1;
+        let frame = self.phystac.frame().map_err(bus_error)?;
         Ok(Reading {
             sequence,
-            bench_s: screened.triggered_us as f64 * 1e-6,
-            frame,
+            bench_s: frame.triggered_us as f64 * 1e-6,
+            frame: self.screening.frame(frame),
         })
     }
 
@@ -72,19 +64,5 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
 pub(crate) fn bus_error<E: std::fmt::Debug>(error: phystac::Error<E>) -> LiveError {
     LiveError::Bus {
         problem: error.to_string(),
-    }
-}
-
-/// A taxel's fault by its name; `None` if it is good.
-pub(crate) fn fault_name(state: TaxelState) -> Option<&'static str> {
-    match state {
-        TaxelState::Good => None,
-        TaxelState::Missing => Some("missing"),
-        TaxelState::Stuck => Some("stuck"),
-        TaxelState::BusError => Some("bus error"),
-        TaxelState::Isolated => Some("isolated"),
-        TaxelState::Refused => Some("refused"),
-        TaxelState::Saturated => Some("saturated"),
-        TaxelState::Frozen => Some("frozen"),
     }
 }

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use serde::Serialize;
 use twintac_recording::Provenance;
 
-use crate::reader::fault_name;
 use crate::{About, Reading, Tare};
 
 /// How rows are written.
@@ -84,7 +83,7 @@ impl<W: Write> RowWriter<W> {
                     above_tare_kpa: above_kpa.map(to_a_millipascal),
                     counts: taxel.counts,
                     temperature_c: taxel.temperature_c,
-                    fault: fault_name(taxel.state),
+                    fault: taxel.state.fault(),
                 })
                 .collect(),
         };

@@ -2,7 +2,8 @@
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use phystac::{Clock, Frame, FreeAir, PhysTac, Transfer, propose};
+use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, propose};
+use twintac_log::Screening;
 use twintac_sensor::Sensor;
 
 use crate::LiveError;
@@ -25,8 +26,18 @@ pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
 pub struct PowerOn {
     /// What counts stand for, confirmed.
     pub transfer: Transfer,
+    /// From when on a taxel is suspect; its range is the description's.
+    pub thresholds: Thresholds,
     /// What is odd but stops nothing, a sentence each.
     pub notes: Vec<String>,
+}
+
+impl PowerOn {
+    /// What makes messages of the frames to come.
+    #[must_use]
+    pub const fn screening<const N: usize>(&self) -> Screening<N> {
+        Screening::new(self.transfer, self.thresholds)
+    }
 }
 
 /// Reads a frame in free air, and says what counts stand for if somebody has confirmed it: `counts_per_pa`, or else the sensor's description.
@@ -104,5 +115,13 @@ fn check<const N: usize>(
             "{counts_per_pa} counts per Pa say at most {most_kpa:.0} kPa; the description's range ends at {max_kpa} kPa"
         ));
     }
-    Ok(PowerOn { transfer, notes })
+    let thresholds = Thresholds {
+        rated_pa: [sensor.readout.min_kpa, max_kpa].map(|kpa| (1e3 * kpa) as f32),
+        ..Thresholds::default()
+    };
+    Ok(PowerOn {
+        transfer,
+        thresholds,
+        notes,
+    })
 }

@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::style::Color;
 use twintac_emulate::Fault;
 use twintac_live::dashboard::{Recorded, Recording, State, draw};
-use twintac_log::{Body, LogReader};
+use twintac_log::{Body, Event, LogReader};
 
 /// The state after so many frames.
 fn state(frames: usize, faults: &[Fault]) -> State {
@@ -104,6 +104,8 @@ fn what_is_recorded_reads_back() {
             recording.push(reading).unwrap();
         }
         assert_eq!((recording.frames(), recording.finish().unwrap()), (50, 50));
+        let table = folder.path().join(format!("touch-000{number}.parquet"));
+        assert!(table.is_file());
         let log = LogReader::open(&folder.path().join(format!("touch-000{number}.mcap"))).unwrap();
         let frames: Vec<_> = log
             .filter_map(|message| match message.unwrap().body {
@@ -114,4 +116,30 @@ fn what_is_recorded_reads_back() {
         let expected: Vec<_> = readings.into_iter().map(|reading| reading.frame).collect();
         assert_eq!(frames, expected);
     }
+}
+
+#[test]
+fn what_was_missed_is_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut reader, about) = reader(&[]);
+    let mut recording = Recording::begin(folder.path(), &about).unwrap();
+    let readings: Vec<_> = (0..10).map(|_| reader.read().unwrap()).collect();
+    for reading in readings
+        .iter()
+        .filter(|reading| !(3..6).contains(&reading.sequence))
+    {
+        recording.push(reading).unwrap();
+    }
+    assert_eq!(recording.finish().unwrap(), 7);
+    let log = LogReader::open(&folder.path().join("touch-0001.mcap")).unwrap();
+    let gaps: Vec<_> = log
+        .filter_map(|message| match message.unwrap().body {
+            Body::Event(Event::Gap {
+                from_ns, to_ns, lost, ..
+            }) => Some((from_ns, to_ns, lost)),
+            _ => None,
+        })
+        .collect();
+    let ns = |frame: usize| (1e9 * readings[frame].bench_s).round() as u64;
+    assert_eq!(gaps, [(ns(2), ns(6), Some(3))]);
 }

@@ -8,7 +8,7 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use common::{gone, lab, reader, sensor};
+use common::{checked, gone, lab, reader, sensor};
 use embedded_hal::i2c::{self, I2c, Operation};
 use glam::DVec3;
 use phystac::{PhysTac, Settings, Transfer};
@@ -118,7 +118,7 @@ fn a_frozen_barometer_keeps_its_counts_and_has_no_pressure() {
     let board = Board::new(scene, &board, &[]).unwrap();
     let now = clock.clone();
     let phystac = PhysTac::new(board.bus(), clock, move || now.now_us(), Settings::<8>::default());
-    let mut reader = FrameReader::new(phystac, Transfer::per_pa(32));
+    let mut reader = FrameReader::new(phystac, &checked(Transfer::per_pa(32)));
     let last = (0..20)
         .map(|_| reader.read().unwrap().frame.taxels[5])
         .last()
@@ -268,7 +268,7 @@ impl I2c for Dead {
 fn a_sensor_that_stays_away_is_given_up_with_its_reason() {
     let clock = LabClock::virtual_time();
     let phystac = PhysTac::new(Dead, clock, || 0, Settings::<8>::default());
-    let mut source = FrameSource::start(FrameReader::new(phystac, Transfer::per_pa(8)), 4).unwrap();
+    let mut source = FrameSource::start(FrameReader::new(phystac, &checked(Transfer::per_pa(8))), 4).unwrap();
     let error = loop {
         match source.next(Duration::from_millis(100)) {
             Ok(reading) => assert_eq!(reading, None),

@@ -1,6 +1,6 @@
 //! What drivers and clients give, as messages.
 
-use phystac::{Fault, Frame, Transfer};
+use phystac::{Fault, Frame, Health, Thresholds, Transfer};
 use twintac_rig::{Stamp, TcpPose, WrenchSample};
 
 use crate::{CountTransfer, PoseReading, TactileFrame, Taxel, TaxelState, WrenchReading};
@@ -16,6 +16,35 @@ impl TactileFrame {
                 .map(|(taxel, read_us)| Taxel::from_driver(*taxel, read_us, transfer))
                 .collect(),
         }
+    }
+}
+
+/// Makes messages of the driver's frames, one after the other.
+#[derive(Clone, Debug)]
+pub struct Screening<const N: usize> {
+    transfer: Transfer,
+    health: Health<N>,
+}
+
+impl<const N: usize> Screening<N> {
+    /// Of a sensor whose counts stand for this, of which no frame has been seen.
+    #[must_use]
+    pub const fn new(transfer: Transfer, thresholds: Thresholds) -> Self {
+        Self {
+            transfer,
+            health: Health::new(transfer, thresholds),
+        }
+    }
+
+    /// The next frame as a message. A taxel that is saturated or frozen keeps its counts and has no pressure.
+    pub fn frame(&mut self, mut frame: Frame<N>) -> TactileFrame {
+        let mut message = TactileFrame::from_driver(&frame, &self.transfer);
+        self.health.screen(&mut frame);
+        for (index, fault) in frame.faults() {
+            message.taxels[index].state = TaxelState::from(fault);
+            message.taxels[index].pressure_pa = None;
+        }
+        message
     }
 }
 

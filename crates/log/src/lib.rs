@@ -39,9 +39,11 @@ mod recorder;
 mod recover;
 mod ros;
 mod sink;
+mod table;
 mod writer;
 
 pub use description::{CountTransfer, Description};
+pub use devices::Screening;
 pub use error::LogError;
 pub use event::Event;
 pub use message::{Body, Message, PoseReading, Stream, TactileFrame, Taxel, TaxelState, WrenchReading};
@@ -50,4 +52,5 @@ pub use reader::{Ending, LogReader};
 pub use recorder::{LogSender, Recorded, Recorder};
 pub use recover::{Recovered, recover};
 pub use sink::{LogFile, Sink};
+pub use table::{Exported, export_frames};
 pub use writer::LogWriter;

@@ -127,6 +127,21 @@ pub enum TaxelState {
 }
 
 impl TaxelState {
+    /// Why the pressure cannot be used, in a word or two; `None` if it can.
+    #[must_use]
+    pub const fn fault(self) -> Option<&'static str> {
+        match self {
+            Self::Good => None,
+            Self::Missing => Some("missing"),
+            Self::Stuck => Some("stuck"),
+            Self::BusError => Some("bus error"),
+            Self::Isolated => Some("isolated"),
+            Self::Refused => Some("refused"),
+            Self::Saturated => Some("saturated"),
+            Self::Frozen => Some("frozen"),
+        }
+    }
+
     pub(crate) fn from_code(code: u8) -> Option<Self> {
         const ALL: [TaxelState; 8] = [
             TaxelState::Good,

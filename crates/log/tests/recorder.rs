@@ -11,7 +11,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use common::{begun, bench, description, event, reader, wrench};
-use twintac_log::{Body, Event, LogError, LogReader, Message, Recorder, Sink, Stream, recover};
+use twintac_log::{
+    Body, Event, LogError, LogReader, Message, Recorder, Sink, Stream, export_frames, recover,
+};
 
 type Bytes = Arc<Mutex<Vec<u8>>>;
 
@@ -292,4 +294,36 @@ fn recovering_makes_a_whole_file_and_keeps_the_old_one() {
         5,
         "nothing half-written"
     );
+}
+
+#[test]
+fn a_cut_log_becomes_a_table_of_what_was_flushed() {
+    let folder = tempfile::tempdir().unwrap();
+    let sent = bench(3, 2, [50, 50, 50]);
+    let whole = common::log(&description(2), &sent);
+    let (log, table) = (
+        folder.path().join("bench.mcap"),
+        folder.path().join("bench.parquet"),
+    );
+    let frames = |messages: &[Message]| {
+        let tactile = messages
+            .iter()
+            .filter(|message| message.stream() == Stream::Tactile);
+        tactile.count() as u64
+    };
+    std::fs::write(&log, &whole).unwrap();
+    let all = export_frames(&log, &table).unwrap();
+    assert_eq!(
+        (all.frames, all.ending),
+        (frames(&sent), twintac_log::Ending::Whole)
+    );
+    assert!(std::fs::read(&table).unwrap().ends_with(b"PAR1"));
+    std::fs::write(&log, &whole[..whole.len() / 2]).unwrap();
+    let some = export_frames(&log, &table).unwrap();
+    let back: Vec<Message> = reader(&whole[..whole.len() / 2]).map(Result::unwrap).collect();
+    assert_eq!(
+        (some.frames, some.ending),
+        (frames(&back), twintac_log::Ending::Cut)
+    );
+    assert!(some.frames > 0 && some.frames < all.frames);
 }

@@ -83,7 +83,7 @@ impl Transfer {
         Ok(counts * self.pa_per_count + self.offset_pa)
     }
 
-    pub(crate) const fn is_saturated(&self, counts: Counts) -> bool {
+    const fn is_saturated(&self, counts: Counts) -> bool {
         match self.signed {
             true => matches!(counts.0, 0x7F_FFFF | 0x80_0000),
             false => matches!(counts.0, 0x00_0000 | 0xFF_FFFF),

@@ -1,6 +1,6 @@
 //! What only many frames tell: values that no longer change, and taxels that drift away from the others.
 
-use crate::conversion::{Sample, Transfer};
+use crate::conversion::{Counts, Sample, Transfer};
 use crate::fault::Fault;
 use crate::frame::Frame;
 
@@ -14,6 +14,8 @@ pub struct Thresholds {
     pub frozen_frames: u16,
     /// Drift that is too much, Pa. Default 500: a start, not measured on a sensor.
     pub drift_pa: f32,
+    /// The range that the parts are rated for, Pa: they may well count beyond it, but nobody says what. Default: all that counts can say.
+    pub rated_pa: [f32; 2],
 }
 
 impl Default for Thresholds {
@@ -21,7 +23,18 @@ impl Default for Thresholds {
         Self {
             frozen_frames: 10,
             drift_pa: 500.0,
+            rated_pa: [f32::NEG_INFINITY, f32::INFINITY],
         }
+    }
+}
+
+impl Thresholds {
+    /// Whether a count is at an end of the counts' range, or of the rated one, or beyond.
+    fn is_out_of_range(&self, counts: Counts, transfer: &Transfer) -> bool {
+        let [lowest_pa, highest_pa] = self.rated_pa;
+        transfer.pressure_pa(counts).map_or(true, |pressure_pa| {
+            !(lowest_pa..=highest_pa).contains(&pressure_pa)
+        })
     }
 }
 
@@ -69,7 +82,7 @@ impl<const N: usize> Health<N> {
                 1
             };
             *last = Some(sample);
-            if self.transfer.is_saturated(sample.counts) {
+            if self.thresholds.is_out_of_range(sample.counts, &self.transfer) {
                 *taxel = Err(Fault::Saturated);
             } else if *repeats >= self.thresholds.frozen_frames {
                 *taxel = Err(Fault::Frozen);
@@ -121,7 +134,6 @@ fn median<const N: usize>(numbers: [Option<f32>; N]) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conversion::Counts;
 
     fn frame<const N: usize>(pressures_pa: [Option<f32>; N]) -> Frame<N> {
         Frame {
@@ -175,6 +187,20 @@ mod tests {
             health.screen(&mut next);
             assert_eq!(next.taxels, [Err(Fault::Saturated)]);
         }
+    }
+
+    #[test]
+    fn what_the_parts_are_not_rated_for_is_saturated_though_it_counts() {
+        let rated = Thresholds {
+            rated_pa: [50_000.0, 150_000.0],
+            ..Thresholds::default()
+        };
+        let mut health = Health::new(Transfer::per_pa(32), rated);
+        let mut next = frame([49_999.0, 50_000.0, 150_000.0, 150_001.0].map(Some));
+        health.screen(&mut next);
+        let [below, lowest, highest, above] = next.taxels;
+        assert!(lowest.is_ok() && highest.is_ok());
+        assert_eq!([below, above], [Err(Fault::Saturated); 2]);
     }
 
     #[test]

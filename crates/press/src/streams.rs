@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use phystac::{Clock, Error, PhysTac, Transfer};
-use twintac_log::TactileFrame;
+use phystac::{Clock, Error, PhysTac};
+use twintac_log::{Screening, TactileFrame};
 use twintac_rig::xarm::{MotionState, Report, ReportReader, Wire};
 use twintac_rig::{BenchClock, TcpPose, WrenchSample, WrenchSource};
 
@@ -152,7 +152,7 @@ impl Streams {
     pub fn hear_taxels<I, D, C, const N: usize>(
         &mut self,
         mut sensor: PhysTac<I, D, C, N>,
-        transfer: Transfer,
+        mut screening: Screening<N>,
         mut free: impl FnMut(&mut I, &mut D) + Send + 'static,
     ) -> Result<(), PressError>
     where
@@ -167,7 +167,7 @@ impl Streams {
                         // The barometers convert while the frame is handed on. An error is found again by the next frame.
                         let _ = sensor.trigger();
                         let frame_s = frame.triggered_us as f64 * 1e-6;
-                        ear.say(frame_s, What::Frame(TactileFrame::from_driver(&frame, &transfer)));
+                        ear.say(frame_s, What::Frame(screening.frame(frame)));
                     }
                     Err(error) => {
                         let problem = error.to_string();

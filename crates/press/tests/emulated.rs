@@ -9,11 +9,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DQuat, DVec3};
 use phystac::recovery::{free_bus, reset_switch};
-use phystac::{PhysTac, Transfer};
+use phystac::{PhysTac, Thresholds, Transfer};
 use tempfile::TempDir;
 use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
 use twintac_log::{
-    Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Stream, TaxelState, read_presses,
+    Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Screening, Stream, TaxelState,
+    read_presses,
 };
 use twintac_press::{Bench, PressError, PressSettings, Progress, RunSummary, Runner, Streams, dry_run};
 use twintac_protocol::PressPlan;
@@ -90,7 +91,8 @@ fn bench() -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
         ..phystac::Settings::default()
     };
     let sensor = PhysTac::new(devices.board.bus(), clock, move || bench_clock.now_us(), driver);
-    streams.hear_taxels(sensor, Transfer::per_pa(32), free).unwrap();
+    let screening = Screening::new(Transfer::per_pa(32), Thresholds::default());
+    streams.hear_taxels(sensor, screening, free).unwrap();
     let mut arm = Client::connect(devices.robot.commands()).unwrap();
     arm.enable().unwrap();
     arm.begin_servo().unwrap();

@@ -13,3 +13,4 @@ pub use error::RecordingError;
 pub use import::{FileSummary, Import, ImportSummary};
 pub use press::{Control, Press, Recording};
 pub use provenance::Provenance;
+pub use store::{FrameTable, TaxelCell};

@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Stream(Stream),
     /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
     Record(Record),
+    /// Write the frames of logs as Parquet tables; make logs that were cut whole.
+    Export(Export),
     /// Read recordings of a real sensor.
     Import(Import),
     /// Pair recorded presses with simulated ones.
@@ -261,6 +263,19 @@ pub(crate) struct Record {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) start: Start,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Export {
+    /// Logs of `stream` or `record`: MCAP files, also cut ones (`.mcap.partial`), or patterns like 'runs/touch/*.mcap'.
+    #[arg(value_name = "LOGS", num_args = 1.., required = true)]
+    pub(crate) logs: Vec<String>,
+    /// Folder of the tables [default: beside the logs].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print what was written as JSON, a line for each log.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]

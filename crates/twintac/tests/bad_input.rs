@@ -245,3 +245,15 @@ fn a_curve_that_makes_no_sense() {
         &["3 usable samples", "3 unknowns"],
     );
 }
+
+#[test]
+fn a_log_that_is_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("touch.mcap");
+    fs::write(&log, "time,pressure").unwrap();
+    refused(
+        &twintac(&["export", text(&log)]),
+        &["touch.mcap", "not a readable log"],
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}

@@ -37,6 +37,7 @@ fn help_on_each_command() {
         "calibrate",
         "stream",
         "characterize",
+        "export",
         "record",
         "import",
         "align",

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use twintac_log::{Body, LogError, LogSender, Message, Recorder};
+use twintac_log::{Body, Event, LogError, LogSender, Message, Recorder, Stream, export_frames};
 
 use crate::{About, LiveError, Reading};
 
@@ -16,6 +16,8 @@ pub struct Recording {
     sender: LogSender,
     path: PathBuf,
     frames: u64,
+    /// Number and time of the last frame.
+    last: Option<(u64, f64)>,
 }
 
 impl Recording {
@@ -36,6 +38,7 @@ impl Recording {
                         sender,
                         path,
                         frames,
+                        last: None,
                     });
                 }
                 Err(LogError::Exists { .. }) => {}
@@ -58,11 +61,24 @@ impl Recording {
         self.frames
     }
 
-    /// Hands a frame over to be written, and never waits.
+    /// Hands a frame over to be written, and never waits. Frames that are missing before it are marked.
     ///
     /// # Errors
     /// [`LiveError::Log`]: the disk does not keep up, which the log marks as a gap, or fails.
     pub fn push(&mut self, reading: &Reading) -> Result<(), LiveError> {
+        let last = self.last.replace((reading.sequence, reading.bench_s));
+        if let Some((sequence, last_s)) = last
+            && reading.sequence > sequence + 1
+        {
+            let gap = Event::Gap {
+                stream: Some(Stream::Tactile),
+                cause: "frames were missed, or the bus gave none".to_owned(),
+                from_ns: bench_ns(last_s),
+                to_ns: bench_ns(reading.bench_s),
+                lost: Some(reading.sequence - sequence - 1),
+            };
+            self.sender.send(Message::at_s(last_s, Body::Event(gap)))?;
+        }
         self.sender.send(Message::at_s(
             reading.bench_s,
             Body::Tactile(reading.frame.clone()),
@@ -71,11 +87,17 @@ impl Recording {
         Ok(())
     }
 
-    /// Writes what waits, and gives the file its name. How many frames it has.
+    /// Writes what waits, gives the file its name, and puts a table of its frames beside it, `touch-0001.parquet`. How many frames it has.
     ///
     /// # Errors
     /// [`LiveError::Log`].
     pub fn finish(self) -> Result<u64, LiveError> {
-        Ok(self.recorder.finish()?.messages)
+        self.recorder.finish()?;
+        let table = self.path.with_extension("parquet");
+        Ok(export_frames(&self.path, &table)?.frames)
     }
+}
+
+fn bench_ns(bench_s: f64) -> u64 {
+    (1e9 * bench_s).round() as u64 // negative gives 0
 }

@@ -4,7 +4,6 @@ use std::collections::VecDeque;
 
 use twintac_report::{MapSettings, PreparedMap};
 
-use crate::reader::fault_name;
 use crate::{About, LiveError, Reading, Tally, Tare, Taring};
 
 /// Frames that traces go back.
@@ -153,7 +152,7 @@ impl State {
             .frame
             .taxels
             .iter()
-            .map(|taxel| fault_name(taxel.state))
+            .map(|taxel| taxel.state.fault())
             .collect()
     }
 

@@ -2,9 +2,10 @@
 
 #![allow(dead_code, unreachable_pub)] // each test file uses its own part
 
+use phystac::{Thresholds, Transfer};
 use twintac_emulate::i2c::Bus;
 use twintac_emulate::{Fault, LabClock, Moment, What};
-use twintac_live::{About, BoxedClock, FrameReader, Lab, TAXELS, power_on};
+use twintac_live::{About, BoxedClock, FrameReader, Lab, PowerOn, TAXELS, power_on};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
@@ -20,9 +21,24 @@ pub fn lab(faults: &[Fault]) -> Lab {
 
 pub fn reader(faults: &[Fault]) -> (LabReader, About) {
     let mut phystac = lab(faults).phystac;
-    let transfer = power_on(&mut phystac, &sensor(), Some(8)).unwrap().transfer;
-    let about = About::new(&sensor(), "name = \"phystac\"", Provenance::Emulated, transfer, 0);
-    (FrameReader::new(phystac, transfer), about)
+    let checked = power_on(&mut phystac, &sensor(), Some(8)).unwrap();
+    let about = About::new(
+        &sensor(),
+        "name = \"phystac\"",
+        Provenance::Emulated,
+        checked.transfer,
+        0,
+    );
+    (FrameReader::new(phystac, &checked), about)
+}
+
+/// A sensor that was switched on and found to be like this, whatever its range.
+pub fn checked(transfer: Transfer) -> PowerOn {
+    PowerOn {
+        transfer,
+        thresholds: Thresholds::default(),
+        notes: Vec::new(),
+    }
 }
 
 /// A barometer that is gone from a time on, s.

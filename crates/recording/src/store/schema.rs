@@ -31,15 +31,16 @@ pub(super) const FORCE: &str = "force_n";
 pub(super) const KPA: &str = "_kpa";
 pub(super) const RAW: &str = "_raw";
 pub(super) const VALID: &str = "_valid";
+/// Of a table of frames: whether frames are known to be missing before this one.
+pub(super) const GAP_BEFORE: &str = "gap_before";
+/// The same, behind a taxel's name; null where there is none.
+pub(super) const ABSOLUTE_KPA: &str = "_absolute_kpa";
+pub(super) const COUNTS: &str = "_counts";
+pub(super) const TEMPERATURE_C: &str = "_temperature_c";
+pub(super) const FAULT: &str = "_fault";
 
-/// The columns in the order of the file.
+/// The columns of a recording, in the order of the file.
 pub(super) fn schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
-    let column = |name: &str, physical, repetition| {
-        let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
-        let text = matches!(physical, Physical::BYTE_ARRAY).then_some(LogicalType::String);
-        column.with_logical_type(text).build().map(Arc::new)
-    };
-    let required = |name: &str, physical| column(name, physical, Repetition::REQUIRED);
     let mut columns = vec![required(PRESS_INDEX, Physical::INT32)?];
     for name in TEXTS {
         columns.push(required(name, Physical::BYTE_ARRAY)?);
@@ -47,7 +48,7 @@ pub(super) fn schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
     for name in [TIME].into_iter().chain(POSE) {
         columns.push(required(name, Physical::DOUBLE)?);
     }
-    columns.push(column(FORCE, Physical::DOUBLE, Repetition::OPTIONAL)?);
+    columns.push(optional(FORCE, Physical::DOUBLE)?);
     for (suffix, physical) in [
         (KPA, Physical::DOUBLE),
         (RAW, Physical::DOUBLE),
@@ -57,8 +58,44 @@ pub(super) fn schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
             columns.push(required(&format!("{taxel}{suffix}"), physical)?);
         }
     }
-    Type::group_type_builder("recording")
-        .with_fields(columns)
-        .build()
-        .map(Arc::new)
+    group("recording", columns)
+}
+
+/// The columns of a table of frames, in the order of the file.
+pub(super) fn frame_schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
+    let mut columns = vec![
+        required(TIME, Physical::DOUBLE)?,
+        required(PROVENANCE, Physical::BYTE_ARRAY)?,
+        required(GAP_BEFORE, Physical::BOOLEAN)?,
+    ];
+    for (suffix, physical) in [
+        (ABSOLUTE_KPA, Physical::DOUBLE),
+        (COUNTS, Physical::INT32),
+        (TEMPERATURE_C, Physical::DOUBLE),
+        (FAULT, Physical::BYTE_ARRAY),
+    ] {
+        for taxel in taxels {
+            columns.push(optional(&format!("{taxel}{suffix}"), physical)?);
+        }
+    }
+    group("frames", columns)
+}
+
+fn group(name: &str, columns: Vec<TypePtr>) -> Result<TypePtr, ParquetError> {
+    let group = Type::group_type_builder(name).with_fields(columns);
+    group.build().map(Arc::new)
+}
+
+fn required(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
+    column(name, physical, Repetition::REQUIRED)
+}
+
+fn optional(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
+    column(name, physical, Repetition::OPTIONAL)
+}
+
+fn column(name: &str, physical: Physical, repetition: Repetition) -> Result<TypePtr, ParquetError> {
+    let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
+    let text = matches!(physical, Physical::BYTE_ARRAY).then_some(LogicalType::String);
+    column.with_logical_type(text).build().map(Arc::new)
 }

@@ -1,5 +1,6 @@
 //! Writes recordings.
 
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -119,14 +120,7 @@ impl Rows<'_, '_> {
         values: impl Iterator<Item = T::T>,
         present: Option<&[i16]>,
     ) -> Result<(), ParquetError> {
-        let mut column = self
-            .writer
-            .next_column()?
-            .ok_or_else(|| ParquetError::General("too many columns".to_owned()))?;
-        column
-            .typed::<T>()
-            .write_batch(&values.collect::<Vec<_>>(), present, None)?;
-        column.close()
+        put_column::<T, _>(&mut self.writer, &values.collect::<Vec<_>>(), present)
     }
 
     fn text(&mut self, text: impl Fn(&Press) -> String) -> Result<(), ParquetError> {
@@ -161,4 +155,17 @@ impl Rows<'_, '_> {
             Some(&present),
         )
     }
+}
+
+/// Writes the next column of a row group. `present` tells for each row whether it has a value: 1 or 0.
+pub(super) fn put_column<T: DataType, W: Write + Send>(
+    writer: &mut SerializedRowGroupWriter<'_, W>,
+    values: &[T::T],
+    present: Option<&[i16]>,
+) -> Result<(), ParquetError> {
+    let mut column = writer
+        .next_column()?
+        .ok_or_else(|| ParquetError::General("too many columns".to_owned()))?;
+    column.typed::<T>().write_batch(values, present, None)?;
+    column.close()
 }

@@ -3,6 +3,7 @@
 mod calibrate;
 mod characterize;
 mod demo;
+mod export;
 mod files;
 mod follow;
 mod mesh;
@@ -33,6 +34,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Characterize(arguments) => characterize::run(&arguments),
         Command::Stream(arguments) => stream::run(&arguments),
         Command::Record(arguments) => record::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Import(arguments) => reproduce::import(&arguments),
         Command::Align(arguments) => stages::align(&arguments),
         Command::Train(arguments) => stages::train(&arguments),

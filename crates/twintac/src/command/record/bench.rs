@@ -112,7 +112,7 @@ where
 {
     let checked = power_on(&mut taxels, sensor, scale)?;
     let mut streams = Streams::new(clock);
-    streams.hear_taxels(taxels, checked.transfer, free)?;
+    streams.hear_taxels(taxels, checked.screening(), free)?;
     let (requests, configuration) = addresses.force.clone();
     let mut force = netft::Client::connect(requests, configuration)?;
     force.start(false)?;

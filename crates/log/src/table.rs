@@ -1,0 +1,60 @@
+//! The tactile frames of a log as a table.
+
+use std::path::Path;
+
+use twintac_recording::{FrameTable, TaxelCell};
+
+use crate::{Body, Ending, Event, LogError, LogReader, Stream, Taxel};
+
+/// What was exported.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exported {
+    /// Frames in the table.
+    pub frames: u64,
+    /// Of these, frames with a gap before them that the log marks.
+    pub gaps: u64,
+    /// Time of the last frame on the bench's clock, s; 0 without frames.
+    pub last_s: f64,
+    /// How the log ends.
+    pub ending: Ending,
+}
+
+/// Writes the tactile frames of a log, whole or cut, as a Parquet table, one row per frame, in little memory.
+///
+/// # Errors
+/// A log that cannot be read; a table that cannot be written.
+pub fn export_frames(log: &Path, table: &Path) -> Result<Exported, LogError> {
+    let mut reader = LogReader::open(log)?;
+    let about = reader.description();
+    let mut table = FrameTable::create(table, &about.sensor, about.provenance, &about.taxels)?;
+    let (mut gaps, mut last_s, mut is_gap) = (0, 0.0, false);
+    for message in &mut reader {
+        let message = message?;
+        match &message.body {
+            Body::Event(Event::Gap { stream, .. }) => {
+                is_gap |= matches!(stream, None | Some(Stream::Tactile));
+            }
+            Body::Tactile(frame) => {
+                last_s = message.bench_ns as f64 * 1e-9;
+                gaps += u64::from(is_gap);
+                table.push(last_s, std::mem::take(&mut is_gap), frame.taxels.iter().map(cell))?;
+            }
+            _ => {}
+        }
+    }
+    Ok(Exported {
+        frames: table.finish()?,
+        gaps,
+        last_s,
+        ending: reader.ending().unwrap_or(Ending::Cut),
+    })
+}
+
+fn cell(taxel: &Taxel) -> TaxelCell {
+    TaxelCell {
+        absolute_kpa: taxel.pressure_pa.map(|pa| 1e-3 * pa),
+        counts: taxel.counts,
+        temperature_c: taxel.temperature_c,
+        fault: taxel.state.fault(),
+    }
+}
