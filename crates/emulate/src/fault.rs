@@ -194,7 +194,10 @@ impl Fault {
 }
 
 /// That all faults make sense.
-pub(crate) fn check_all(faults: &[Fault]) -> Result<(), EmulateError> {
+///
+/// # Errors
+/// The first that does not, by its field.
+pub fn check_faults(faults: &[Fault]) -> Result<(), EmulateError> {
     let mut indexed = faults.iter().enumerate();
     indexed.try_for_each(|(index, fault)| fault.check(&format!("faults[{index}]")))
 }

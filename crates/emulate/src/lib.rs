@@ -40,7 +40,7 @@ pub use bench::{Bench, Settings};
 pub use chance::Chance;
 pub use clock::LabClock;
 pub use error::EmulateError;
-pub use fault::{Fault, Moment, What, Wire};
+pub use fault::{Fault, Moment, What, Wire, check_faults};
 pub use hertz::Hertz;
 pub use physics::{CHANNELS, Physics, Sensed};
 pub use scene::{Scene, Situation};

@@ -142,6 +142,18 @@ fn servo_poses_want_servo_mode_and_small_steps() {
 }
 
 #[test]
+fn a_client_that_is_dropped_in_servo_mode_stops_the_robot() {
+    let robot = robot(&[]);
+    let mut first = client(&robot);
+    first.enable().unwrap();
+    first.begin_servo().unwrap();
+    let mut second = client(&robot);
+    assert_ne!(second.state().unwrap(), MotionState::Stopped);
+    drop(first);
+    assert_eq!(second.state().unwrap(), MotionState::Stopped);
+}
+
+#[test]
 fn reports_come_at_their_rates_and_say_what_is() {
     let robot = robot(&[]);
     let mut commands = client(&robot);

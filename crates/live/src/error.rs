@@ -37,13 +37,18 @@ pub enum LiveError {
         /// What to type or to write.
         advice: String,
     },
-    /// The confirmed scale makes no free air of what the taxels read.
+    /// The confirmed scale makes no free air of what most taxels read.
     #[error(
-        "with {counts_per_pa} counts per Pa no taxel reads free air: {found}; lift what touches the sensor, or correct the scale"
+        "with {} counts per Pa {n_free} of {n_read} taxels read free air: {found}; lift what touches the sensor, correct the scale, or say how high the place is (`--altitude-m`)",
+        1.0 / pa_per_count
     )]
     ScaleContradicted {
-        /// The confirmed scale.
-        counts_per_pa: u16,
+        /// The confirmed scale, Pa per count.
+        pa_per_count: f32,
+        /// Taxels that read free air.
+        n_free: usize,
+        /// Taxels that read anything.
+        n_read: usize,
         /// What the taxels read, and with which scale it would be free air.
         found: String,
     },

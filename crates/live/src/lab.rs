@@ -109,27 +109,37 @@ impl Lab {
     }
 }
 
-/// The board of a sensor that nobody has soldered: its barometers have the scale that the description confirms, else the finest that reaches
-/// the description's range.
+/// The board of a sensor that nobody has soldered: its barometers count as the description confirms, else by [`emulated_scale`].
 #[must_use]
 pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
-    let max_kpa = sensor.readout.max_kpa;
-    let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= max_kpa;
-    let finest = SCALES_PER_PA.into_iter().rev().find(reaches);
-    let counts_per_pa = sensor
-        .readout
-        .counts_per_pa
-        .or(finest)
-        .unwrap_or(SCALES_PER_PA[0]);
-    BoardSettings {
-        channels: sensor.taxels.iter().map(|taxel| taxel.channel).collect(),
-        barometer: BarometerSettings {
-            counts_per_pa: f64::from(counts_per_pa),
-            is_signed: full_scale_kpa(counts_per_pa, true) >= max_kpa,
+    let readout = &sensor.readout;
+    let counts_per_pa = readout.counts_per_pa.unwrap_or_else(|| emulated_scale(sensor));
+    let barometer = match readout.transfer {
+        Some(transfer) => BarometerSettings {
+            counts_per_pa: 1.0 / transfer.pa_per_count,
+            offset_pa: transfer.offset_pa,
+            is_signed: transfer.signed,
             ..BarometerSettings::default()
         },
+        None => BarometerSettings {
+            counts_per_pa: f64::from(counts_per_pa),
+            is_signed: full_scale_kpa(counts_per_pa, true) >= readout.max_kpa,
+            ..BarometerSettings::default()
+        },
+    };
+    BoardSettings {
+        channels: sensor.taxels.iter().map(|taxel| taxel.channel).collect(),
+        barometer,
         ..BoardSettings::default()
     }
+}
+
+/// The scale of emulated barometers of which the description confirms none, counts per Pa: the finest that reaches the description's range.
+#[must_use]
+pub fn emulated_scale(sensor: &Sensor) -> u16 {
+    let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= sensor.readout.max_kpa;
+    let finest = SCALES_PER_PA.into_iter().rev().find(reaches);
+    finest.unwrap_or(SCALES_PER_PA[0])
 }
 
 impl std::fmt::Debug for Lab {

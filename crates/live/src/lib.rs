@@ -5,13 +5,14 @@
 //! the emulated one. [`stream_rows`] writes rows, [`dashboard::run`] draws.
 //!
 //! ```
-//! use twintac_live::{FrameReader, Lab, power_on};
+//! use twintac_live::{FrameReader, Known, Lab, power_on};
 //! use twintac_emulate::LabClock;
 //!
 //! let sensor = twintac_sensor::Sensor::read("../../sensors/phystac.toml")?;
 //! let mut phystac = Lab::new(&sensor, LabClock::virtual_time(), &[])?.phystac;
-//! assert!(power_on(&mut phystac, &sensor, None).is_err()); // nobody has confirmed a scale
-//! let checked = power_on(&mut phystac, &sensor, Some(8))?;
+//! assert!(power_on(&mut phystac, &sensor, &Known::default()).is_err()); // nobody has confirmed a scale
+//! let known = Known { counts_per_pa: Some(8), ..Known::default() };
+//! let checked = power_on(&mut phystac, &sensor, &known)?;
 //! let reading = FrameReader::new(phystac, &checked).read()?;
 //! assert!((reading.frame.taxels[0].pressure_pa.unwrap() - 101_325.0).abs() < 200.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -35,13 +36,13 @@ mod tare;
 
 pub use about::{About, driver_settings};
 pub use error::LiveError;
-pub use lab::{Lab, Motion, emulated_board};
+pub use lab::{Lab, Motion, emulated_board, emulated_scale};
 #[cfg(target_os = "linux")]
 pub use linux::{LinuxBus, LinuxPhysTac, open_linux};
 pub use live::Live;
 pub use reader::{FrameReader, Reading};
 pub use rows::{Format, RowWriter};
-pub use scale::{PowerOn, power_on};
+pub use scale::{Known, PowerOn, power_on};
 pub use source::{FrameSource, Tally};
 pub use stream::{Limits, Streamed, stream_rows};
 pub use tare::{Tare, Taring};

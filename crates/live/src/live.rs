@@ -9,7 +9,7 @@ use twintac_emulate::LabClock;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
-use crate::{About, BoxedClock, FrameReader, FrameSource, Lab, LiveError, TAXELS, power_on};
+use crate::{About, BoxedClock, FrameReader, FrameSource, Known, Lab, LiveError, TAXELS, power_on};
 
 /// A sensor that is being read.
 #[derive(Debug)]
@@ -23,20 +23,17 @@ pub struct Live {
 }
 
 impl Live {
-    /// The emulated sensor of a description, whose text is `sensor_toml`, in real time. `counts_per_pa` is the confirmed scale, if the
-    /// description has none or another.
+    /// The emulated sensor of a description, whose text is `sensor_toml`, in real time. Its barometers count as [`emulated_board`](crate::emulated_board)
+    /// says, which needs nobody to confirm it.
     ///
     /// # Errors
     /// Those of [`Lab::new`] and [`power_on`].
-    pub fn in_the_lab(
-        sensor: &Sensor,
-        sensor_toml: &str,
-        counts_per_pa: Option<u16>,
-    ) -> Result<Self, LiveError> {
+    pub fn in_the_lab(sensor: &Sensor, sensor_toml: &str, known: &Known) -> Result<Self, LiveError> {
         let start_unix_ns = unix_ns();
         let phystac = Lab::new(sensor, LabClock::real(), &[])?.phystac;
         let from = (Provenance::Emulated, start_unix_ns);
-        Self::begin(phystac, sensor, sensor_toml, counts_per_pa, from)
+        let known = known.or_emulated(sensor);
+        Self::begin(phystac, sensor, sensor_toml, &known, from)
     }
 
     /// A sensor on `/dev/i2c-N`.
@@ -48,7 +45,7 @@ impl Live {
         path: &std::path::Path,
         sensor: &Sensor,
         sensor_toml: &str,
-        counts_per_pa: Option<u16>,
+        known: &Known,
     ) -> Result<Self, LiveError> {
         let start_unix_ns = unix_ns();
         let settings = crate::driver_settings(sensor)?;
@@ -56,17 +53,17 @@ impl Live {
         let clock: BoxedClock = Box::new(move || start.elapsed().as_micros() as u64); // 584 thousand years
         let phystac = crate::open_linux(path, settings, clock)?;
         let from = (Provenance::Real, start_unix_ns);
-        Self::begin(phystac, sensor, sensor_toml, counts_per_pa, from)
+        Self::begin(phystac, sensor, sensor_toml, known, from)
     }
 
     fn begin<I2C: I2c + Send + 'static, D: DelayNs + Send + 'static>(
         mut phystac: PhysTac<I2C, D, BoxedClock, TAXELS>,
         sensor: &Sensor,
         sensor_toml: &str,
-        counts_per_pa: Option<u16>,
+        known: &Known,
         (provenance, start_unix_ns): (Provenance, u64),
     ) -> Result<Self, LiveError> {
-        let checked = power_on(&mut phystac, sensor, counts_per_pa)?;
+        let checked = power_on(&mut phystac, sensor, known)?;
         let reader = FrameReader::new(phystac, &checked);
         Ok(Self {
             source: FrameSource::start(reader, FrameSource::USUAL_CAPACITY)?,

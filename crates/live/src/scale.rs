@@ -6,8 +6,8 @@ use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, propose};
 use twintac_log::Screening;
 use twintac_sensor::Sensor;
 
-use crate::LiveError;
 use crate::reader::bus_error;
+use crate::{LiveError, emulated_scale};
 
 /// Scales that parts of the family have, counts per Pa.
 pub(crate) const SCALES_PER_PA: [u16; 5] = [4, 8, 16, 32, 64];
@@ -19,6 +19,28 @@ pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
         ..Transfer::per_pa(counts_per_pa)
     };
     1e-3 * f64::from(transfer.full_scale_pa())
+}
+
+/// What a person knows of the parts and the place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Known {
+    /// Counts per Pa; `None`: what the sensor's description says.
+    pub counts_per_pa: Option<u16>,
+    /// Altitude, m; `None`: up to 2000 m.
+    pub altitude_m: Option<f32>,
+}
+
+impl Known {
+    /// With the scale of emulated barometers, where neither this nor the description has one.
+    #[must_use]
+    pub fn or_emulated(self, sensor: &Sensor) -> Self {
+        let is_described = sensor.readout.transfer.is_some() || sensor.readout.counts_per_pa.is_some();
+        let scale = (!is_described).then(|| emulated_scale(sensor));
+        Self {
+            counts_per_pa: self.counts_per_pa.or(scale),
+            ..self
+        }
+    }
 }
 
 /// What was found when the sensor was switched on.
@@ -40,88 +62,134 @@ impl PowerOn {
     }
 }
 
-/// Reads a frame in free air, and says what counts stand for if somebody has confirmed it: `counts_per_pa`, or else the sensor's description.
+/// Reads a frame in free air, and says what counts stand for if somebody has confirmed it: `known`, or else the sensor's description.
 ///
-/// Counts are two's complement, as the family's data sheet has it, unless only unsigned ones reach the description's range.
+/// Counts per Pa are of two's complement, as the family's data sheet has it, unless only unsigned ones reach the description's range.
 ///
 /// # Errors
 /// [`LiveError::ScaleUnconfirmed`]: nobody has; with what free air proposes. [`LiveError::ScaleContradicted`]: free air is not what
-/// any taxel then reads. [`LiveError::Bus`].
+/// most taxels then read. [`LiveError::Bus`].
 pub fn power_on<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
     phystac: &mut PhysTac<I2C, D, C, N>,
     sensor: &Sensor,
-    counts_per_pa: Option<u16>,
+    known: &Known,
 ) -> Result<PowerOn, LiveError> {
     let frame = phystac.frame().map_err(bus_error)?;
-    check(&frame, sensor, counts_per_pa.or(sensor.readout.counts_per_pa))
+    let air = known
+        .altitude_m
+        .map_or_else(FreeAir::default, FreeAir::at_altitude_m);
+    let found = Found::of(&frame, air);
+    let transfer = confirmed(sensor, known).ok_or_else(|| found.unconfirmed(sensor))?;
+    let notes = check(&frame, sensor, air, &transfer, found)?;
+    let rated_kpa = [sensor.readout.min_kpa, sensor.readout.max_kpa];
+    Ok(PowerOn {
+        transfer,
+        thresholds: Thresholds {
+            rated_pa: rated_kpa.map(|kpa| (1e3 * kpa) as f32),
+            ..Thresholds::default()
+        },
+        notes,
+    })
 }
 
+/// What somebody has confirmed.
+fn confirmed(sensor: &Sensor, known: &Known) -> Option<Transfer> {
+    let readout = &sensor.readout;
+    let per_pa = |counts_per_pa: u16| {
+        let reaches = |signed| full_scale_kpa(counts_per_pa, signed) >= readout.max_kpa;
+        Transfer {
+            signed: reaches(true) || !reaches(false),
+            ..Transfer::per_pa(counts_per_pa)
+        }
+    };
+    let described = readout.transfer.map(|transfer| Transfer {
+        pa_per_count: transfer.pa_per_count as f32,
+        offset_pa: transfer.offset_pa as f32,
+        signed: transfer.signed,
+    });
+    let typed = known.counts_per_pa.map(per_pa);
+    typed.or(described).or(readout.counts_per_pa.map(per_pa))
+}
+
+/// What free air says.
+struct Found {
+    counts_per_pa: Option<u16>,
+    text: String,
+}
+
+impl Found {
+    fn of<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Self {
+        match propose(frame, air) {
+            Ok(found) => Self {
+                counts_per_pa: Some(found.counts_per_pa),
+                text: format!(
+                    "free air proposes {} counts per Pa: the taxels then read {:.1} to {:.1} kPa",
+                    found.counts_per_pa,
+                    1e-3 * found.lowest_pa,
+                    1e-3 * found.highest_pa
+                ),
+            },
+            Err(error) => Self {
+                counts_per_pa: None,
+                text: format!("free air proposes no scale: {error}"),
+            },
+        }
+    }
+
+    fn unconfirmed(&self, sensor: &Sensor) -> LiveError {
+        let scale = self
+            .counts_per_pa
+            .map_or("K".to_owned(), |found| found.to_string());
+        LiveError::ScaleUnconfirmed {
+            found: self.text.clone(),
+            advice: format!(
+                "give `--scale {scale}`, or write `counts_per_pa = {scale}` under [readout] in the description of sensor {}",
+                sensor.name
+            ),
+        }
+    }
+}
+
+/// That most taxels read free air. What is odd but stops nothing, a sentence each.
 fn check<const N: usize>(
     frame: &Frame<N>,
     sensor: &Sensor,
-    confirmed: Option<u16>,
-) -> Result<PowerOn, LiveError> {
-    let air = FreeAir::default();
-    let proposal = propose(frame, air);
-    let found = match proposal {
-        Ok(found) => format!(
-            "free air proposes {} counts per Pa: the taxels then read {:.1} to {:.1} kPa",
-            found.counts_per_pa,
-            1e-3 * found.lowest_pa,
-            1e-3 * found.highest_pa
-        ),
-        Err(error) => format!("free air proposes no scale: {error}"),
-    };
-    let Some(counts_per_pa) = confirmed else {
-        let scale = proposal.map_or("K".to_owned(), |found| found.counts_per_pa.to_string());
-        let advice = format!(
-            "give `--scale {scale}`, or write `counts_per_pa = {scale}` under [readout] in the description of sensor {}",
-            sensor.name
-        );
-        return Err(LiveError::ScaleUnconfirmed { found, advice });
-    };
-    let max_kpa = sensor.readout.max_kpa;
-    let reaches = |signed| full_scale_kpa(counts_per_pa, signed) >= max_kpa;
-    let transfer = Transfer {
-        signed: reaches(true) || !reaches(false),
-        ..Transfer::per_pa(counts_per_pa)
-    };
+    air: FreeAir,
+    transfer: &Transfer,
+    found: Found,
+) -> Result<Vec<String>, LiveError> {
     let mut notes = Vec::new();
-    let mut n_free = 0;
-    for ((taxel, pressure), sample) in sensor
-        .taxels
-        .iter()
-        .zip(frame.pressures_pa(&transfer))
-        .zip(frame.taxels)
-    {
-        match (pressure, sample) {
-            (Ok(pressure_pa), _) if (air.lowest_pa..=air.highest_pa).contains(&pressure_pa) => n_free += 1,
-            (Ok(pressure_pa), _) => {
-                let pressure_kpa = 1e-3 * pressure_pa;
-                notes.push(format!(
-                    "taxel {} reads {pressure_kpa:.1} kPa: is it touched?",
-                    taxel.name
-                ));
+    let (mut n_free, mut n_read) = (0, 0);
+    for (taxel, pressure) in sensor.taxels.iter().zip(frame.pressures_pa(transfer)) {
+        let name = &taxel.name;
+        match pressure {
+            Ok(pressure_pa) => {
+                n_read += 1;
+                if (air.lowest_pa..=air.highest_pa).contains(&pressure_pa) {
+                    n_free += 1;
+                } else {
+                    notes.push(format!(
+                        "taxel {name} reads {:.1} kPa: is it touched?",
+                        1e-3 * pressure_pa
+                    ));
+                }
             }
-            (Err(fault), _) => notes.push(format!("taxel {}: {fault}", taxel.name)),
+            Err(fault) => notes.push(format!("taxel {name}: {fault}")),
         }
     }
-    if n_free == 0 {
-        return Err(LiveError::ScaleContradicted { counts_per_pa, found });
+    if 2 * n_free <= n_read || n_read == 0 {
+        return Err(LiveError::ScaleContradicted {
+            pa_per_count: transfer.pa_per_count,
+            n_free,
+            n_read,
+            found: found.text,
+        });
     }
-    if !reaches(transfer.signed) {
-        let most_kpa = full_scale_kpa(counts_per_pa, transfer.signed);
+    let (most_kpa, max_kpa) = (1e-3 * transfer.full_scale_pa(), sensor.readout.max_kpa);
+    if f64::from(most_kpa) < max_kpa {
         notes.push(format!(
-            "{counts_per_pa} counts per Pa say at most {most_kpa:.0} kPa; the description's range ends at {max_kpa} kPa"
+            "counts say at most {most_kpa:.0} kPa; the description's range ends at {max_kpa} kPa"
         ));
     }
-    let thresholds = Thresholds {
-        rated_pa: [sensor.readout.min_kpa, max_kpa].map(|kpa| (1e3 * kpa) as f32),
-        ..Thresholds::default()
-    };
-    Ok(PowerOn {
-        transfer,
-        thresholds,
-        notes,
-    })
+    Ok(notes)
 }

@@ -10,7 +10,7 @@ use phystac::PhysTac;
 use twintac_emulate::i2c::{Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{LabClock, Physics, Scene, Sensed};
-use twintac_live::{BoxedClock, FrameReader, TAXELS, driver_settings, emulated_board, power_on};
+use twintac_live::{BoxedClock, FrameReader, Known, TAXELS, driver_settings, emulated_board, power_on};
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
 
@@ -55,12 +55,15 @@ fn reader(board: &BoardSettings) -> FrameReader<Bus, LabClock, BoxedClock, TAXEL
     let scene = Scene::new(clock.clone(), Stairs, nowhere, ArmSettings::default());
     let mut board = board.clone();
     board.barometer.noise_pa = 0.0;
-    let scale = board.barometer.counts_per_pa as u16;
+    let known = Known {
+        counts_per_pa: Some(board.barometer.counts_per_pa as u16),
+        ..Known::default()
+    };
     let board = Board::new(scene, &board, &[]).unwrap();
     let now = clock.clone();
     let now: BoxedClock = Box::new(move || now.now_us());
     let mut phystac = PhysTac::new(board.bus(), clock, now, driver_settings(&sensor()).unwrap());
-    let checked = power_on(&mut phystac, &sensor(), Some(scale)).unwrap();
+    let checked = power_on(&mut phystac, &sensor(), &known).unwrap();
     FrameReader::new(phystac, &checked)
 }
 

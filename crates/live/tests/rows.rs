@@ -8,7 +8,7 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use common::{checked, gone, lab, reader, sensor};
+use common::{checked, gone, lab, reader, scale, sensor};
 use embedded_hal::i2c::{self, I2c, Operation};
 use glam::DVec3;
 use phystac::{PhysTac, Settings, Transfer};
@@ -16,7 +16,8 @@ use twintac_emulate::i2c::{Board, BoardSettings};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{Fault, Hertz, LabClock, Scene};
 use twintac_live::{
-    Format, FrameReader, FrameSource, Limits, LiveError, RowWriter, Taring, power_on, stream_rows,
+    Format, FrameReader, FrameSource, Known, Lab, Limits, LiveError, RowWriter, Taring, emulated_board,
+    power_on, stream_rows,
 };
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
@@ -213,19 +214,19 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
 
 #[test]
 fn no_scale_is_guessed() {
-    let check = |scale| power_on(&mut lab(&[]).phystac, &sensor(), scale);
-    let said = check(None).unwrap_err().to_string();
+    let check = |known| power_on(&mut lab(&[]).phystac, &sensor(), &known);
+    let said = check(Known::default()).unwrap_err().to_string();
     assert!(said.contains("free air proposes 8 counts per Pa"), "{said}");
     assert!(
         said.contains("`--scale 8`") && said.contains("`counts_per_pa = 8` under [readout]"),
         "{said}"
     );
-    let said = check(Some(32)).unwrap_err().to_string();
+    let said = check(scale(32)).unwrap_err().to_string();
     assert!(
-        said.contains("with 32 counts per Pa no taxel reads free air: free air proposes 8"),
+        said.contains("with 32 counts per Pa 0 of 8 taxels read free air: free air proposes 8"),
         "{said}"
     );
-    let confirmed = check(Some(8)).unwrap();
+    let confirmed = check(scale(8)).unwrap();
     assert_eq!(confirmed.notes, Vec::<String>::new());
     // 1500 kPa, the description's range, need 24 bits.
     assert_eq!(
@@ -238,9 +239,9 @@ fn no_scale_is_guessed() {
 
     let mut described = sensor();
     described.readout.counts_per_pa = Some(8);
-    assert!(power_on(&mut lab(&[]).phystac, &described, None).is_ok());
+    assert!(power_on(&mut lab(&[]).phystac, &described, &Known::default()).is_ok());
 
-    let one_gone = power_on(&mut lab(&[gone(4, 0.0)]).phystac, &sensor(), Some(8)).unwrap();
+    let one_gone = power_on(&mut lab(&[gone(4, 0.0)]).phystac, &sensor(), &scale(8)).unwrap();
     assert_eq!(one_gone.notes, ["taxel t4: the barometer does not acknowledge"]);
 }
 
@@ -280,4 +281,58 @@ fn a_sensor_that_stays_away_is_given_up_with_its_reason() {
         "{error}"
     );
     assert_eq!(source.tally().failed, 40);
+}
+
+#[test]
+fn a_high_place_is_free_air_where_it_is_said_to_be_high() {
+    struct High;
+    impl twintac_emulate::Physics for High {
+        fn at(&mut self, _: &TcpPose, _: f64) -> twintac_emulate::Sensed {
+            twintac_emulate::Sensed::untouched(65.0, 10.0)
+        }
+    }
+    let power_on_at = |altitude_m| {
+        let clock = LabClock::virtual_time();
+        let nowhere = TcpPose {
+            position_mm: DVec3::ZERO,
+            roll_pitch_yaw_rad: DVec3::ZERO,
+        };
+        let scene = Scene::new(clock.clone(), High, nowhere, ArmSettings::default());
+        let board = Board::new(scene, &emulated_board(&sensor()), &[]).unwrap();
+        let mut phystac = PhysTac::new(board.bus(), clock, || 0, Settings::<8>::default());
+        let known = Known {
+            altitude_m,
+            ..scale(8)
+        };
+        power_on(&mut phystac, &sensor(), &known)
+    };
+    assert!(matches!(
+        power_on_at(None),
+        Err(LiveError::ScaleContradicted { n_free: 0, .. })
+    ));
+    assert_eq!(power_on_at(Some(3640.0)).unwrap().notes, Vec::<String>::new());
+}
+
+#[test]
+fn a_described_transfer_is_used_as_it_is() {
+    let mut described = sensor();
+    let span = twintac_sensor::Transfer {
+        pa_per_count: 3_750_000.0 / 8_388_608.0,
+        offset_pa: -1_000_000.0,
+        signed: false,
+    };
+    described.readout.transfer = Some(span);
+    let mut phystac = Lab::new(&described, LabClock::virtual_time(), &[])
+        .unwrap()
+        .phystac;
+    let checked = power_on(&mut phystac, &described, &Known::default()).unwrap();
+    assert_eq!(
+        (checked.transfer.offset_pa, checked.transfer.signed),
+        (-1e6, false)
+    );
+    let frame = FrameReader::new(phystac, &checked).read().unwrap().frame;
+    let pressures_pa = frame.taxels.iter().map(|taxel| taxel.pressure_pa.unwrap());
+    for pressure_pa in pressures_pa {
+        assert!((pressure_pa - 101_325.0).abs() < 200.0, "{pressure_pa}");
+    }
 }

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use crate::sink::LogFile;
-use crate::{Ending, LogError, LogReader, LogWriter};
+use crate::{Body, Ending, Event, LogError, LogReader, LogWriter, Message};
 
 /// What was recovered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recovered {
     /// The whole file.
     pub path: PathBuf,
-    /// Messages in it.
+    /// Messages in it that the old file has.
     pub messages: u64,
     /// How the old file ends.
     pub ending: Ending,
@@ -19,7 +19,7 @@ pub struct Recovered {
 /// Writes all that can be read of a log into a whole one beside it, through a temporary name; the old file stays.
 ///
 /// The whole one of `<name>.partial` is `<name>`, that of any other file `<stem>.recovered.mcap`. What was damaged on the disk
-/// becomes a gap.
+/// becomes a gap, and so does the end of a file that was cut.
 ///
 /// # Errors
 /// A file that cannot be read or is no log; a whole one that exists already or cannot be written.
@@ -29,14 +29,31 @@ pub fn recover(path: &Path) -> Result<Recovered, LogError> {
     let whole = path.with_extension(if is_partial { "" } else { "recovered.mcap" });
     let mut writer = LogWriter::new(LogFile::remake(&whole)?, reader.description())?;
     let mut messages = 0;
+    let mut last_ns = 0;
     for message in &mut reader {
-        writer.write(&message?)?;
+        let message = message?;
+        last_ns = message.bench_ns.max(last_ns);
+        writer.write(&message)?;
         messages += 1;
+    }
+    let ending = reader.ending().unwrap_or(Ending::Cut);
+    if ending == Ending::Cut {
+        let gap = Event::Gap {
+            stream: None,
+            cause: "the file was cut here".to_owned(),
+            from_ns: last_ns,
+            to_ns: last_ns,
+            lost: None,
+        };
+        writer.write(&Message {
+            bench_ns: last_ns,
+            body: Body::Event(gap),
+        })?;
     }
     writer.finish()?;
     Ok(Recovered {
         path: whole,
         messages,
-        ending: reader.ending().unwrap_or(Ending::Cut),
+        ending,
     })
 }

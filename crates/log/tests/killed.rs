@@ -12,7 +12,7 @@ use std::process::{Command, Stdio};
 
 use common::{NS_PER_S, bench, description};
 use rand::{Rng, SeedableRng};
-use twintac_log::{Ending, LogFile, LogReader, LogWriter, Message, recover};
+use twintac_log::{Body, Ending, Event, LogFile, LogReader, LogWriter, Message, recover};
 
 const PATH: &str = "TWINTAC_LOG_TO_BE_KILLED";
 const SECONDS: u64 = 30;
@@ -85,7 +85,12 @@ fn killed_at(kill_ns: u64, messages: &[Message]) -> usize {
     assert!(back.len() >= safe, "at {last_ns} ns: {} of {safe}", back.len());
     let whole = recover(&partial).unwrap();
     assert_eq!(whole.path, path);
-    let recovered: Vec<Message> = LogReader::open(&path).unwrap().map(Result::unwrap).collect();
-    assert_eq!(recovered, back);
+    let mut recovered: Vec<Message> = LogReader::open(&path).unwrap().map(Result::unwrap).collect();
+    let cut = recovered.pop().unwrap().body;
+    assert!(
+        matches!(cut, Body::Event(Event::Gap { .. })),
+        "where it was cut is marked"
+    );
+    assert!(recovered == back, "all else is as it was");
     back.len()
 }

@@ -276,9 +276,15 @@ fn recovering_makes_a_whole_file_and_keeps_the_old_one() {
     assert_eq!(recovered.ending, twintac_log::Ending::Cut);
     let bytes = std::fs::read(&recovered.path).unwrap();
     assert!(mcap::Summary::read(&bytes).unwrap().is_some());
-    let back: Vec<Message> = reader(&bytes).map(Result::unwrap).collect();
+    let mut back: Vec<Message> = reader(&bytes).map(Result::unwrap).collect();
+    let cut = back.pop().unwrap();
+    assert!(
+        matches!(cut.body, Body::Event(Event::Gap { stream: None, .. })),
+        "{cut:?}"
+    );
     assert_eq!(back, sent[..back.len()]);
     assert!(back.len() as u64 == recovered.messages && back.len() > sent.len() / 4);
+    let cut = folder.path().join("bench.mcap.partial");
     assert!(matches!(recover(&cut).unwrap_err(), LogError::Exists { .. }));
     // What is whole already gives the same bytes again, under another name.
     let path = folder.path().join("old.mcap");

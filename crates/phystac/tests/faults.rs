@@ -62,6 +62,25 @@ fn a_missing_barometer_is_named_and_stops_no_other() {
 }
 
 #[test]
+fn a_barometer_that_comes_back_after_the_trigger_has_no_sample_of_this_frame() {
+    for missing in 0..8 {
+        let bench = Bench::new();
+        let mut sensor = sensor_on(&bench);
+        assert!(is_complete(&next_frame(&bench, &mut sensor)));
+        bench.with(|world| world.parts[missing].is_present = false);
+        assert_eq!(
+            faults(&next_frame(&bench, &mut sensor).unwrap()),
+            [(missing, Fault::Missing)]
+        );
+        sensor.trigger().unwrap();
+        bench.with(|world| world.parts[missing].is_present = true);
+        // Its registers still hold a sample, of a frame long ago.
+        assert_eq!(faults(&sensor.frame().unwrap()), [(missing, Fault::Missing)]);
+        assert!(is_complete(&next_frame(&bench, &mut sensor)));
+    }
+}
+
+#[test]
 fn without_any_barometer_or_without_the_switch_there_is_no_frame() {
     let bench = Bench::new();
     let mut sensor = sensor_on(&bench);

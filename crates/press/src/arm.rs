@@ -22,6 +22,9 @@ pub trait Arm {
     /// # Errors
     /// The robot does not confirm: it may be moving.
     fn stop(&mut self) -> Result<(), RigError>;
+
+    /// The error that it has, in words, if it has one and says so.
+    fn error(&mut self) -> Option<String>;
 }
 
 /// After [`Client::begin_servo`].
@@ -36,5 +39,10 @@ impl<W: Wire> Arm for Client<W> {
 
     fn stop(&mut self) -> Result<(), RigError> {
         self.stop()
+    }
+
+    fn error(&mut self) -> Option<String> {
+        let code = self.errors().ok().flatten();
+        code.map(|code| format!("the robot's controller says: {code}"))
     }
 }

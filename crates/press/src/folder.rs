@@ -1,6 +1,7 @@
 //! The folder of a run.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,14 @@ pub fn done_logs(folder: &Path, plans: &[PressPlan]) -> Result<Vec<PathBuf>, Pre
     Ok(Folder::open(folder, plans)?.done())
 }
 
+/// That a folder is none of another run's. Nothing is written.
+///
+/// # Errors
+/// As for [`done_logs`].
+pub fn check_folder(folder: &Path, plans: &[PressPlan]) -> Result<(), PressError> {
+    State::read(folder, plans).map(|_| ())
+}
+
 /// A run's folder: a log for each press, and which of them are done.
 #[derive(Debug)]
 pub(crate) struct Folder {
@@ -33,30 +42,38 @@ struct State {
     done: Vec<bool>,
 }
 
+impl State {
+    /// What a folder says, or that nothing is done in one that says nothing.
+    fn read(folder: &Path, plans: &[PressPlan]) -> Result<Self, PressError> {
+        let file = folder.join(PROGRESS);
+        let other = |problem: String| PressError::OtherRun {
+            folder: folder.display().to_string(),
+            problem,
+        };
+        let text = match fs::read_to_string(&file) {
+            Ok(text) => text,
+            Err(found) if found.kind() == std::io::ErrorKind::NotFound => {
+                return Ok(Self {
+                    plans: plans.to_vec(),
+                    done: vec![false; plans.len()],
+                });
+            }
+            Err(source) => return Err(PressError::file(&file, source)),
+        };
+        let state: Self =
+            serde_json::from_str(&text).map_err(|found| other(format!("{PROGRESS}: {found}")))?;
+        if state.plans != plans || state.done.len() != plans.len() {
+            return Err(other(format!("{PROGRESS} lists {}", state.plans.len())));
+        }
+        Ok(state)
+    }
+}
+
 impl Folder {
     /// Opens a folder for these presses, or makes it.
     pub(crate) fn open(path: &Path, plans: &[PressPlan]) -> Result<Self, PressError> {
+        let state = State::read(path, plans)?;
         fs::create_dir_all(path).map_err(|source| PressError::file(path, source))?;
-        let file = path.join(PROGRESS);
-        let other = |problem: String| PressError::OtherRun {
-            folder: path.display().to_string(),
-            problem,
-        };
-        let state = match fs::read_to_string(&file) {
-            Ok(text) => {
-                let state: State =
-                    serde_json::from_str(&text).map_err(|found| other(format!("{PROGRESS}: {found}")))?;
-                if state.plans != plans || state.done.len() != plans.len() {
-                    return Err(other(format!("{PROGRESS} lists {}", state.plans.len())));
-                }
-                state
-            }
-            Err(found) if found.kind() == std::io::ErrorKind::NotFound => State {
-                plans: plans.to_vec(),
-                done: vec![false; plans.len()],
-            },
-            Err(source) => return Err(PressError::file(&file, source)),
-        };
         let folder = Self {
             path: path.to_owned(),
             state,
@@ -115,8 +132,15 @@ impl Folder {
         let partial = self.path.join(format!("{PROGRESS}.partial"));
         let text = serde_json::to_string_pretty(&self.state)
             .map_err(|found| PressError::file(&file, std::io::Error::other(found)))?;
-        fs::write(&partial, text + "\n")
-            .and_then(|()| fs::rename(&partial, &file))
-            .map_err(|source| PressError::file(&file, source))
+        let stored = || -> std::io::Result<()> {
+            let mut written = fs::File::create(&partial)?;
+            written.write_all(text.as_bytes())?;
+            written.write_all(b"\n")?;
+            // What is called done stays done if the power fails.
+            written.sync_all()?;
+            fs::rename(&partial, &file)?;
+            fs::File::open(&self.path)?.sync_all()
+        };
+        stored().map_err(|source| PressError::file(&file, source))
     }
 }

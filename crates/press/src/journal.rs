@@ -22,6 +22,7 @@ pub(crate) struct Journal {
 struct Continuity {
     stream: Stream,
     longest_s: f64,
+    begun_s: f64,
     last_s: Option<f64>,
     /// Time of all intervals that are no gaps, s, and their number: what is missing in a gap is counted by their mean.
     whole_s: f64,
@@ -30,11 +31,12 @@ struct Continuity {
 }
 
 impl Journal {
-    pub(crate) fn new(log: LogSender, frame_gap_s: f64, report_gap_s: f64) -> Self {
+    /// Of a log that begins at a time, s.
+    pub(crate) fn new(log: LogSender, begun_s: f64, frame_gap_s: f64, report_gap_s: f64) -> Self {
         Self {
             log,
-            frames: Continuity::new(Stream::Tactile, frame_gap_s),
-            reports: Continuity::new(Stream::Pose, report_gap_s),
+            frames: Continuity::new(Stream::Tactile, begun_s, frame_gap_s),
+            reports: Continuity::new(Stream::Pose, begun_s, report_gap_s),
             wrench_s: None,
             handed: 0,
             taxels: Vec::new(),
@@ -65,7 +67,7 @@ impl Journal {
             let changed = (0..).zip(&states).zip(&self.taxels);
             let changes: Vec<String> = changed
                 .filter(|((_, now), before)| now != before)
-                .map(|((taxel, now), _)| format!("taxel {taxel} is {now:?}"))
+                .map(|((taxel, now), _)| format!("taxel {taxel} is {}", now.fault().unwrap_or("good again")))
                 .collect();
             let text = changes.join(", ");
             self.event(bench_s, Event::Note { text })?;
@@ -116,10 +118,11 @@ impl Journal {
 }
 
 impl Continuity {
-    fn new(stream: Stream, longest_s: f64) -> Self {
+    fn new(stream: Stream, begun_s: f64, longest_s: f64) -> Self {
         Self {
             stream,
             longest_s,
+            begun_s,
             last_s: None,
             whole_s: 0.0,
             n_whole: 0,
@@ -129,9 +132,14 @@ impl Continuity {
 
     /// The gap that ends now, if there is one.
     fn go_on(&mut self, now_s: f64) -> Option<Event> {
-        let last_s = self.last_s.replace(now_s)?;
-        let interval_s = now_s - last_s;
         let problem = self.problem.take();
+        let last_s = match self.last_s.replace(now_s) {
+            Some(last_s) => last_s,
+            // Before the first one, only what is known to be missing is.
+            None if problem.is_some() => self.begun_s.min(now_s),
+            None => return None,
+        };
+        let interval_s = now_s - last_s;
         if interval_s <= self.longest_s && problem.is_none() {
             self.whole_s += interval_s;
             self.n_whole += 1;

@@ -11,8 +11,8 @@ use crate::journal::Journal;
 use crate::touch::Touch;
 use crate::{Arm, Heard, Motion, Phase, PressError, PressSettings, Source, What};
 
-/// Periods that a retreat may wait for the force to be steady.
-const RETREAT_WAITS: u32 = 3;
+/// How long a retreat may wait for the force to be steady, s: a robot goes on for as long as it lags behind.
+const RETREAT_WAIT_S: f64 = 0.1;
 
 /// How a press stands after a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,13 @@ pub(crate) struct Press<'a> {
     goal: TcpPose,
     phase: Option<Phase>,
     has_begun: bool,
-    waits: u32,
+    /// When no pose went out for the first time.
+    held_s: Option<f64>,
+    has_retreated: bool,
+    /// What there is to say about the stop.
+    pub(crate) remarks: Vec<String>,
+    /// Whether the robot confirmed that it stopped.
+    pub(crate) is_stop_confirmed: bool,
     /// From the arrival of what stopped the press to its stop, s.
     pub(crate) stop_latency_s: Option<f64>,
 }
@@ -74,7 +80,10 @@ impl<'a> Press<'a> {
             phase: motion.phase(),
             motion,
             has_begun: false,
-            waits: 0,
+            held_s: None,
+            has_retreated: false,
+            remarks: Vec::new(),
+            is_stop_confirmed: true,
             stop_latency_s: None,
         })
     }
@@ -115,7 +124,7 @@ impl<'a> Press<'a> {
                 Ok(Standing::Going)
             }
             Decision::Retreat(pose) => {
-                self.waits = RETREAT_WAITS; // one that ends has ended
+                self.has_retreated = true; // one that ends has ended
                 match arm.servo(&pose) {
                     Ok(()) => Ok(Standing::Going),
                     Err(_) => self.stop(now_s, arm),
@@ -124,10 +133,10 @@ impl<'a> Press<'a> {
             Decision::Stop => {
                 self.note_latency(0.0); // found in this period
                 let robot_fails = matches!(self.cause(), Some(Cause::RobotInError));
-                if robot_fails || self.waits >= RETREAT_WAITS {
+                let held_s = now_s - *self.held_s.get_or_insert(now_s);
+                if robot_fails || self.has_retreated || held_s >= RETREAT_WAIT_S {
                     return self.stop(now_s, arm);
                 }
-                self.waits += 1;
                 Ok(Standing::Going)
             }
         }
@@ -156,8 +165,15 @@ impl<'a> Press<'a> {
     }
 
     fn stop(&mut self, now_s: f64, arm: &mut impl Arm) -> Result<Standing, LogError> {
-        if let Err(error) = arm.stop() {
-            let text = format!("the robot does not confirm its stop: {error}");
+        match arm.stop() {
+            Ok(()) => self.remarks.extend(arm.error()),
+            Err(error) => {
+                self.is_stop_confirmed = false;
+                self.remarks
+                    .push(format!("the robot does not confirm its stop: {error}"));
+            }
+        }
+        for text in self.remarks.clone() {
             self.journal.event(now_s, LogEvent::Note { text })?;
         }
         if let Some(cause) = self.cause() {
@@ -251,6 +267,11 @@ impl<'a> Press<'a> {
         if phase != self.phase {
             self.phase = phase;
             self.mark(now_s)?;
+            if phase == Some(Phase::Approach) && self.touch.is_touching() {
+                let problem = "there is force before the approach: the surface is higher than described, or the indenter longer";
+                let (stream, problem) = (StreamId::FORCE, problem.to_owned());
+                self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+            }
         }
         Ok(goal)
     }

@@ -37,6 +37,10 @@ impl Arm for Fake {
         self.stops += 1;
         Ok(())
     }
+
+    fn error(&mut self) -> Option<String> {
+        None
+    }
 }
 
 impl Fake {
@@ -109,7 +113,7 @@ impl Script {
     fn run(&self, mut say: impl FnMut(f64, f64, &mut Vec<Heard>) -> bool) -> Outcome {
         let path = self.folder.path().join("press.mcap");
         let recorder = Recorder::create(&path, &description()).unwrap();
-        let mut journal = Journal::new(recorder.sender(), 0.02, 0.05);
+        let mut journal = Journal::new(recorder.sender(), 0.0, 0.02, 0.05);
         let start = Start {
             now_s: 0.0,
             pose: above(),
@@ -283,6 +287,21 @@ fn the_press_goes_as_deep_as_planned_below_first_touch() {
         })
         .collect();
     assert_eq!(kinds, [true, false]);
+}
+
+#[test]
+fn force_before_the_approach_is_no_first_touch() {
+    // The gel stands higher than described: there is force already above the surface.
+    let outcome = Script::new(1.5).run(|now_s, depth_mm, heard| {
+        if depth_mm > -2.0 {
+            heard.extend(self::heard(now_s, 1.0, &above()).into_iter().take(2));
+            heard.drain(..2);
+        }
+        false
+    });
+    let cause = outcome.cause.unwrap().to_string();
+    assert!(cause.contains("before the approach"), "{cause}");
+    assert!(outcome.deepest_mm < 0.0);
 }
 
 #[test]

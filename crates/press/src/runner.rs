@@ -13,10 +13,13 @@ use crate::audit::audit;
 use crate::folder::Folder;
 use crate::journal::Journal;
 use crate::press::{Press, Standing};
-use crate::{Arm, Heard, PressError, PressSettings, Source, Streams, What};
+use crate::{Arm, Heard, Mounting, Operator, PressError, PressSettings, Source, Streams, What};
 
 /// How long devices may take to be heard at all, before a press, s.
 const FIRST_WORDS_S: f64 = 2.0;
+
+/// How long to wait before asking again whether an indenter is mounted.
+const MOUNTING: Duration = Duration::from_millis(20);
 
 /// A robot in servo mode, and what hears all devices.
 #[derive(Debug)]
@@ -38,23 +41,6 @@ pub struct Runner {
     pub description: Description,
 }
 
-/// How far a run is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Progress<'a> {
-    /// Another indenter is to be mounted: the run goes on when this returns.
-    Mount {
-        /// Name of the indenter.
-        indenter: &'a str,
-    },
-    /// A press begins.
-    Press {
-        /// Its number, from 0.
-        index: usize,
-        /// The press.
-        plan: &'a PressPlan,
-    },
-}
-
 /// What came of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSummary {
@@ -68,6 +54,10 @@ pub struct RunSummary {
     pub presses_done: usize,
     /// Why the run was stopped.
     pub stopped: Option<Cause>,
+    /// What else there is to say about the stop.
+    pub remarks: Vec<String>,
+    /// Whether the robot confirmed that it stopped, if it was told to: one that did not may be pressing.
+    pub is_stop_confirmed: bool,
     /// From the arrival of what stopped it to the stop, in servo periods.
     pub stop_latency_periods: Option<f64>,
 }
@@ -80,7 +70,7 @@ struct Rest {
 
 impl Runner {
     /// Carries out the presses that the folder does not hold yet, one log each, until all are done, something is wrong, or `interrupt` is
-    /// set. `tell` is called between presses, with the robot at rest.
+    /// set.
     ///
     /// # Errors
     /// Settings or plans that cannot be carried out, a folder of another run, a disk that fails. The robot is stopped then.
@@ -90,9 +80,9 @@ impl Runner {
         plans: &[PressPlan],
         out: &Path,
         interrupt: &AtomicBool,
-        tell: &mut dyn FnMut(Progress<'_>),
+        operator: &mut dyn Operator,
     ) -> Result<RunSummary, PressError> {
-        let run = self.run_presses(bench, plans, out, interrupt, tell);
+        let run = self.run_presses(bench, plans, out, interrupt, operator);
         if run.is_err() {
             // The error is the one that is told.
             let _ = bench.arm.stop();
@@ -106,9 +96,10 @@ impl Runner {
         plans: &[PressPlan],
         out: &Path,
         interrupt: &AtomicBool,
-        tell: &mut dyn FnMut(Progress<'_>),
+        operator: &mut dyn Operator,
     ) -> Result<RunSummary, PressError> {
         let mut folder = Folder::open(out, plans)?;
+        let _ = bench.streams.heard().count(); // what is older than this run
         let description = self.describe(&bench.streams);
         let mut summary = RunSummary {
             rate_hz: 0.0,
@@ -116,6 +107,8 @@ impl Runner {
             lost_unmarked: 0,
             presses_done: 0,
             stopped: None,
+            remarks: Vec::new(),
+            is_stop_confirmed: true,
             stop_latency_periods: None,
         };
         let (mut frames_s, mut intervals) = (0.0, 0);
@@ -125,27 +118,39 @@ impl Runner {
                 summary.presses_done += 1;
                 continue;
             }
-            if mounted.replace(&plan.indenter) != Some(&plan.indenter) {
-                tell(Progress::Mount {
-                    indenter: &plan.indenter,
-                });
+            let is_mounted = mounted.replace(&plan.indenter) == Some(&plan.indenter);
+            let trouble = match is_mounted {
+                true => bench.streams.trouble(),
+                false => mount(&bench.streams, operator, &plan.indenter, interrupt),
+            };
+            if trouble.is_some() {
+                summary.is_stop_confirmed = bench.arm.stop().is_ok();
+                summary.remarks.extend(bench.arm.error());
+                summary.stopped = trouble;
+                break;
             }
-            tell(Progress::Press { index, plan });
+            operator.begin(index, plan);
             let log = folder.log(index)?;
             let recorder = Recorder::create(&log, &description)?;
             let settings = &self.settings;
-            let mut journal = Journal::new(recorder.sender(), settings.frame_gap_s, settings.report_gap_s);
-            let _ = bench.streams.heard().count(); // what is older than this log
-            let (stopped, latency_s) = match self.rest(&bench.streams, &mut journal, interrupt)? {
-                Ok(rest) => self.press(bench, plan, &mut journal, rest, interrupt)?,
+            let begun_s = bench.streams.clock().now_s();
+            let mut journal = Journal::new(
+                recorder.sender(),
+                begun_s,
+                settings.frame_gap_s,
+                settings.report_gap_s,
+            );
+            let stopped = match self.rest(&bench.streams, &mut journal, interrupt)? {
+                Ok(rest) => self.press(bench, plan, &mut journal, rest, interrupt, &mut summary)?,
                 Err(cause) => {
                     let event = Event::Stopped {
                         cause: cause.to_string(),
                     };
                     journal.event(bench.streams.clock().now_s(), event)?;
                     // Nothing moves: the robot was not sent a pose since the last press.
-                    let _ = bench.arm.stop();
-                    (Some(cause), None)
+                    summary.is_stop_confirmed = bench.arm.stop().is_ok();
+                    summary.remarks.extend(bench.arm.error());
+                    Some(cause)
                 }
             };
             journal.end(bench.streams.clock().now_s())?;
@@ -161,7 +166,6 @@ impl Runner {
             if stopped.is_some() {
                 folder.set_aside(&log)?;
                 summary.stopped = stopped;
-                summary.stop_latency_periods = latency_s.map(|latency_s| latency_s / settings.servo_period_s);
                 break;
             }
             folder.set_done(index)?;
@@ -222,7 +226,7 @@ impl Runner {
                     }
                     What::NoFrame { problem } => journal.no_frame(problem),
                     What::Failed { source, problem } => {
-                        let stream = name(source).to_owned();
+                        let stream = source.to_string();
                         return Ok(Err(Cause::DeviceError { stream, problem }));
                     }
                 }
@@ -241,7 +245,7 @@ impl Runner {
                 && now_s - begun_s > FIRST_WORDS_S
             {
                 return Ok(Err(Cause::StreamSilent {
-                    stream: name(*source).to_owned(),
+                    stream: source.to_string(),
                     silence_s: now_s - begun_s,
                     longest_silence_s: FIRST_WORDS_S,
                 }));
@@ -263,6 +267,16 @@ impl Runner {
                     unit: "N",
                 }));
             }
+            let height_mm = settings.placement.indenter(&pose).position_mm.z;
+            if height_mm < settings.approach_height_mm {
+                return Ok(Err(Cause::DeviceError {
+                    stream: Source::Robot.to_string(),
+                    problem: format!(
+                        "the indenter stands {height_mm:.2} mm above the gel and may touch it: raise it to {} mm or more",
+                        settings.approach_height_mm
+                    ),
+                }));
+            }
             let event = Event::Tare {
                 force_n: tare.force_n,
                 torque_n_mm: tare.torque_n_mm,
@@ -277,7 +291,7 @@ impl Runner {
         }
     }
 
-    /// One press; why it was stopped, and after how long, s.
+    /// One press; why it was stopped. How it was goes into the summary.
     fn press<A: Arm>(
         &self,
         bench: &mut Bench<A>,
@@ -285,7 +299,8 @@ impl Runner {
         journal: &mut Journal,
         rest: Rest,
         interrupt: &AtomicBool,
-    ) -> Result<(Option<Cause>, Option<f64>), PressError> {
+        summary: &mut RunSummary,
+    ) -> Result<Option<Cause>, PressError> {
         let Bench { arm, streams } = bench;
         let clock = streams.clock();
         let mut press = Press::new(&self.settings, &self.sensor, plan, journal, rest.start, rest.tare)?;
@@ -298,17 +313,34 @@ impl Runner {
             let is_interrupted = interrupt.load(Ordering::Relaxed);
             match press.period(clock.now_s(), streams.heard(), is_interrupted, arm)? {
                 Standing::Going => {}
-                Standing::Done => return Ok((None, None)),
-                Standing::Stopped => return Ok((press.cause().cloned(), press.stop_latency_s)),
+                Standing::Done => return Ok(None),
+                Standing::Stopped => {
+                    summary.stop_latency_periods = press.stop_latency_s.map(|latency_s| latency_s / period_s);
+                    summary.is_stop_confirmed = press.is_stop_confirmed;
+                    summary.remarks.append(&mut press.remarks);
+                    return Ok(press.cause().cloned());
+                }
             }
         }
     }
 }
 
-fn name(source: Source) -> &'static str {
-    match source {
-        Source::Force => "the force sensor",
-        Source::Robot => "the robot",
-        Source::Tactile => "the tactile sensor",
+/// Waits for an indenter to be mounted, and hears everything meanwhile. Why it is not, if it isn't.
+fn mount(
+    streams: &Streams,
+    operator: &mut dyn Operator,
+    indenter: &str,
+    interrupt: &AtomicBool,
+) -> Option<Cause> {
+    loop {
+        let answer = operator.mount(indenter);
+        if let Some(cause) = streams.trouble() {
+            return Some(cause);
+        }
+        match answer {
+            Mounting::Mounted => return None,
+            Mounting::Waiting if !interrupt.load(Ordering::Relaxed) => std::thread::sleep(MOUNTING),
+            Mounting::Waiting | Mounting::Refused => return Some(Cause::Operator),
+        }
     }
 }

@@ -67,6 +67,10 @@ pub struct Devices {
     pub force: String,
     /// I²C bus of the tactile sensor, such as /dev/i2c-1.
     pub tactile: String,
+    /// The tool centre point that is set in the robot's controller, in the flange's frame, mm: placement and limits count from there, so a
+    /// controller with another one is refused. Default: the flange itself.
+    #[serde(default)]
+    pub tcp_offset_mm: DVec3,
 }
 
 impl PressSettings {

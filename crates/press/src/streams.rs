@@ -10,8 +10,8 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use phystac::{Clock, Error, PhysTac};
 use twintac_log::{Screening, TactileFrame};
-use twintac_rig::xarm::{MotionState, Report, ReportReader, Wire};
-use twintac_rig::{BenchClock, TcpPose, WrenchSample, WrenchSource};
+use twintac_rig::xarm::{Mode, MotionState, Report, ReportReader, Wire};
+use twintac_rig::{BenchClock, Cause, TcpPose, WrenchSample, WrenchSource};
 
 use crate::PressError;
 
@@ -29,6 +29,16 @@ pub enum Source {
     Robot,
     /// The tactile sensor.
     Tactile,
+}
+
+impl std::fmt::Display for Source {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Force => "the force sensor",
+            Self::Robot => "the robot",
+            Self::Tactile => "the tactile sensor",
+        })
+    }
 }
 
 /// What a device said, and when it arrived.
@@ -130,10 +140,16 @@ impl Streams {
         mut reader: ReportReader<W>,
     ) -> Result<(), PressError> {
         self.start("the robot's reports", move |ear| {
+            let (mut was_ready, mut has_followed) = (false, false);
             while ear.goes_on() {
                 match reader.next_report(WAIT) {
                     Ok(Some(report)) => {
-                        let in_error = is_in_error(&report);
+                        let (is_ready, follows) =
+                            (is_ready(&report), report.known_mode() == Some(Mode::Servo));
+                        was_ready |= is_ready;
+                        has_followed |= follows;
+                        // It was ready once and is no more, or somebody else changed its mode.
+                        let in_error = was_ready && !is_ready || has_followed && !follows;
                         let pose = report.pose;
                         ear.say(ear.clock.now_s(), What::Robot { pose, in_error });
                     }
@@ -187,6 +203,23 @@ impl Streams {
         self.receiver.try_iter()
     }
 
+    /// Passes over what was heard since the last call; why nothing may be pressed, if something in it says so.
+    pub(crate) fn trouble(&self) -> Option<Cause> {
+        let mut trouble = None;
+        for heard in self.heard() {
+            let cause = match heard.what {
+                What::Robot { in_error: true, .. } => Cause::RobotInError,
+                What::Failed { source, problem } => Cause::DeviceError {
+                    stream: source.to_string(),
+                    problem,
+                },
+                _ => continue,
+            };
+            trouble.get_or_insert(cause);
+        }
+        trouble
+    }
+
     fn start(
         &mut self,
         what: &'static str,
@@ -232,7 +265,7 @@ impl Ear {
 }
 
 /// Development reports have no error's code; in an error, the state is another.
-fn is_in_error(report: &Report) -> bool {
+fn is_ready(report: &Report) -> bool {
     let is_moving = matches!(report.state, MotionState::Ready | MotionState::Moving);
-    report.status.is_some_and(|status| status.error != 0) || !is_moving
+    is_moving && report.status.is_none_or(|status| status.error == 0)
 }

@@ -16,7 +16,9 @@ use twintac_log::{
     Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Screening, Stream, TaxelState,
     read_presses,
 };
-use twintac_press::{Bench, PressError, PressSettings, Progress, RunSummary, Runner, Streams, dry_run};
+use twintac_press::{
+    Bench, Mounting, Operator, PressError, PressSettings, RunSummary, Runner, Streams, dry_run,
+};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_rig::xarm::{Client, ReportPort, ReportReader};
@@ -102,7 +104,13 @@ fn bench() -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
 fn run(bench: &mut Bench<Client<TcpStream>>, count: usize, out: &Path) -> RunSummary {
     let interrupt = AtomicBool::new(false);
     runner()
-        .run(bench, &plans(count), out, &interrupt, &mut |_| {})
+        .run(
+            bench,
+            &plans(count),
+            out,
+            &interrupt,
+            &mut |_: usize, _: &PressPlan| {},
+        )
         .unwrap()
 }
 
@@ -155,11 +163,9 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
             &plans(2),
             folder.path(),
             &interrupt,
-            &mut |progress| {
-                if let Progress::Press { index, .. } = progress {
-                    begun += 1;
-                    interrupt.store(index == 1, Ordering::Relaxed);
-                }
+            &mut |index: usize, _: &PressPlan| {
+                begun += 1;
+                interrupt.store(index == 1, Ordering::Relaxed);
             },
         )
         .unwrap();
@@ -193,7 +199,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
         &plans(1),
         folder.path(),
         &AtomicBool::new(false),
-        &mut |_| {},
+        &mut |_: usize, _: &PressPlan| {},
     );
     assert!(matches!(other, Err(PressError::OtherRun { .. })));
 }
@@ -289,11 +295,9 @@ const HOLD_S: f64 = 2.2;
 fn check(what: What, lasts: Option<Moment>, end: &End) {
     let folder = TempDir::new().unwrap();
     let (devices, mut bench) = bench();
-    let mut inject = |progress: Progress<'_>| {
-        if matches!(progress, Progress::Press { .. }) {
-            let begins = Moment::TimeS(devices.scene().clock().now_s() + FAULT_AFTER_S);
-            devices.inject(Fault { what, begins, lasts }).unwrap();
-        }
+    let mut inject = |_: usize, _: &PressPlan| {
+        let begins = Moment::TimeS(devices.scene().clock().now_s() + FAULT_AFTER_S);
+        devices.inject(Fault { what, begins, lasts }).unwrap();
     };
     let interrupt = AtomicBool::new(false);
     let summary = runner()
@@ -334,4 +338,72 @@ fn check(what: What, lasts: Option<Moment>, end: &End) {
             assert_eq!(summary.presses_done, 0, "{what:?}");
         }
     }
+}
+
+/// Someone who never gives the answer that is waited for.
+struct Nobody {
+    answer: Mounting,
+    asked: usize,
+}
+
+impl Operator for Nobody {
+    fn mount(&mut self, _: &str) -> Mounting {
+        self.asked += 1;
+        self.answer
+    }
+
+    fn begin(&mut self, _: usize, _: &PressPlan) {
+        panic!("nothing is pressed with an indenter that nobody mounted");
+    }
+}
+
+#[test]
+fn without_an_indenter_nothing_moves() {
+    let folder = TempDir::new().unwrap();
+    let (devices, mut bench) = bench();
+    let height_mm = devices.scene().now().tool.position_mm.z;
+    let mut run = |answer, interrupt: bool| {
+        let mut nobody = Nobody { answer, asked: 0 };
+        let interrupt = AtomicBool::new(interrupt);
+        let out = folder.path();
+        let summary = runner().run(&mut bench, &plans(1), out, &interrupt, &mut nobody);
+        (summary.unwrap(), nobody.asked)
+    };
+    let (refused, asked) = run(Mounting::Refused, false);
+    assert_eq!((refused.stopped, asked), (Some(Cause::Operator), 1));
+    let (interrupted, _) = run(Mounting::Waiting, true);
+    assert_eq!(interrupted.stopped, Some(Cause::Operator));
+    // What happens meanwhile is heard.
+    devices
+        .inject(Fault {
+            what: What::RobotError { code: 31 },
+            begins: Moment::Count(0),
+            lasts: None,
+        })
+        .unwrap();
+    let (failed, asked) = run(Mounting::Waiting, false);
+    assert_eq!(failed.stopped, Some(Cause::RobotInError));
+    assert!(
+        asked >= 1 && failed.remarks.join(" ").contains("31"),
+        "{failed:?}"
+    );
+    assert!((devices.scene().now().tool.position_mm.z - height_mm).abs() < 0.01);
+    assert!(!folder.path().join("press-0001.mcap").exists());
+}
+
+#[test]
+fn an_indenter_that_may_touch_is_not_tared_away() {
+    let folder = TempDir::new().unwrap();
+    let (_devices, mut bench) = bench();
+    // An earlier run has left it in the gel.
+    let mut pose = bench.arm.pose().unwrap();
+    while pose.position_mm.z > 99.6 {
+        pose.position_mm.z -= 0.05;
+        bench.arm.servo(&pose).unwrap();
+    }
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let summary = run(&mut bench, 1, folder.path());
+    let cause = summary.stopped.unwrap().to_string();
+    assert!(cause.contains("raise it"), "{cause}");
+    assert_eq!(summary.presses_done, 0);
 }

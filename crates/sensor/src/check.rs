@@ -232,6 +232,13 @@ impl Checker<'_> {
                 "give the counts of a pascal, or leave it out",
             ));
         }
+        if let Some(transfer) = &readout.transfer {
+            self.above_zero("readout.transfer.pa_per_count", transfer.pa_per_count)?;
+            if readout.counts_per_pa.is_some() {
+                let problem = "stands beside counts_per_pa".to_owned();
+                return Err(self.error("readout.transfer", problem, "give one of the two"));
+            }
+        }
         self.above_zero("readout.rate_hz", readout.rate_hz)
     }
 

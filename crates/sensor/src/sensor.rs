@@ -105,6 +105,22 @@ pub struct Readout {
     /// bus differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub counts_per_pa: Option<u16>,
+    /// What counts stand for, confirmed, where that is not a whole number of counts per pascal from a vacuum on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transfer: Option<Transfer>,
+}
+
+/// What the counts of a barometer stand for: `pressure_pa = pa_per_count · counts + offset_pa`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Transfer {
+    /// Pascal per count.
+    pub pa_per_count: f64,
+    /// Pressure at 0 counts, Pa.
+    #[serde(default)]
+    pub offset_pa: f64,
+    /// Whether the 24 bits are two's complement.
+    pub signed: bool,
 }
 
 /// What a sensor stands. Whoever presses it may set lower limits, never higher ones.

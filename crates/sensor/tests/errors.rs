@@ -420,6 +420,20 @@ fn readout_indenters_and_inferred_fields() {
         "readout.counts_per_pa",
         "leave it out",
     );
+    expect_at(
+        "rate_hz = 50.0",
+        "rate_hz = 50.0\ntransfer = { pa_per_count = 0.0, signed = false }",
+        "transfer = ",
+        "readout.transfer.pa_per_count",
+        "above",
+    );
+    expect_at(
+        "rate_hz = 50.0",
+        "rate_hz = 50.0\ncounts_per_pa = 8\ntransfer = { pa_per_count = 0.5, signed = false }",
+        "transfer = ",
+        "readout.transfer",
+        "one of the two",
+    );
 }
 
 #[test]

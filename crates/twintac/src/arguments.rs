@@ -246,6 +246,9 @@ pub(crate) struct Record {
     /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "lab")]
     pub(crate) scale: Option<u16>,
+    /// Altitude of the bench, m, whose free air the scale is checked against [default: anything up to 2000].
+    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
+    pub(crate) altitude_m: Option<f32>,
     /// Folder of the run [default: runs/<protocol>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -345,6 +348,9 @@ pub(crate) struct Stream {
     /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) scale: Option<u16>,
+    /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
+    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
+    pub(crate) altitude_m: Option<f32>,
     /// Rows on standard output instead of the dashboard.
     #[arg(long, value_enum)]
     pub(crate) format: Option<RowFormat>,

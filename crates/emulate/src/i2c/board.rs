@@ -55,7 +55,7 @@ impl Board {
     /// A setting or a fault that makes no sense.
     pub fn new(scene: Scene, settings: &BoardSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
         settings.check()?;
-        crate::fault::check_all(faults)?;
+        crate::fault::check_faults(faults)?;
         let barometer = |channel: usize| {
             let is_there = settings.channels.contains(&(channel as u8)); // 0 to 7
             is_there.then(|| Barometer::new(channel, settings.barometer, settings.seed))

@@ -54,7 +54,7 @@ impl Controller {
     /// A setting or a fault that makes no sense.
     pub fn new(scene: Scene, settings: RobotSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
         settings.check()?;
-        crate::fault::check_all(faults)?;
+        crate::fault::check_faults(faults)?;
         Ok(Self {
             settings,
             scene,

@@ -5,7 +5,7 @@
 use phystac::{Thresholds, Transfer};
 use twintac_emulate::i2c::Bus;
 use twintac_emulate::{Fault, LabClock, Moment, What};
-use twintac_live::{About, BoxedClock, FrameReader, Lab, PowerOn, TAXELS, power_on};
+use twintac_live::{About, BoxedClock, FrameReader, Known, Lab, PowerOn, TAXELS, power_on};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
@@ -21,7 +21,7 @@ pub fn lab(faults: &[Fault]) -> Lab {
 
 pub fn reader(faults: &[Fault]) -> (LabReader, About) {
     let mut phystac = lab(faults).phystac;
-    let checked = power_on(&mut phystac, &sensor(), Some(8)).unwrap();
+    let checked = power_on(&mut phystac, &sensor(), &scale(8)).unwrap();
     let about = About::new(
         &sensor(),
         "name = \"phystac\"",
@@ -30,6 +30,14 @@ pub fn reader(faults: &[Fault]) -> (LabReader, About) {
         0,
     );
     (FrameReader::new(phystac, &checked), about)
+}
+
+/// Somebody who knows the scale.
+pub fn scale(counts_per_pa: u16) -> Known {
+    Known {
+        counts_per_pa: Some(counts_per_pa),
+        ..Known::default()
+    }
 }
 
 /// A sensor that was switched on and found to be like this, whatever its range.

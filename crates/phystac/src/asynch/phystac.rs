@@ -16,8 +16,9 @@ use crate::settings::{Patience, Settings};
 /// `N` barometers behind a switch, read as frames.
 ///
 /// A frame is triggered for all barometers with one write, so that its samples are of one moment; then each is asked, through its
-/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. A barometer that
-/// is still converting is never triggered: its next sample would be of an earlier moment than the frame says.
+/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. One that failed in
+/// a frame is asked before the next trigger, and left out of the frame if it is still converting or fails again: its sample would be of
+/// an earlier moment than the frame says.
 ///
 /// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each
 /// channel before any broadcast.
@@ -31,8 +32,10 @@ pub struct PhysTac<I2C, D, C, const N: usize> {
     is_ready: bool,
     /// When the frame under way was triggered.
     triggered_us: Option<u64>,
-    /// Channels whose barometers may still convert: asked before the next trigger, and left out of it if they do.
-    late: Channels,
+    /// Channels that failed: asked before the next trigger.
+    doubtful: Channels,
+    /// Why taxels have no part in the frame under way.
+    left_out: [Option<Fault>; N],
     /// The taxel with whose channel open the bus hung last.
     pub(super) suspect: Option<usize>,
     /// Channels that hung the bus twice running.
@@ -56,7 +59,8 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
             settings,
             is_ready: false,
             triggered_us: None,
-            late: Channels::NONE,
+            doubtful: Channels::NONE,
+            left_out: [None; N],
             suspect: None,
             isolated: Channels::NONE,
         }
@@ -134,10 +138,12 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         let mut patience = self.settings.patience;
         let n_conversion = self.settings.conversion_us.div_ceil(patience.interval_us.max(1));
         patience.waits = patience.waits.saturating_add(n_conversion);
-        self.late = Channels::NONE;
+        self.doubtful = Channels::NONE;
         for taxel in self.taxels() {
-            let probed = self.probe(taxel.channel, &mut patience).await;
-            self.note_late(taxel, probed).await?;
+            if let Err(error) = self.probe(taxel.channel, &mut patience).await {
+                self.fault_of(taxel, error).await?;
+                self.doubtful = self.doubtful | taxel.channel;
+            }
         }
         self.open(Channels::NONE).await?;
         self.is_ready = true;
@@ -177,15 +183,19 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         };
         let mut patience = self.settings.patience;
         for taxel in self.taxels() {
+            if let Some(fault) = self.left_out[taxel.index] {
+                frame.taxels[taxel.index] = Err(fault);
+                continue;
+            }
             let read = self.read(taxel.channel, &mut patience).await;
             frame.read_us[taxel.index] = self.clock.now_us();
             frame.taxels[taxel.index] = match read {
                 Ok(sample) => Ok(sample),
-                Err(error) => Err(self.fault_of(taxel, error).await?),
+                Err(error) => {
+                    self.doubtful = self.doubtful | taxel.channel;
+                    Err(self.fault_of(taxel, error).await?)
+                }
             };
-            if frame.taxels[taxel.index].is_err() {
-                self.late = self.late | taxel.channel;
-            }
         }
         self.is_ready = true;
         self.suspect = None;
@@ -232,12 +242,15 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
             self.start().await?;
         }
         self.is_ready = false;
-        let late = core::mem::take(&mut self.late);
-        for taxel in self.taxels().filter(|taxel| late.contains(taxel.channel)) {
-            let asked = self.ask(taxel.channel).await;
-            self.note_late(taxel, asked).await?;
+        self.left_out = [None; N];
+        let doubtful = core::mem::take(&mut self.doubtful);
+        for taxel in self.taxels().filter(|taxel| doubtful.contains(taxel.channel)) {
+            if let Err(error) = self.ask(taxel.channel).await {
+                self.left_out[taxel.index] = Some(self.fault_of(taxel, error).await?);
+                self.doubtful = self.doubtful | taxel.channel;
+            }
         }
-        let channels = self.settings.wiring.all().without(self.isolated | self.late);
+        let channels = self.settings.wiring.all().without(self.isolated | self.doubtful);
         self.open(channels).await?;
         match self.barometer().trigger().await {
             Err(Error::BarometerMissing) => {
@@ -248,20 +261,6 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         }
         self.is_ready = true;
         Ok(self.clock.now_us())
-    }
-
-    /// Remembers a taxel that goes on converting. Its other faults the next frame will find again.
-    async fn note_late(
-        &mut self,
-        taxel: Taxel,
-        waited: Result<(), Error<I2C::Error>>,
-    ) -> Result<(), Error<I2C::Error>> {
-        if let Err(error) = waited
-            && self.fault_of(taxel, error).await? == Fault::Stuck
-        {
-            self.late = self.late | taxel.channel;
-        }
-        Ok(())
     }
 
     /// Sees that the switch obeys and that the bus works with one channel open, and waits for its barometer.
@@ -281,15 +280,12 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         self.wait(&mut patience).await
     }
 
-    /// Reads the barometer of one channel, unless what it converts is not of this frame.
+    /// Reads the barometer of one channel.
     async fn read(
         &mut self,
         channel: Channels,
         patience: &mut Patience,
     ) -> Result<Sample, Error<I2C::Error>> {
-        if self.late.contains(channel) {
-            return Err(Error::ConversionStuck);
-        }
         self.switch().select(channel).await?;
         self.wait(patience).await?;
         self.barometer().sample().await

@@ -15,8 +15,9 @@ use crate::settings::Settings;
 /// `N` barometers behind a switch, read as frames.
 ///
 /// A frame is triggered for all barometers with one write, so that its samples are of one moment; then each is asked, through its
-/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. A barometer that
-/// is still converting is never triggered: its next sample would be of an earlier moment than the frame says.
+/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. One that failed in
+/// a frame is asked before the next trigger, and left out of the frame if it is still converting or fails again: its sample would be of
+/// an earlier moment than the frame says.
 ///
 /// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each
 /// channel before any broadcast.

@@ -231,14 +231,14 @@ impl Supervisor {
         }
     }
 
-    /// The measured pose or the last goal, whichever is farther from the sensor: a report is old when it arrives, and the robot
-    /// may have gone up since.
+    /// The last goal, as far from the sensor as it is itself or the robot is measured, whichever is farther: a report is old when it
+    /// arrives, and the robot may have gone up since. A robot that lags behind is not called back sideways.
     fn farthest(&self) -> TcpPose {
         let depth_mm = |pose: &TcpPose| self.setup.depth_mm(pose.position_mm);
-        if depth_mm(&self.goal) < depth_mm(&self.measured) {
-            self.goal
-        } else {
-            self.measured
+        let farther_mm = (depth_mm(&self.goal) - depth_mm(&self.measured)).max(0.0);
+        TcpPose {
+            position_mm: self.goal.position_mm - self.setup.approach * farther_mm,
+            ..self.goal
         }
     }
 

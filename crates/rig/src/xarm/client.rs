@@ -26,9 +26,9 @@ const MOST_UNANSWERED: usize = 1024;
 ///
 /// [`Client::enable`], [`Client::move_to`] a first pose, [`Client::begin_servo`], then [`Client::servo`] in each period. After
 /// any error in servo mode the stream has ended: look at the error, and begin from `enable`. Nothing waits for answers to poses:
-/// [`Client::hear`] says for how long one is missing.
+/// [`Client::hear`] says for how long one is missing. Dropped in servo mode, it stops the robot.
 #[derive(Debug)]
-pub struct Client<W> {
+pub struct Client<W: Wire> {
     pub(super) reader: FrameReader<W>,
     transaction: u16,
     pub(super) unanswered: VecDeque<Unanswered>,
@@ -44,6 +44,14 @@ pub(super) struct Unanswered {
     pub(super) sent: Instant,
     /// Whether it is a pose of the stream that goes on, rather than a request that was given up.
     pub(super) is_pose: bool,
+}
+
+impl<W: Wire> Drop for Client<W> {
+    fn drop(&mut self) {
+        if self.servo.is_some() {
+            let _ = self.stop(); // nobody is left to hear how it went
+        }
+    }
 }
 
 impl Client<TcpStream> {

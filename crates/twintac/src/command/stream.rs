@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::Result;
-use twintac_live::{Format, Limits, Live, Tally, dashboard, stream_rows};
+use twintac_live::{Format, Known, Limits, Live, Tally, dashboard, stream_rows};
 
 use super::demo::SENSOR;
 use crate::arguments::{RowFormat, Stream};
@@ -15,9 +15,13 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
         Some(path) => read_sensor(path)?,
         None => SensorFile::built_in("sensors/phystac.toml", SENSOR)?,
     };
+    let known = Known {
+        counts_per_pa: arguments.scale,
+        altitude_m: arguments.altitude_m,
+    };
     let mut live = match (&arguments.bus, arguments.lab) {
-        (Some(bus), false) => on_bus(bus, &sensor, arguments.scale)?,
-        _ => Live::in_the_lab(&sensor.sensor, &sensor.text, arguments.scale)?,
+        (Some(bus), false) => on_bus(bus, &sensor, &known)?,
+        _ => Live::in_the_lab(&sensor.sensor, &sensor.text, &known)?,
     };
     for note in &live.notes {
         say(note);
@@ -42,12 +46,12 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
 }
 
 #[cfg(target_os = "linux")]
-fn on_bus(bus: &Path, sensor: &SensorFile, scale: Option<u16>) -> Result<Live> {
-    Ok(Live::on_linux(bus, &sensor.sensor, &sensor.text, scale)?)
+fn on_bus(bus: &Path, sensor: &SensorFile, known: &Known) -> Result<Live> {
+    Ok(Live::on_linux(bus, &sensor.sensor, &sensor.text, known)?)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn on_bus(bus: &Path, _: &SensorFile, _: Option<u16>) -> Result<Live> {
+fn on_bus(bus: &Path, _: &SensorFile, _: &Known) -> Result<Live> {
     anyhow::bail!(
         "{}: buses are opened on Linux only; `--lab` is emulated anywhere",
         bus.display()

@@ -88,7 +88,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         && results.kills.is_sound();
     ensure!(
         is_sound,
-        "see {RESULTS}/recording.md: something was lost in silence"
+        "see {RESULTS}/recording.md: something was lost in silence, or a fault did not end as it must"
     );
     Ok(())
 }

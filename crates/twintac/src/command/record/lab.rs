@@ -8,9 +8,9 @@ use glam::DVec3;
 use phystac::PhysTac;
 use phystac::recovery::{free_bus, reset_switch};
 use serde::Deserialize;
-use twintac_emulate::{Fault, LabClock, Settings};
+use twintac_emulate::{Fault, LabClock, Settings, check_faults};
 use twintac_lab::{Bench, Reality};
-use twintac_live::emulated_board;
+use twintac_live::{Known, emulated_board};
 use twintac_press::PressSettings;
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
@@ -28,18 +28,21 @@ struct FaultsFile {
     faults: Vec<Fault>,
 }
 
+/// Reads what is to go wrong, from a file.
+pub(super) fn read_faults(file: &Path) -> Result<Vec<Fault>> {
+    let faults = twintac_config::read::<FaultsFile>(file)?.value.faults;
+    check_faults(&faults).with_context(|| file.display().to_string())?;
+    Ok(faults)
+}
+
 /// Computes what the gel answers at the places of the plans, and switches the emulated devices on.
 pub(super) fn open(
     run: &Run,
     reality: &Reality,
     plans: &[PressPlan],
     settings: &PressSettings,
-    faults: Option<&Path>,
+    faults: Vec<Fault>,
 ) -> Result<OpenBench> {
-    let faults = match faults {
-        Some(file) => twintac_config::read::<FaultsFile>(file)?.value.faults,
-        None => Vec::new(),
-    };
     let sensor = &run.sensor.sensor;
     let lab = Bench::new(Arc::clone(sensor), reality.clone());
     let tables = run.live_tables(&lab, reality, plans)?;
@@ -47,7 +50,6 @@ pub(super) fn open(
     let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);
 
     let board = emulated_board(sensor);
-    let scale = board.barometer.counts_per_pa as u16; // it was made from one
     let mut devices = Settings {
         board,
         faults,
@@ -77,13 +79,15 @@ pub(super) fn open(
         let _ = reset_switch(&mut reset, delay);
         let _ = free_bus(&mut scl, &mut sda, delay);
     };
-    let (bench, transfer, notes) = connect(&addresses, taxels, free, sensor, Some(scale), clock)
+    let known = Known::default().or_emulated(sensor);
+    let (bench, transfer, notes) = connect(&addresses, taxels, free, sensor, &known, clock)
         .context("connecting to the emulated bench")?;
     Ok(OpenBench {
         devices: bench,
         transfer,
         provenance: Provenance::Emulated,
         notes,
+        robot: addresses.commands,
         selector: Some(selector),
         _emulated: Some(devices),
     })

@@ -6,17 +6,22 @@ mod preview;
 
 use std::collections::BTreeMap;
 use std::io::Write;
+use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use anyhow::{Context, Result, bail};
+use indicatif::ProgressBar;
 use serde::Serialize;
-use twintac_lab::Reality;
+use twintac_lab::{Reality, Selector};
+use twintac_live::Known;
 use twintac_log::{CountTransfer, Description};
-use twintac_press::{PressSettings, Progress, RunSummary, Runner};
+use twintac_press::{Mounting, Operator, PressSettings, RunSummary, Runner};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_rig::SensorLimits;
+use twintac_rig::xarm::Client;
 
 use super::demo::{REALITY, SENSOR};
 use crate::arguments::Record;
@@ -79,6 +84,14 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
         return preview::run(&settings, &plans, &sensor.sensor, &out, arguments.json);
     }
     let limits = limits(&sensor)?;
+    let faults = match &arguments.faults {
+        Some(file) => lab::read_faults(file)?,
+        None => Vec::new(),
+    };
+    if reality.is_none() {
+        bench::real_devices(&settings)?;
+    }
+    twintac_press::check_folder(&out.join("logs"), &plans)?;
     let whose = if reality.is_some() {
         "the emulated"
     } else {
@@ -87,8 +100,14 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     let source = format!("{} presses on {whose} bench, over its wires", plans.len());
     let run = Run::start(&out, sensor, source, seed, RunSettings::of(&arguments.start)?)?;
     let mut bench = match &reality {
-        Some(reality) => lab::open(&run, reality, &plans, &settings, arguments.faults.as_deref())?,
-        None => bench::open_real(&run.sensor.sensor, &settings, arguments.scale)?,
+        Some(reality) => lab::open(&run, reality, &plans, &settings, faults)?,
+        None => {
+            let known = Known {
+                counts_per_pa: arguments.scale,
+                altitude_m: arguments.altitude_m,
+            };
+            bench::open_real(&run.sensor.sensor, &settings, &known)?
+        }
     };
     for note in &bench.notes {
         say(note);
@@ -105,37 +124,87 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     tell(&summary, plans.len(), &bench, &run.folder, arguments.json)
 }
 
-/// Carries the presses out, with a bar, and stops on Ctrl-C.
+/// Carries the presses out, with a bar, and stops on Ctrl-C and when it is told to end.
 fn press_all(runner: &Runner, bench: &mut OpenBench, plans: &[PressPlan], logs: &Path) -> Result<RunSummary> {
     ctrlc::set_handler(|| INTERRUPT.store(true, Ordering::Relaxed)).context("listening to Ctrl-C")?;
     let bar = progress::bar("pressing", plans.len() as u64);
-    let OpenBench {
-        devices, selector, ..
-    } = bench;
-    let selector = selector.as_ref();
-    let summary = runner.run(devices, plans, logs, &INTERRUPT, &mut |progress| match progress {
-        Progress::Mount { indenter } if selector.is_none() => {
-            bar.suspend(|| ask_for(indenter));
-        }
-        Progress::Mount { .. } => {}
-        Progress::Press { index, plan } => {
-            bar.set_position(index as u64);
-            if let Some(selector) = selector {
-                // The tables are those of the same plans.
-                let _ = selector.select(&plan.name);
-            }
-        }
-    })?;
+    let mut attendant = Attendant {
+        bar: &bar,
+        selector: bench.selector.as_ref(),
+        answer: None,
+    };
+    let summary = runner.run(&mut bench.devices, plans, logs, &INTERRUPT, &mut attendant)?;
     bar.finish_and_clear();
+    for remark in &summary.remarks {
+        say(remark);
+    }
+    if !summary.is_stop_confirmed {
+        say(&stop_anew(bench.robot));
+    }
     Ok(summary)
 }
 
-/// Waits for a person who mounts an indenter.
-fn ask_for(indenter: &str) {
+/// Stops a robot that did not confirm its stop over a connection of its own; how that went.
+fn stop_anew(robot: SocketAddr) -> String {
+    match Client::connect(robot).and_then(|mut robot| robot.stop()) {
+        Ok(()) => "the robot was stopped over a second connection".to_owned(),
+        Err(error) => {
+            format!(
+                "the robot may still be pressing and cannot be told to stop ({error}): press its emergency stop"
+            )
+        }
+    }
+}
+
+/// Has indenters mounted: by a person, or in the lab by itself.
+struct Attendant<'a> {
+    bar: &'a ProgressBar,
+    selector: Option<&'a Selector>,
+    /// Whether the person who was asked has answered: `true`, or nobody can any more.
+    answer: Option<Receiver<bool>>,
+}
+
+impl Operator for Attendant<'_> {
+    fn mount(&mut self, indenter: &str) -> Mounting {
+        if self.selector.is_some() {
+            return Mounting::Mounted;
+        }
+        let bar = self.bar;
+        let answer = self
+            .answer
+            .get_or_insert_with(|| bar.suspend(|| ask_for(indenter)));
+        let mounting = match answer.try_recv() {
+            Ok(true) => Mounting::Mounted,
+            Err(TryRecvError::Empty) => return Mounting::Waiting,
+            Ok(false) | Err(TryRecvError::Disconnected) => {
+                say("nobody answers on standard input, so the indenter counts as not mounted");
+                Mounting::Refused
+            }
+        };
+        self.answer = None;
+        mounting
+    }
+
+    fn begin(&mut self, index: usize, plan: &PressPlan) {
+        self.bar.set_position(index as u64);
+        if let Some(selector) = self.selector {
+            // The tables are those of the same plans.
+            let _ = selector.select(&plan.name);
+        }
+    }
+}
+
+/// Asks a person to mount an indenter; whether there was an answer comes later.
+fn ask_for(indenter: &str) -> Receiver<bool> {
     say(&format!(
-        "Mount the indenter `{indenter}`, step back, and press Enter: the robot will move. Ctrl-C stops it."
+        "The robot is switched on and stands. Mount the indenter `{indenter}`, step back, and press Enter: it will move. Ctrl-C ends the run."
     ));
-    let _ = std::io::stdin().read_line(&mut String::new());
+    let (sender, answer) = channel();
+    std::thread::spawn(move || {
+        let read = std::io::stdin().read_line(&mut String::new());
+        let _ = sender.send(matches!(read, Ok(bytes) if bytes > 0)); // nobody listens any more after Ctrl-C
+    });
+    answer
 }
 
 fn tell(summary: &RunSummary, presses: usize, bench: &OpenBench, folder: &Path, json: bool) -> Result<()> {
