@@ -1,15 +1,15 @@
 //! Seeing touch: frames of a sensor as they come, as rows of text or as a dashboard on the terminal.
 //!
 //! A [`FrameSource`] reads a sensor on a thread of its own and hands frames out through a bounded channel; what does not fit is counted as
-//! missed, and the bus waits for nobody. The sensor stands on any bus of `embedded_hal`: `/dev/i2c-N` of Linux, or [`Lab`],
-//! the emulated one. [`stream_rows`] writes rows, [`dashboard::run`] draws.
+//! missed, and the bus waits for nobody. The sensor stands on any bus of `embedded_hal`: `/dev/i2c-N` of Linux, or an
+//! emulated one ([`emulated_phystac`]). [`stream_rows`] writes rows, [`dashboard::run`] draws.
 //!
 //! ```
-//! use twintac_live::{FrameReader, Known, Lab, power_on};
+//! use twintac_live::{FrameReader, Known, emulated_phystac, power_on};
 //! use twintac_emulate::LabClock;
 //!
 //! let sensor = twintac_sensor::Sensor::read("../../sensors/phystac.toml")?;
-//! let mut phystac = Lab::new(&sensor, LabClock::virtual_time(), &[])?.phystac;
+//! let mut phystac = emulated_phystac(&sensor, LabClock::virtual_time(), &[])?;
 //! assert!(power_on(&mut phystac, &sensor, &Known::default()).is_err()); // nobody has confirmed a scale
 //! let known = Known { counts_per_pa: Some(8), ..Known::default() };
 //! let checked = power_on(&mut phystac, &sensor, &known)?;
@@ -22,8 +22,8 @@
 
 mod about;
 pub mod dashboard;
+mod emulated;
 mod error;
-mod lab;
 #[cfg(target_os = "linux")]
 mod linux;
 mod live;
@@ -35,8 +35,9 @@ mod stream;
 mod tare;
 
 pub use about::{About, driver_settings};
+pub use emulated::{EmulatedPhysTac, WanderingBall, emulated_board, emulated_phystac, emulated_scale};
 pub use error::LiveError;
-pub use lab::{Lab, Motion, emulated_board, emulated_scale};
+
 #[cfg(target_os = "linux")]
 pub use linux::{LinuxBus, LinuxPhysTac, open_linux};
 pub use live::Live;

@@ -9,7 +9,9 @@ use twintac_emulate::LabClock;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
-use crate::{About, BoxedClock, FrameReader, FrameSource, Known, Lab, LiveError, TAXELS, power_on};
+use crate::{
+    About, BoxedClock, FrameReader, FrameSource, Known, LiveError, TAXELS, emulated_phystac, power_on,
+};
 
 /// A sensor that is being read.
 #[derive(Debug)]
@@ -27,10 +29,10 @@ impl Live {
     /// says, which needs nobody to confirm it.
     ///
     /// # Errors
-    /// Those of [`Lab::new`] and [`power_on`].
+    /// Those of [`emulated_phystac`] and [`power_on`].
     pub fn in_the_lab(sensor: &Sensor, sensor_toml: &str, known: &Known) -> Result<Self, LiveError> {
         let start_unix_ns = unix_ns();
-        let phystac = Lab::new(sensor, LabClock::real(), &[])?.phystac;
+        let phystac = emulated_phystac(sensor, LabClock::real(), &[])?;
         let from = (Provenance::Emulated, start_unix_ns);
         let known = known.or_emulated(sensor);
         Self::begin(phystac, sensor, sensor_toml, &known, from)

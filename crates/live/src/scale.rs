@@ -9,9 +9,6 @@ use twintac_sensor::Sensor;
 use crate::reader::bus_error;
 use crate::{LiveError, emulated_scale};
 
-/// Scales that parts of the family have, counts per Pa.
-pub(crate) const SCALES_PER_PA: [u16; 5] = [4, 8, 16, 32, 64];
-
 /// The largest pressure that counts of a scale can say, kPa.
 pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
     let transfer = Transfer {

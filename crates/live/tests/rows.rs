@@ -8,7 +8,7 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use common::{checked, gone, lab, reader, scale, sensor};
+use common::{checked, gone, phystac, reader, scale, sensor};
 use embedded_hal::i2c::{self, I2c, Operation};
 use glam::DVec3;
 use phystac::{PhysTac, Settings, Transfer};
@@ -16,8 +16,8 @@ use twintac_emulate::i2c::{Board, BoardSettings};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{Fault, Hertz, LabClock, Scene};
 use twintac_live::{
-    Format, FrameReader, FrameSource, Known, Lab, Limits, LiveError, RowWriter, Taring, emulated_board,
-    power_on, stream_rows,
+    Format, FrameReader, FrameSource, Known, Limits, LiveError, RowWriter, Taring, emulated_board,
+    emulated_phystac, power_on, stream_rows,
 };
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
@@ -214,7 +214,7 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
 
 #[test]
 fn no_scale_is_guessed() {
-    let check = |known| power_on(&mut lab(&[]).phystac, &sensor(), &known);
+    let check = |known| power_on(&mut phystac(&[]), &sensor(), &known);
     let said = check(Known::default()).unwrap_err().to_string();
     assert!(said.contains("free air proposes 8 counts per Pa"), "{said}");
     assert!(
@@ -239,16 +239,16 @@ fn no_scale_is_guessed() {
 
     let mut described = sensor();
     described.readout.counts_per_pa = Some(8);
-    assert!(power_on(&mut lab(&[]).phystac, &described, &Known::default()).is_ok());
+    assert!(power_on(&mut phystac(&[]), &described, &Known::default()).is_ok());
 
-    let one_gone = power_on(&mut lab(&[gone(4, 0.0)]).phystac, &sensor(), &scale(8)).unwrap();
+    let one_gone = power_on(&mut phystac(&[gone(4, 0.0)]), &sensor(), &scale(8)).unwrap();
     assert_eq!(one_gone.notes, ["taxel t4: the barometer does not acknowledge"]);
 }
 
 #[test]
 fn a_description_of_four_taxels_is_refused_by_name() {
     let strip = twintac_sensor::Sensor::read("../../sensors/strip4-gel-a.toml").unwrap();
-    let error = twintac_live::Lab::new(&strip, LabClock::virtual_time(), &[]).unwrap_err();
+    let error = emulated_phystac(&strip, LabClock::virtual_time(), &[]).err().unwrap();
     assert_eq!(error.to_string(), "sensor strip4-gel-a: has 4 taxels, expected 8");
 }
 
@@ -322,9 +322,7 @@ fn a_described_transfer_is_used_as_it_is() {
         signed: false,
     };
     described.readout.transfer = Some(span);
-    let mut phystac = Lab::new(&described, LabClock::virtual_time(), &[])
-        .unwrap()
-        .phystac;
+    let mut phystac = emulated_phystac(&described, LabClock::virtual_time(), &[]).unwrap();
     let checked = power_on(&mut phystac, &described, &Known::default()).unwrap();
     assert_eq!(
         (checked.transfer.offset_pa, checked.transfer.signed),

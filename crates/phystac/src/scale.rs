@@ -8,7 +8,7 @@ use crate::frame::Frame;
 /// Counts per Pa that a part of the family can have, if the atmosphere is within its range: 2²³ counts are 2.1 MPa to 131 kPa.
 ///
 /// 8 to 64 stand in the data sheet of the XGZP6847D; 4, for more than 1 MPa, continues its table.
-const SCALES_PER_PA: [u16; 5] = [4, 8, 16, 32, 64];
+pub const SCALES_PER_PA: [u16; 5] = [4, 8, 16, 32, 64];
 
 /// The pressures that free air can have.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,9 @@
 use phystac::{Thresholds, Transfer};
 use twintac_emulate::i2c::Bus;
 use twintac_emulate::{Fault, LabClock, Moment, What};
-use twintac_live::{About, BoxedClock, FrameReader, Known, Lab, PowerOn, TAXELS, power_on};
+use twintac_live::{
+    About, BoxedClock, EmulatedPhysTac, FrameReader, Known, PowerOn, TAXELS, emulated_phystac, power_on,
+};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
@@ -15,12 +17,12 @@ pub fn sensor() -> Sensor {
     Sensor::read("../../sensors/phystac.toml").unwrap()
 }
 
-pub fn lab(faults: &[Fault]) -> Lab {
-    Lab::new(&sensor(), LabClock::virtual_time(), faults).unwrap()
+pub fn phystac(faults: &[Fault]) -> EmulatedPhysTac {
+    emulated_phystac(&sensor(), LabClock::virtual_time(), faults).unwrap()
 }
 
 pub fn reader(faults: &[Fault]) -> (LabReader, About) {
-    let mut phystac = lab(faults).phystac;
+    let mut phystac = phystac(faults);
     let checked = power_on(&mut phystac, &sensor(), &scale(8)).unwrap();
     let about = About::new(
         &sensor(),

@@ -1,9 +1,9 @@
-//! The emulated sensor, pressed by a slow motion, so that there is something to see.
+//! The emulated sensor, pressed by a wandering ball, so that there is something to see.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use phystac::PhysTac;
+use phystac::{PhysTac, SCALES_PER_PA};
 use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{Fault, Hertz, LabClock, Physics, Scene, Sensed};
@@ -11,18 +11,18 @@ use twintac_rig::TcpPose;
 use twintac_sensor::Sensor;
 
 use crate::about::driver_settings;
-use crate::scale::{SCALES_PER_PA, full_scale_kpa};
+use crate::scale::full_scale_kpa;
 use crate::{BoxedClock, LiveError, TAXELS};
 
 /// A ball that wanders around over the taxels and presses every few seconds. It is a function of time alone.
 #[derive(Clone, Debug)]
-pub struct Motion {
+pub struct WanderingBall {
     hertz: Hertz,
     middle_mm: DVec3,
     half_mm: DVec3,
 }
 
-impl Motion {
+impl WanderingBall {
     /// Before the first press nothing touches for so long, s: time to take a tare.
     pub const FREE_S: f64 = 1.0;
     /// Time of a press, from touch to touch, s.
@@ -64,7 +64,7 @@ impl Motion {
     }
 }
 
-impl Physics for Motion {
+impl Physics for WanderingBall {
     fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed {
         let tip = TcpPose {
             position_mm: self.tip_mm(time_s),
@@ -74,39 +74,30 @@ impl Physics for Motion {
     }
 }
 
-/// An emulated sensor on its own bus; there is neither robot nor force sensor.
-pub struct Lab {
-    /// The driver of it.
-    pub phystac: PhysTac<Bus, LabClock, BoxedClock, TAXELS>,
-    /// The clock that it lives by.
-    pub clock: LabClock,
-}
+/// The driver of an emulated sensor.
+pub type EmulatedPhysTac = PhysTac<Bus, LabClock, BoxedClock, TAXELS>;
 
-impl Lab {
-    /// A sensor as it is described, on [`emulated_board`], on a clock that stands at zero, with faults of its bus.
-    ///
-    /// # Errors
-    /// The sensor is not read this way; a fault makes no sense.
-    pub fn new(sensor: &Sensor, clock: LabClock, faults: &[Fault]) -> Result<Self, LiveError> {
-        let settings = driver_settings(sensor)?;
-        let nowhere = TcpPose {
-            position_mm: DVec3::ZERO,
-            roll_pitch_yaw_rad: DVec3::new(PI, 0.0, 0.0),
-        };
-        let scene = Scene::new(
-            clock.clone(),
-            Motion::over(sensor),
-            nowhere,
-            ArmSettings::default(),
-        );
-        let board = Board::new(scene, &emulated_board(sensor), faults)?;
-        let now = clock.clone();
-        let now: BoxedClock = Box::new(move || now.now_us());
-        Ok(Self {
-            phystac: PhysTac::new(board.bus(), clock.clone(), now, settings),
-            clock,
-        })
-    }
+/// A sensor as it is described, pressed by a [`WanderingBall`], on [`emulated_board`], by a clock that stands at zero, with faults of its bus.
+/// There is neither robot nor force sensor.
+///
+/// # Errors
+/// The sensor is not read this way; a fault makes no sense.
+pub fn emulated_phystac(
+    sensor: &Sensor,
+    clock: LabClock,
+    faults: &[Fault],
+) -> Result<EmulatedPhysTac, LiveError> {
+    let settings = driver_settings(sensor)?;
+    let nowhere = TcpPose {
+        position_mm: DVec3::ZERO,
+        roll_pitch_yaw_rad: DVec3::new(PI, 0.0, 0.0),
+    };
+    let ball = WanderingBall::over(sensor);
+    let scene = Scene::new(clock.clone(), ball, nowhere, ArmSettings::default());
+    let board = Board::new(scene, &emulated_board(sensor), faults)?;
+    let now = clock.clone();
+    let now: BoxedClock = Box::new(move || now.now_us());
+    Ok(PhysTac::new(board.bus(), clock, now, settings))
 }
 
 /// The board of a sensor that nobody has soldered: its barometers count as the description confirms, else by [`emulated_scale`].
@@ -140,12 +131,4 @@ pub fn emulated_scale(sensor: &Sensor) -> u16 {
     let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= sensor.readout.max_kpa;
     let finest = SCALES_PER_PA.into_iter().rev().find(reaches);
     finest.unwrap_or(SCALES_PER_PA[0])
-}
-
-impl std::fmt::Debug for Lab {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Lab")
-            .field("clock", &self.clock)
-            .finish_non_exhaustive()
-    }
 }
