@@ -1,4 +1,5 @@
-//! House rules and checks: `cargo xtask ci` runs what CI runs.
+//! House rules and checks. `cargo xtask ci` lints and tests as `.ci/run` does, which first installs Python programs that some tests compare ours with:
+//! where these are missing and `TWINTAC_PYTHON` is not set, those tests say so and look at nothing.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -12,7 +13,7 @@ use anyhow::{Context, Result, bail};
 
 const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | bench recording |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
-  ci     lint, then test: what CI runs
+  ci     lint, then test, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
   bench  softbody: how fast presses are followed, and how far off tight solutions they are

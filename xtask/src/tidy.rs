@@ -131,6 +131,7 @@ fn files_named_in_the_documents_exist() {
                     "protocols",
                     "imports",
                     "realities",
+                    "benches",
                     "materials",
                     "xtask",
                     "docs",
@@ -144,6 +145,28 @@ fn files_named_in_the_documents_exist() {
                         number + 1
                     );
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn links_in_the_documents_lead_somewhere() {
+    let crates = fs::read_dir(root().join("crates")).unwrap();
+    let readmes = crates.map(|folder| folder.unwrap().path().join("README.md"));
+    let own = ["README.md", "ARCHITECTURE.md", "CHANGELOG.md"].map(|name| root().join(name));
+    for document in own.into_iter().chain(readmes.filter(|readme| readme.exists())) {
+        let text = fs::read_to_string(&document).unwrap();
+        for (number, line) in text.lines().enumerate() {
+            for link in line.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+                let file = link.split('#').next().unwrap_or_default();
+                let is_there = link.contains("://") || document.with_file_name(file).exists();
+                assert!(
+                    file.is_empty() || is_there,
+                    "{}:{}: `{link}` leads nowhere",
+                    document.display(),
+                    number + 1
+                );
             }
         }
     }

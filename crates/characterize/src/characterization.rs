@@ -92,12 +92,21 @@ pub fn characterize(
         creep: creep::creep(&recorded, taxels, options),
         cross_talk: cross_talk::cross_talk(&recorded, taxels, options),
         repeatability: repeatability::repeatability(&recorded, taxels, options),
-        zero_return: drift::zero_return(&recorded, taxels, &noise),
+        zero_return: drift::zero_return(&recorded, taxels),
         temperature_drift: drift::with_temperature(unloaded),
         noise,
         sensitivity,
         detection_limit,
     })
+}
+
+impl Characterization {
+    /// The step of the smallest force that was detected.
+    #[must_use]
+    pub fn smallest_step(&self) -> Option<&Step> {
+        let detected = self.steps.found()?.iter().filter(|step| step.is_detected);
+        detected.min_by(|a, b| a.force_n.total_cmp(&b.force_n))
+    }
 }
 
 fn check(recording: &Recording, sensor: &Sensor) -> Result<(), CharacterizeError> {

@@ -10,7 +10,7 @@ use crate::statistics::mean;
 use crate::{Finding, Options};
 
 /// What counts as the beginning of a hold, s after it began.
-const BEGINS_S: [f64; 2] = [0.5, 1.5];
+pub(crate) const BEGINS_S: [f64; 2] = [0.5, 1.5];
 
 /// How long its end is, s.
 const ENDS_S: f64 = 1.0;
@@ -39,7 +39,7 @@ pub(crate) fn creep(recorded: &[Recorded<'_>], taxels: &[String], options: &Opti
         "no press above a taxel is held for {} s or longer",
         options.long_s
     );
-    Finding::<()>::of_list(found.collect(), &why)
+    Finding::of_list(found.collect(), &why)
 }
 
 fn of_press(press: &Recorded<'_>, taxels: &[String]) -> Option<Creep> {
@@ -71,7 +71,7 @@ fn of_press(press: &Recorded<'_>, taxels: &[String]) -> Option<Creep> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     #[test]
     fn a_slow_rise_under_a_constant_load_is_creep() {
@@ -81,7 +81,11 @@ mod tests {
             reads: |force_n, phase, into_s| 7.0 * force_n + if phase == 1 { 0.014 * into_s } else { 0.0 },
             ..Shape::default()
         })];
-        let finding = creep(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let finding = creep(
+            &all(&presses),
+            &["a".to_owned(), "b".to_owned()],
+            &Options::default(),
+        );
         let found = &finding.found().unwrap()[0];
         let expected = 100.0 * 0.014 * (found.between_s[1] - 1.0) / 14.014;
         assert!((found.percent - expected).abs() < 0.01, "{found:?} {expected}");
@@ -94,7 +98,11 @@ mod tests {
             hold_s: 5.0,
             ..Shape::default()
         })];
-        let finding = creep(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let finding = creep(
+            &all(&presses),
+            &["a".to_owned(), "b".to_owned()],
+            &Options::default(),
+        );
         assert!(finding.why_not().unwrap().contains("10 s"));
     }
 }

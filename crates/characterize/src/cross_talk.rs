@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use crate::recorded::{Recorded, above};
-use crate::statistics::{between, binned, mean};
+use crate::statistics::{between, binned};
 use crate::{Finding, Options};
 
 /// Steps of force that readings are averaged in.
@@ -77,32 +77,19 @@ fn row(press: &Recorded<'_>, taxel: usize, n_taxels: usize, force_n: f64) -> Opt
         .collect()
 }
 
-impl CrossTalk {
-    /// Mean over all pairs of a pressed taxel and another, %.
-    #[must_use]
-    pub fn mean_percent(&self) -> Option<f64> {
-        let rows = self.percent.iter().zip(&self.pressed);
-        let others: Vec<f64> = rows
-            .flat_map(|(row, name)| {
-                row.iter()
-                    .zip(&self.taxels)
-                    .filter(move |(_, other)| *other != name)
-            })
-            .map(|(percent, _)| *percent)
-            .collect();
-        mean(&others)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     #[test]
     fn the_neighbour_reads_its_quarter() {
         let presses = [press(&Shape::default())];
-        let finding = cross_talk(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let finding = cross_talk(
+            &all(&presses),
+            &["a".to_owned(), "b".to_owned()],
+            &Options::default(),
+        );
         let found = finding.found().unwrap();
         assert_eq!(found.pressed, ["a"]);
         assert!((found.percent[0][0] - 100.0).abs() < 1e-9 && (found.percent[0][1] - 25.0).abs() < 1e-9);

@@ -54,7 +54,7 @@ pub(crate) fn limits(
             averaged_n: noise.window_deviation_kpa.map(limit_n),
         })
     });
-    Finding::<()>::of_list(
+    Finding::of_list(
         found.collect(),
         "no taxel has both a noise floor and a sensitivity",
     )
@@ -74,7 +74,7 @@ pub(crate) fn steps(
         .filter(|press| press.press.control == Control::Force);
     let found = loads.filter_map(|load| step(load, taxels, noise, options));
     let why = "no step of a known force (control `force`) stands above a taxel with rests and holds as long as the averaging window";
-    Finding::<()>::of_list(found.collect(), why)
+    Finding::of_list(found.collect(), why)
 }
 
 fn step(load: &Recorded<'_>, taxels: &[String], noise: &[Noise], options: &Options) -> Option<Step> {
@@ -82,8 +82,8 @@ fn step(load: &Recorded<'_>, taxels: &[String], noise: &[Noise], options: &Optio
     let noise = noise.iter().find(|noise| noise.taxel == taxels[taxel])?;
     let window_deviation_kpa = noise.window_deviation_kpa?;
     let (time_s, phases) = (&load.press.time_s, &load.phases);
-    let on_s = time_s[phases.hold.start];
-    let from = time_s.partition_point(|at_s| *at_s < time_s[phases.rest.end - 1] - options.window_s);
+    let [off_s, on_s] = [time_s[phases.rest.end.checked_sub(1)?], time_s[phases.hold.start]];
+    let from = time_s.partition_point(|at_s| *at_s < off_s - options.window_s);
     let to = time_s.partition_point(|at_s| *at_s < on_s + options.window_s);
     if from == 0 || to > phases.hold.end {
         return None;
@@ -107,10 +107,11 @@ fn step(load: &Recorded<'_>, taxels: &[String], noise: &[Noise], options: &Optio
 mod tests {
     use super::*;
     use crate::noise::noise;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
+    use twintac_recording::Press;
 
-    fn steps_of(force_n: f64) -> Step {
-        let shape = Shape {
+    fn weight(force_n: f64) -> Shape {
+        Shape {
             peak_n: force_n,
             loading_s: 0.1,
             hold_s: 4.0,
@@ -118,11 +119,18 @@ mod tests {
             control: Control::Force,
             noise_kpa: 0.02,
             ..Shape::default()
-        };
-        let presses = [press(&shape)];
-        let (all, names) = (all(&presses), ["a".to_owned(), "b".to_owned()]);
-        let noise = noise(&all, &names, &options());
-        steps(&all, &names, &noise, &options()).found().unwrap()[0].clone()
+        }
+    }
+
+    fn all_steps(presses: &[Press]) -> Vec<Step> {
+        let (all, names) = (all(presses), ["a".to_owned(), "b".to_owned()]);
+        let noise = noise(&all, &names, &Options::default());
+        let steps = steps(&all, &names, &noise, &Options::default());
+        steps.found().unwrap().clone()
+    }
+
+    fn steps_of(force_n: f64) -> Step {
+        all_steps(&[press(&weight(force_n))])[0].clone()
     }
 
     #[test]
@@ -138,6 +146,18 @@ mod tests {
     #[test]
     fn what_is_far_below_the_noise_is_not_detected() {
         assert!(!steps_of(1e-6).is_detected);
+    }
+
+    #[test]
+    fn a_weight_that_is_on_from_the_first_frame_makes_no_step() {
+        let loaded = Shape {
+            rest_s: 0.0,
+            loading_s: 0.0,
+            ..weight(2.0)
+        };
+        let steps = all_steps(&[press(&weight(1.0)), press(&loaded)]);
+        let forces_n: Vec<f64> = steps.iter().map(|step| step.force_n).collect();
+        assert_eq!(forces_n, [1.0]);
     }
 
     #[test]
@@ -160,7 +180,7 @@ mod tests {
             n_presses: 1,
             response: Vec::new(),
         }]);
-        let limits = limits(&noise, &response, &options());
+        let limits = limits(&noise, &response, &Options::default());
         assert!((limits.found().unwrap()[0].single_reading_n - 0.01).abs() < 1e-12);
     }
 }

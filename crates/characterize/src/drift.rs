@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use crate::Finding;
 use crate::recorded::Recorded;
 use crate::statistics::{line, mean};
-use crate::{Finding, Noise};
 
 /// Smallest change of temperature that tells a coefficient, K.
 const LEAST_K: f64 = 1.0;
@@ -42,14 +42,7 @@ pub struct TemperatureDrift {
     pub n_readings: usize,
 }
 
-pub(crate) fn zero_return(
-    recorded: &[Recorded<'_>],
-    taxels: &[String],
-    noise: &Finding<Vec<Noise>>,
-) -> Finding<Vec<ZeroReturn>> {
-    let Finding::Found(_) = noise else {
-        return Finding::NotGiven("it takes unloaded frames before and after a press".to_owned());
-    };
+pub(crate) fn zero_return(recorded: &[Recorded<'_>], taxels: &[String]) -> Finding<Vec<ZeroReturn>> {
     let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
         let changes = recorded.iter().filter_map(|press| {
             let before_kpa = mean(&press.readings_kpa(taxel, &press.phases.rest))?;
@@ -62,7 +55,7 @@ pub(crate) fn zero_return(
             n_presses: squares.len(),
         })
     });
-    Finding::<()>::of_list(found.collect(), "no press has unloaded frames before and after")
+    Finding::of_list(found.collect(), "no press has unloaded frames before and after")
 }
 
 pub(crate) fn with_temperature(courses: &[UnloadedCourse]) -> Finding<Vec<TemperatureDrift>> {
@@ -89,7 +82,7 @@ pub(crate) fn with_temperature(courses: &[UnloadedCourse]) -> Finding<Vec<Temper
         }
     }
     let why = format!("temperatures in the recordings change by {widest_k:.2} K, and it takes {LEAST_K} K");
-    Finding::<()>::of_list(found, &why)
+    Finding::of_list(found, &why)
 }
 
 #[cfg(test)]
@@ -130,8 +123,7 @@ mod tests {
             ..Shape::default()
         };
         let presses = [press(&shape)];
-        let noise = Finding::Found(Vec::new());
-        let finding = zero_return(&all(&presses), &["a".to_owned(), "b".to_owned()], &noise);
+        let finding = zero_return(&all(&presses), &["a".to_owned(), "b".to_owned()]);
         assert!((finding.found().unwrap()[0].rms_kpa - 0.3).abs() < 1e-9);
     }
 }

@@ -23,7 +23,9 @@ pub enum CharacterizeError {
         expected_taxels: String,
     },
     /// There is nothing to characterize.
-    #[error("the recordings hold no presses")]
+    #[error(
+        "the recordings hold no presses: `twintac record` makes some with presses, those of `twintac stream` have none"
+    )]
     NoPresses,
     /// A folder could not be made.
     #[error("{path} could not be made: {source}")]

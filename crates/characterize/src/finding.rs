@@ -30,13 +30,15 @@ impl<T> Finding<T> {
             Self::NotGiven(why) => Some(why),
         }
     }
+}
 
+impl<T> Finding<Vec<T>> {
     /// The list, unless it is empty.
-    pub(crate) fn of_list<I>(list: Vec<I>, why: &str) -> Finding<Vec<I>> {
+    pub(crate) fn of_list(list: Vec<T>, why: &str) -> Self {
         if list.is_empty() {
-            Finding::NotGiven(why.to_owned())
+            Self::NotGiven(why.to_owned())
         } else {
-            Finding::Found(list)
+            Self::Found(list)
         }
     }
 }

@@ -62,7 +62,7 @@ pub(crate) fn hysteresis(
         "no press above a taxel loads and unloads in {} s or longer each, with a hold of at most {LONGEST_HOLD_S} s",
         options.slow_s
     );
-    Finding::<()>::of_list(found.collect(), &why)
+    Finding::of_list(found.collect(), &why)
 }
 
 struct Loop {
@@ -94,7 +94,7 @@ impl Loop {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     #[test]
     fn a_loop_of_known_width_is_found() {
@@ -113,7 +113,11 @@ mod tests {
             ..Shape::default()
         };
         let presses = [press(&shape), press(&shape)];
-        let finding = hysteresis(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let finding = hysteresis(
+            &all(&presses),
+            &["a".to_owned(), "b".to_owned()],
+            &Options::default(),
+        );
         let found = &finding.found().unwrap()[0];
         assert_eq!(found.n_presses, 2);
         // Bins end half a bin below full scale.
@@ -127,7 +131,11 @@ mod tests {
     #[test]
     fn a_straight_way_back_has_none() {
         let presses = [press(&Shape::default())];
-        let finding = hysteresis(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let finding = hysteresis(
+            &all(&presses),
+            &["a".to_owned(), "b".to_owned()],
+            &Options::default(),
+        );
         assert!(finding.found().unwrap()[0].percent.abs() < 1e-6);
     }
 }

@@ -46,7 +46,7 @@ pub(crate) fn noise(recorded: &[Recorded<'_>], taxels: &[String], options: &Opti
             n_readings,
         })
     });
-    Finding::<()>::of_list(
+    Finding::of_list(
         found.collect(),
         "no press begins with eight or more unloaded frames",
     )
@@ -82,7 +82,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     #[test]
     fn known_noise_is_found() {
@@ -93,7 +93,7 @@ mod tests {
         };
         let presses = [press(&shape), press(&shape)];
         let names = ["a".to_owned(), "b".to_owned()];
-        let finding = noise(&all(&presses), &names, &options());
+        let finding = noise(&all(&presses), &names, &Options::default());
         let found = finding.found().unwrap();
         assert_eq!(found.len(), 2);
         assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
@@ -107,7 +107,11 @@ mod tests {
             ..Shape::default()
         };
         let presses = [press(&shape)];
-        let finding = noise(&all(&presses), &["a".to_owned(), "b".to_owned()], &options());
+        let finding = noise(
+            &all(&presses),
+            &["a".to_owned(), "b".to_owned()],
+            &Options::default(),
+        );
         assert!(finding.why_not().unwrap().contains("unloaded"));
     }
 }

@@ -49,7 +49,7 @@ pub(crate) fn repeatability(
         of_group(groups.max_by_key(Vec::len)?, taxel, name)
     });
     let why = format!("no taxel is pressed slowly {FEWEST} times or more at one place and to one depth");
-    Finding::<()>::of_list(found.collect(), &why)
+    Finding::of_list(found.collect(), &why)
 }
 
 fn is_same(first: &Recorded<'_>, other: &Recorded<'_>) -> bool {
@@ -94,7 +94,7 @@ fn of_group(group: Vec<&Recorded<'_>>, taxel: usize, name: &str) -> Option<Repea
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     #[test]
     fn the_spread_between_presses_is_found() {
@@ -111,10 +111,10 @@ mod tests {
             slope(|force_n, _, _| 7.1 * force_n),
         ];
         let names = ["a".to_owned(), "b".to_owned()];
-        let finding = repeatability(&all(&presses), &names, &options());
+        let finding = repeatability(&all(&presses), &names, &Options::default());
         let found = &finding.found().unwrap()[0];
         assert!((found.percent - 100.0 * 0.1 / 7.0).abs() < 0.02, "{found:?}");
-        let finding = repeatability(&all(&presses[..2]), &names, &options());
+        let finding = repeatability(&all(&presses[..2]), &names, &Options::default());
         assert!(finding.why_not().is_some());
     }
 }

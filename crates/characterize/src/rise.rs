@@ -119,7 +119,7 @@ fn passes(course: &[[f64; 2]]) -> Option<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     #[test]
     fn a_ramp_takes_eight_tenths_of_its_length() {
@@ -129,7 +129,7 @@ mod tests {
             rate_hz: 1000.0,
             ..Shape::default()
         })];
-        let finding = rise_time(&all(&presses), &options());
+        let finding = rise_time(&all(&presses), &Options::default());
         let found = finding.found().unwrap();
         assert!(
             (found.rise_s - 0.08).abs() < 1e-6 && (found.force_rise_s - 0.08).abs() < 1e-6,
@@ -154,7 +154,7 @@ mod tests {
             },
             ..Shape::default()
         })];
-        let finding = rise_time(&all(&presses), &options());
+        let finding = rise_time(&all(&presses), &Options::default());
         let found = finding.found().unwrap();
         assert!(
             (found.rise_s / (0.1 * 9.0_f64.ln()) - 1.0).abs() < 0.01,

@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use crate::recorded::{Recorded, above};
-use crate::statistics::{between, binned, deviation, line, mean};
+use crate::statistics::{binned, deviation, line, mean};
 use crate::{Finding, Options};
 
 /// Steps of force that readings are averaged in.
@@ -65,7 +65,7 @@ pub(crate) fn sensitivity(
         "no press to a depth stands within {} mm of a taxel and takes {} s or longer to load",
         options.above_mm, options.slow_s
     );
-    Finding::<()>::of_list(found.collect(), &why)
+    Finding::of_list(found.collect(), &why)
 }
 
 pub(crate) fn overall(taxels: &Finding<Vec<Sensitivity>>) -> Finding<Overall> {
@@ -138,18 +138,10 @@ fn fit(points: &[[f64; 2]]) -> Option<Fit> {
     })
 }
 
-impl Sensitivity {
-    /// The response under a force, N, within the data, kPa.
-    #[must_use]
-    pub fn response_kpa(&self, force_n: f64) -> Option<f64> {
-        between(&self.response, force_n)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, options, press};
+    use crate::synthetic::{Shape, all, press};
 
     fn found(reads: fn(f64, u32, f64) -> f64) -> Sensitivity {
         let presses = [press(&Shape {
@@ -159,7 +151,10 @@ mod tests {
             ..Shape::default()
         })];
         let names = ["a".to_owned(), "b".to_owned()];
-        sensitivity(&all(&presses), &names, &options()).found().unwrap()[0].clone()
+        sensitivity(&all(&presses), &names, &Options::default())
+            .found()
+            .unwrap()[0]
+            .clone()
     }
 
     #[test]
@@ -197,7 +192,7 @@ mod tests {
         })];
         let names = ["a".to_owned(), "b".to_owned()];
         assert!(
-            sensitivity(&all(&presses), &names, &options())
+            sensitivity(&all(&presses), &names, &Options::default())
                 .why_not()
                 .unwrap()
                 .contains("1 s")

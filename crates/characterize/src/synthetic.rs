@@ -4,8 +4,8 @@ use glam::DVec3;
 use twintac_recording::{Control, Press};
 use twintac_shape::Pose;
 
+use crate::phases::Phases;
 use crate::recorded::Recorded;
-use crate::{Options, phases::Phases};
 
 /// A trapezoid of force on one taxel, a second after the start; a second taxel feels a part of it.
 pub(crate) struct Shape {
@@ -104,8 +104,4 @@ pub(crate) fn recorded(press: &Press) -> Recorded<'_> {
 /// As [`recorded`], of many.
 pub(crate) fn all(presses: &[Press]) -> Vec<Recorded<'_>> {
     presses.iter().map(recorded).collect()
-}
-
-pub(crate) fn options() -> Options {
-    Options::default()
 }

@@ -69,16 +69,14 @@ pub enum RecordingError {
         /// What was looked for, and what became of it.
         why: String,
     },
-    /// Files that were to become one recording do not belong together.
-    #[error(
-        "{file} belongs to sensor `{found}`, the files before it to `{expected}`; import each sensor on its own"
-    )]
-    MixedSensors {
-        /// The file as the user named it.
-        file: String,
-        /// The sensor of the files before it.
+    /// Recordings that were to become one do not belong together.
+    #[error("this recording has {what} {found}, those before it {expected}; take each on its own")]
+    Mixed {
+        /// What differs: sensor, taxels or provenance.
+        what: &'static str,
+        /// That of the recordings before.
         expected: String,
-        /// The sensor of this file.
+        /// That of this one.
         found: String,
     },
     /// The numbers contradict what a [`Recording`](crate::Recording) promises.

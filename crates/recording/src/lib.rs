@@ -2,6 +2,7 @@
 //!
 //! A press is the unit of work: a named indenter, a time-stamped pose, and what was measured or simulated meanwhile.
 
+mod append;
 mod check;
 mod error;
 mod import;

@@ -256,7 +256,11 @@ fn any_field_can_differ_for_some_files() {
     let mixed = import
         .read_all(&[bench.path("new.csv"), bench.path("old_left.csv")])
         .unwrap_err();
-    assert!(matches!(mixed, RecordingError::MixedSensors { .. }), "{mixed}");
+    let text = mixed.to_string();
+    assert!(
+        text.contains("old_left.csv: ") && text.contains("sensor `old-pair`, those before it `pair`"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 /// Barometric touch sensors and their digital twin.
 ///
 /// `demo` needs neither hardware nor data; `reproduce` does the same on recordings of a real sensor. Both run the stages below, which are
-/// commands of their own: mesh, simulate, record or import, align, train, evaluate, report.
+/// commands of their own: record or import, mesh, simulate, align, train, evaluate, report.
 #[derive(Debug, Parser)]
 #[command(name = "twintac", version)]
 pub(crate) struct Arguments {
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// The whole road on the emulated bench: no hardware, no data, three minutes.
+    /// The whole road on the emulated bench: no hardware, no data, minutes.
     Demo(Demo),
     /// The whole road on recordings of a real sensor.
     Reproduce(Reproduce),
@@ -216,7 +216,7 @@ pub(crate) struct Characterize {
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: PathBuf,
-    /// Recordings: presses.parquet files, MCAP logs, or patterns of them.
+    /// Recordings: presses.parquet files, MCAP logs, also cut ones (`.mcap.partial`), or patterns of them.
     #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
     pub(crate) recordings: Vec<String>,
     /// Folder to write characterization.json, report.html and datasheet.html to.
@@ -355,14 +355,22 @@ pub(crate) struct Stream {
     #[arg(long, value_enum)]
     pub(crate) format: Option<RowFormat>,
     /// End after so many rows.
-    #[arg(long, value_name = "N", requires = "format")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format")]
     pub(crate) frames: Option<u64>,
     /// End after so long, s.
-    #[arg(long, value_name = "S", requires = "format")]
+    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format")]
     pub(crate) seconds: Option<f64>,
     /// Folder of the dashboard's recordings (MCAP).
-    #[arg(long, value_name = "DIR", default_value = ".")]
+    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]
     pub(crate) out: PathBuf,
+}
+
+/// A time, s, that passes.
+fn duration_s(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => Ok(seconds),
+        _ => Err("expected seconds, a finite number above 0".to_owned()),
+    }
 }
 
 /// How frames are written.

@@ -1,5 +1,6 @@
-//! Progress on standard error: a bar with an estimate on a terminal, silence elsewhere.
+//! Progress on standard error: a bar with an estimate on a terminal, and elsewhere only what must be known.
 
+use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -16,9 +17,12 @@ pub(crate) fn bar(stage: &str, n_steps: u64) -> ProgressBar {
 
 /// A line about what happened, on a terminal only.
 pub(crate) fn note(line: &str) {
-    use std::io::{IsTerminal, Write};
-    let mut out = std::io::stderr();
-    if out.is_terminal() {
-        let _ = writeln!(out, "{line}");
+    if std::io::stderr().is_terminal() {
+        say(line);
     }
+}
+
+/// A line that is to be known wherever standard error goes.
+pub(crate) fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }

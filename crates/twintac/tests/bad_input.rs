@@ -2,9 +2,17 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use glam::{DQuat, DVec3};
+use twintac_log::{
+    Body, Description, Event, LogWriter, Message, PoseReading, TactileFrame, Taxel, TaxelState,
+};
+use twintac_recording::{Control, Provenance};
+use twintac_shape::Pose;
 
 fn twintac(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_twintac"))
@@ -256,4 +264,208 @@ fn a_log_that_is_none() {
         &["touch.mcap", "not a readable log"],
     );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+fn characterize(sensor: &str, recordings: &[&Path], out: &Path) -> Output {
+    let sensor = root().join(sensor);
+    let mut arguments = vec!["characterize", "--sensor", text(&sensor), "--recordings"];
+    arguments.extend(recordings.iter().map(|file| text(file)));
+    arguments.extend(["--json", "--out", text(out)]);
+    let output = twintac(&arguments);
+    assert!(output.status.success() || !out.exists());
+    output
+}
+
+/// A frame of the log below, so many ms after its start.
+fn frame(at_ms: u64) -> Message {
+    let taxel = Taxel {
+        state: TaxelState::Good,
+        read_us: 0,
+        counts: None,
+        pressure_pa: Some(101_000.0),
+        temperature_c: Some(25.0),
+    };
+    Message {
+        bench_ns: at_ms * 1_000_000,
+        body: Body::Tactile(TactileFrame {
+            triggered_us: at_ms * 1000,
+            taxels: vec![taxel; 8],
+        }),
+    }
+}
+
+/// Two seconds of PhysTac at rest, with these events, so many ms after its start.
+fn log(path: &Path, events: &[(u64, Event)]) {
+    let description = Description {
+        sensor: "phystac".to_owned(),
+        sensor_toml: String::new(),
+        provenance: Provenance::Emulated,
+        taxels: (0..8).map(|taxel| format!("t{taxel}")).collect(),
+        transfer: None,
+        base_from_gel: Pose::IDENTITY,
+        tool_from_indenter: Pose::IDENTITY,
+        force_axis: DVec3::NEG_Z,
+        start_unix_ns: 0,
+        versions: BTreeMap::new(),
+    };
+    let mut writer = LogWriter::new(Vec::new(), &description).unwrap();
+    for at_ms in (0..2000).step_by(20) {
+        writer.write(&frame(at_ms)).unwrap();
+        let pose = PoseReading {
+            source_s: None,
+            position_mm: DVec3::Z,
+            base_from_tool: DQuat::IDENTITY,
+        };
+        let pose = Message {
+            bench_ns: at_ms * 1_000_000,
+            body: Body::Pose(pose),
+        };
+        writer.write(&pose).unwrap();
+    }
+    for (at_ms, event) in events {
+        let event = Message {
+            bench_ns: at_ms * 1_000_000,
+            body: Body::Event(event.clone()),
+        };
+        writer.write(&event).unwrap();
+    }
+    fs::write(path, writer.finish().unwrap()).unwrap();
+}
+
+fn begun(name: &str) -> Event {
+    Event::PressBegun {
+        name: name.to_owned(),
+        indenter: "sphere-25".to_owned(),
+        control: Control::Pose,
+    }
+}
+
+fn ended(name: &str) -> Event {
+    Event::PressEnded {
+        name: name.to_owned(),
+    }
+}
+
+#[test]
+fn nothing_to_characterize() {
+    let folder = tempfile::tempdir().unwrap();
+    let [csv, foreign, whole, touch] =
+        ["press.csv", "foreign.parquet", "whole.mcap", "touch.mcap"].map(|name| folder.path().join(name));
+    let out = folder.path().join("out");
+    let phystac = "sensors/phystac.toml";
+    fs::write(&csv, "time_s,depth_mm\n0,0\n").unwrap();
+    refused(
+        &characterize(phystac, &[&csv], &out),
+        &["press.csv", "no Parquet file and no MCAP log", "`twintac import`"],
+    );
+    fs::write(&foreign, "PAR1, but nothing else").unwrap();
+    refused(
+        &characterize(phystac, &[&foreign], &out),
+        &["foreign.parquet", "not a readable recording"],
+    );
+    log(&whole, &[(500, begun("p")), (1500, ended("p"))]);
+    refused(
+        &characterize("sensors/strip4-gel-d.toml", &[&whole], &out),
+        &["sensor `phystac`", "`strip4-gel-d`"],
+    );
+    log(&touch, &[]);
+    refused(
+        &characterize(phystac, &[&touch], &out),
+        &["no presses", "`twintac record`", "`twintac stream`"],
+    );
+    let aside = folder.path().join("press-0001.try-1.mcap");
+    fs::copy(&whole, &aside).unwrap();
+    refused(&characterize(phystac, &[&aside], &out), &["set aside"]);
+}
+
+#[test]
+fn recordings_that_do_not_belong_together() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(recording(folder.path(), |_, _| ()).status.success());
+    let strip = folder.path().join("run/recordings/presses.parquet");
+    let [cut, touch] = ["cut.parquet", "a-touch.mcap"].map(|name| folder.path().join(name));
+    let out = folder.path().join("out");
+    let bytes = fs::read(&strip).unwrap();
+    fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
+    refused(
+        &characterize("sensors/strip4-gel-d.toml", &[&cut], &out),
+        &["cut.parquet", "not a readable recording"],
+    );
+    log(&touch, &[]);
+    refused(
+        &characterize("sensors/strip4-gel-d.toml", &[&strip, &touch], &out),
+        &[
+            "presses.parquet",
+            "sensor `strip4-gel-d`, those before it `phystac`",
+        ],
+    );
+}
+
+#[test]
+fn a_press_in_which_the_bench_stopped_is_left_out_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let [log_file, partial] = ["touch.mcap", "touch.mcap.partial"].map(|name| folder.path().join(name));
+    let cause = "the operator stopped it".to_owned();
+    let events = [
+        (200, begun("one")),
+        (900, ended("one")),
+        (1000, begun("two")),
+        (1800, Event::Stopped { cause }),
+    ];
+    log(&log_file, &events);
+    let n_presses = |file: &Path| {
+        let output = characterize("sensors/phystac.toml", &[file], &folder.path().join("out"));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        (found["n_presses"].as_u64().unwrap(), said)
+    };
+    let (presses, said) = n_presses(&log_file);
+    assert_eq!(presses, 1);
+    assert!(
+        said.contains("the bench stopped at 1.800 s: the operator stopped it"),
+        "{said}"
+    );
+    assert!(said.contains("press `two` was not finished"), "{said}");
+    fs::rename(&log_file, &partial).unwrap();
+    assert_eq!(n_presses(&partial).0, 1);
+}
+
+#[test]
+fn a_stream_that_cannot_be() {
+    let strip = root().join("sensors/strip4-gel-a.toml");
+    let stream = |more: &[&str]| twintac(&[&["stream", "--lab"], more].concat());
+    refused(
+        &stream(&["--sensor", text(&strip), "--format", "csv"]),
+        &["strip4-gel-a", "4 taxels, expected 8"],
+    );
+    for seconds in ["nan", "inf", "0", "-1"] {
+        let seconds = format!("--seconds={seconds}");
+        refused(
+            &stream(&[&seconds, "--format", "csv"]),
+            &["--seconds", "finite number above 0"],
+        );
+    }
+    refused(&stream(&["--frames", "0", "--format", "csv"]), &["--frames"]);
+    refused(
+        &stream(&["--out", "here", "--format", "csv"]),
+        &["--out", "--format"],
+    );
+}
+
+#[test]
+fn a_bench_without_devices() {
+    let folder = tempfile::tempdir().unwrap();
+    let [protocol, bench] = ["protocols/demo.toml", "benches/lab.toml"].map(|file| root().join(file));
+    let out = folder.path().join("run");
+    let output = twintac(&[
+        "record",
+        "--protocol",
+        text(&protocol),
+        "--bench",
+        text(&bench),
+        "--out",
+        text(&out),
+    ]);
+    refused(&output, &["[devices]", "--lab"]);
 }

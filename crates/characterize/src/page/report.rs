@@ -6,8 +6,12 @@ use twintac_report::{Block, Cell, Page, PageSection};
 use twintac_sensor::Sensor;
 
 use super::figures::{self, Plot};
+use super::sheet::table;
 use super::words::{number, or_not};
 use crate::{Characterization, Finding};
+
+/// How descriptions of the TwinTac paper's sensor name their source.
+const PAPER: &str = "arXiv 2509.10063";
 
 /// Everything that was found, with plots, definitions, and what was not found.
 #[must_use]
@@ -30,11 +34,12 @@ pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) 
     ]);
     range.extend(response_table(found));
     range.extend(step_table(found));
-    range.push(Block::Text(
-        "For its own sensor the TwinTac paper (arXiv 2509.10063) reports 7.24 kPa/N with a round indenter 25 mm wide, a step of 0.007 N seen, and \
-         212 N as the largest force."
-            .into(),
-    ));
+    if sensor.source.contains(PAPER) {
+        range.push(Block::Text(format!(
+            "For its own sensor the TwinTac paper ({PAPER}) reports 7.24 kPa/N with a round indenter 25 mm wide, a step of 0.007 N seen, and 212 N \
+             as the largest force."
+        )));
+    }
     let bars = |title: &str, x_label: &str, values: Vec<(String, f64)>, caption: &str| {
         (!values.is_empty()).then(|| {
             (
@@ -145,15 +150,10 @@ fn result(found: &Characterization, sensor: &Sensor) -> Vec<Block> {
         overall.map(|overall| format!("{} kPa/N", number(overall.mean_kpa_per_n, 3))),
         "mean sensitivity",
     );
-    let detected = found
-        .steps
-        .found()
-        .into_iter()
-        .flatten()
-        .filter(|step| step.is_detected);
-    let smallest = detected.min_by(|a, b| a.force_n.total_cmp(&b.force_n));
     card(
-        smallest.map(|step| format!("{} N", number(step.force_n, 2))),
+        found
+            .smallest_step()
+            .map(|step| format!("{} N", number(step.force_n, 2))),
         "smallest step detected",
     );
     let range = found.range.found();
@@ -173,17 +173,11 @@ fn result(found: &Characterization, sensor: &Sensor) -> Vec<Block> {
             .map(|percent| format!("{} %", number(percent, 2))),
         "largest hysteresis",
     );
-    let rows = found.rows(sensor);
-    let rows = rows
-        .into_iter()
-        .map(|row| row.map(Cell::Words).to_vec())
-        .collect();
-    let head = ["", "value", "condition"].map(str::to_owned).to_vec();
     let mut blocks = Vec::new();
     if !cards.is_empty() {
         blocks.push(Block::Cards(cards));
     }
-    blocks.push(Block::Table(String::new(), head, rows));
+    blocks.push(table(found, sensor));
     blocks
 }
 
@@ -323,4 +317,34 @@ fn definitions(found: &Characterization) -> Vec<Block> {
         vec!["figure".into(), "definition".into()],
         rows,
     )]
+}
+
+#[cfg(test)]
+mod tests {
+    use twintac_recording::Provenance;
+
+    use super::*;
+    use crate::synthetic::{Shape, press};
+    use crate::{Options, characterize};
+
+    #[test]
+    fn the_papers_figures_stand_beside_those_of_its_sensor_only() {
+        let text = include_str!("../../../../sensors/phystac.toml");
+        let mut sensor = Sensor::parse("phystac.toml", text, &|name| std::fs::read(name)).unwrap();
+        sensor.taxels.truncate(2);
+        sensor.taxels[0].position_mm = glam::DVec3::ZERO; // where the press is
+        let recording = Recording {
+            sensor: sensor.name.clone(),
+            provenance: Provenance::Emulated,
+            taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+            presses: vec![press(&Shape::default())],
+        };
+        let found = characterize(&recording, &[], &sensor, &Options::default()).unwrap();
+        let page = report(&found, &recording, &sensor).render();
+        assert!(page.contains("212 N as the largest force"));
+        assert!(page.contains("clocks that may differ"));
+        sensor.source = "measured by its maker".to_owned();
+        let page = report(&found, &recording, &sensor).render();
+        assert!(!page.contains("TwinTac paper"));
+    }
 }

@@ -19,17 +19,7 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
     ];
     let plots: Vec<_> = plots.into_iter().flatten().collect();
     let section = |id, title, blocks| PageSection { id, title, blocks };
-    let head = ["", "value", "condition"].map(str::to_owned).to_vec();
-    let rows = rows(found, sensor);
-    let rows = rows
-        .into_iter()
-        .map(|row| row.map(Cell::Words).to_vec())
-        .collect();
-    let mut sections = vec![section(
-        "figures",
-        "Characteristics",
-        vec![Block::Table(String::new(), head, rows)],
-    )];
+    let mut sections = vec![section("figures", "Characteristics", vec![table(found, sensor)])];
     if !plots.is_empty() {
         sections.push(section(
             "plots",
@@ -46,6 +36,14 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
         sections,
         is_sheet: true,
     }
+}
+
+/// The figures as a table.
+pub(super) fn table(found: &Characterization, sensor: &Sensor) -> Block {
+    let head = ["", "value", "condition"].map(str::to_owned).to_vec();
+    let rows = found.rows(sensor).into_iter();
+    let rows = rows.map(|row| row.map(Cell::Words).to_vec()).collect();
+    Block::Table(String::new(), head, rows)
 }
 
 impl Characterization {
@@ -141,10 +139,8 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
         ),
         row(
             "Smallest step detected",
-            or_not(&found.steps, |steps| {
-                let detected = steps.iter().filter(|step| step.is_detected);
-                let smallest = detected.min_by(|a, b| a.force_n.total_cmp(&b.force_n));
-                smallest.map_or("none".to_owned(), |step| {
+            or_not(&found.steps, |_| {
+                found.smallest_step().map_or("none".to_owned(), |step| {
                     format!(
                         "{} N (z = {})",
                         number(step.force_n, 2),

@@ -89,7 +89,7 @@ impl Import {
     ///
     /// # Errors
     ///
-    /// As [`read_csv`](Self::read_csv); or the files belong to different sensors, or share a name.
+    /// As [`read_csv`](Self::read_csv); or the files differ in sensor, taxels or provenance, or share a name.
     pub fn read_all<P: AsRef<Path>>(
         &self,
         paths: &[P],
@@ -102,24 +102,24 @@ impl Import {
             let description = self.for_file(path)?;
             let (presses, found) = read_file(path, &description)?;
             summary.files.push(found);
-            let recording = recording.get_or_insert_with(|| Recording {
-                sensor: description.sensor.clone(),
+            let taxels = description.taxels.into_iter().map(|taxel| taxel.name);
+            let next = Recording {
+                sensor: description.sensor,
                 provenance: description.provenance,
-                taxels: description
-                    .taxels
-                    .iter()
-                    .map(|taxel| taxel.name.clone())
-                    .collect(),
-                presses: Vec::new(),
-            });
-            if recording.sensor != description.sensor {
-                return Err(RecordingError::MixedSensors {
-                    file: path.display().to_string(),
-                    expected: recording.sensor.clone(),
-                    found: description.sensor,
-                });
+                taxels: taxels.collect(),
+                presses,
+            };
+            match &mut recording {
+                None => recording = Some(next),
+                Some(recording) => {
+                    let different = |mixed: RecordingError| RecordingError::Inconsistent {
+                        place: path.display().to_string(),
+                        problem: mixed.to_string(),
+                    };
+                    recording.expect_alike(&next).map_err(different)?;
+                    recording.presses.extend(next.presses);
+                }
             }
-            recording.presses.extend(presses);
         }
         let recording = recording.ok_or_else(|| RecordingError::Inconsistent {
             place: "import".to_owned(),

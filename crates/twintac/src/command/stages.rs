@@ -63,21 +63,21 @@ pub(crate) fn report(arguments: &Report) -> Result<()> {
 }
 
 fn read_presses(files: &[std::path::PathBuf]) -> Result<Recording> {
-    let mut recordings = files.iter().map(|file| {
-        if file.extension().is_some_and(|extension| extension == "parquet") {
-            Ok(Recording::read_parquet(file)?)
-        } else {
+    let mut all: Option<Recording> = None;
+    for file in files {
+        if file.extension().is_none_or(|extension| extension != "parquet") {
             anyhow::bail!(
                 "{} is no Parquet file; say with --import how to read it",
                 file.display()
-            )
+            );
         }
-    });
-    let mut first = recordings.next().context("there are no recordings")??;
-    for next in recordings {
-        first.presses.extend(next?.presses);
+        let next = Recording::read_parquet(file)?;
+        match &mut all {
+            None => all = Some(next),
+            Some(all) => all.append(next).with_context(|| file.display().to_string())?,
+        }
     }
-    Ok(first)
+    all.context("there are no recordings")
 }
 
 fn print_headline(run: &Run) -> Result<()> {

@@ -1,6 +1,5 @@
 //! `twintac stream`: touch as it happens.
 
-use std::io::Write;
 use std::path::Path;
 
 use anyhow::Result;
@@ -8,6 +7,7 @@ use twintac_live::{Format, Known, Limits, Live, Tally, dashboard, stream_rows};
 
 use super::demo::SENSOR;
 use crate::arguments::{RowFormat, Stream};
+use crate::progress::say;
 use crate::sensor_file::{SensorFile, read_sensor};
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
@@ -68,8 +68,4 @@ fn sum_up(tally: &Tally) {
             "{read} frames were read; {missed} of them missed; {failed} times none came"
         ));
     }
-}
-
-fn say(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -107,15 +107,9 @@ impl Run {
                 remarks.extend(read.remarks.into_iter().map(|remark| (file.clone(), remark)));
                 match &mut recording {
                     None => recording = Some(read.recording),
-                    Some(recording) if recording.provenance == read.recording.provenance => {
-                        recording.presses.extend(read.recording.presses);
-                    }
-                    Some(recording) => bail!(
-                        "{} is {}, the logs before it are {}: keep them in folders of their own",
-                        file.display(),
-                        read.recording.provenance,
-                        recording.provenance
-                    ),
+                    Some(recording) => recording
+                        .append(read.recording)
+                        .with_context(|| file.display().to_string())?,
                 }
             }
             let recording = recording.context("no press is done")?;

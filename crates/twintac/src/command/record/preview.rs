@@ -61,6 +61,7 @@ pub(super) fn run(
 }
 
 fn minutes(seconds: f64) -> String {
+    let seconds = seconds.round();
     format!("{:.0} min {:02.0} s", (seconds / 60.0).floor(), seconds % 60.0)
 }
 
@@ -112,5 +113,17 @@ fn motion(dry: &DryRun, settings: &PressSettings) -> Panels {
         panels: vec![panel("height, mm", 2), panel("x, mm", 0), panel("y, mm", 1)],
         panel_height_px: 110.0,
         logarithmic: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seconds_are_rounded_before_they_are_minutes() {
+        assert_eq!(minutes(119.7), "2 min 00 s");
+        assert_eq!(minutes(119.4), "1 min 59 s");
+        assert_eq!(minutes(5.2), "0 min 05 s");
     }
 }

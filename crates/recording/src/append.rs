@@ -1,0 +1,102 @@
+//! Recordings of the same sensor as one.
+
+use crate::{Recording, RecordingError};
+
+impl Recording {
+    /// Adds the presses of another recording. One whose name is taken gets a number, as in `name (2)`.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordingError::Mixed`]: sensor, taxels or provenance differ. Nothing is added then.
+    pub fn append(&mut self, next: Self) -> Result<(), RecordingError> {
+        self.expect_alike(&next)?;
+        for mut press in next.presses {
+            let is_taken = |name: &String| self.presses.iter().any(|other| other.name == *name);
+            if is_taken(&press.name) {
+                let numbered = (2..).map(|number| format!("{} ({number})", press.name));
+                if let Some(free) = numbered.into_iter().find(|name| !is_taken(name)) {
+                    press.name = free;
+                }
+            }
+            self.presses.push(press);
+        }
+        Ok(())
+    }
+
+    /// Whether presses of both can stand in one recording.
+    pub(crate) fn expect_alike(&self, next: &Self) -> Result<(), RecordingError> {
+        let facts = |recording: &Self| {
+            [
+                ("sensor", format!("`{}`", recording.sensor)),
+                ("taxels", recording.taxels.join(", ")),
+                ("provenance", recording.provenance.to_string()),
+            ]
+        };
+        for ((what, expected), (_, found)) in facts(self).into_iter().zip(facts(next)) {
+            if found != expected {
+                return Err(RecordingError::Mixed {
+                    what,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Control, Press, Provenance};
+
+    fn recording(names: &[&str]) -> Recording {
+        let press = |name: &&str| Press {
+            name: (*name).to_owned(),
+            file: "press.mcap".to_owned(),
+            indenter: "ball".to_owned(),
+            control: Control::Pose,
+            time_s: Vec::new(),
+            gel_from_indenter: Vec::new(),
+            force_n: None,
+            taxels_kpa: Vec::new(),
+            taxels_raw: Vec::new(),
+            valid: Vec::new(),
+        };
+        Recording {
+            sensor: "strip".to_owned(),
+            provenance: Provenance::Emulated,
+            taxels: vec!["a".to_owned(), "b".to_owned()],
+            presses: names.iter().map(press).collect(),
+        }
+    }
+
+    #[test]
+    fn names_that_are_taken_get_a_number() {
+        let mut all = recording(&["p#1", "p#2"]);
+        all.append(recording(&["p#1", "q#1"])).unwrap();
+        all.append(recording(&["p#1"])).unwrap();
+        let names: Vec<&str> = all.presses.iter().map(|press| press.name.as_str()).collect();
+        assert_eq!(names, ["p#1", "p#2", "p#1 (2)", "q#1", "p#1 (3)"]);
+    }
+
+    #[test]
+    fn what_differs_is_said_and_nothing_is_added() {
+        let differs = |change: fn(&mut Recording), words: &str| {
+            let (mut all, mut next) = (recording(&["p"]), recording(&["q"]));
+            change(&mut next);
+            let text = all.append(next).unwrap_err().to_string();
+            assert!(text.contains(words), "{text}");
+            assert_eq!(all.presses.len(), 1);
+        };
+        differs(
+            |next| next.sensor = "tip".to_owned(),
+            "sensor `tip`, those before it `strip`",
+        );
+        differs(|next| next.taxels.truncate(1), "taxels a, those before it a, b");
+        differs(
+            |next| next.provenance = Provenance::Real,
+            "provenance real, those before it emulated",
+        );
+    }
+}
