@@ -248,7 +248,9 @@ fn no_scale_is_guessed() {
 #[test]
 fn a_description_of_four_taxels_is_refused_by_name() {
     let strip = twintac_sensor::Sensor::read("../../sensors/strip4-gel-a.toml").unwrap();
-    let error = emulated_phystac(&strip, LabClock::virtual_time(), &[]).err().unwrap();
+    let error = emulated_phystac(&strip, LabClock::virtual_time(), &[])
+        .err()
+        .unwrap();
     assert_eq!(error.to_string(), "sensor strip4-gel-a: has 4 taxels, expected 8");
 }
 

@@ -4,6 +4,7 @@
 //! 3 when a bench was stopped: what was recorded until then is kept.
 
 mod arguments;
+mod built_in;
 mod calibration;
 mod command;
 mod drawing;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use twintac_sensor::Sensor;
 
+use crate::built_in::PHYSTAC;
 use crate::stage::write_file;
 
 /// A sensor description with its text.
@@ -40,12 +41,14 @@ pub(crate) fn parse_sensor(path: &Path, text: &str) -> Result<Sensor> {
 }
 
 impl SensorFile {
-    /// A description that the program carries with it.
-    pub(crate) fn built_in(name: &str, text: &str) -> Result<Self> {
-        let path = Path::new(name);
+    /// Reads a description, or without a file that of PhysTac, which the program carries with it.
+    pub(crate) fn or_phystac(file: Option<&Path>) -> Result<Self> {
+        if let Some(file) = file {
+            return read_sensor(file);
+        }
         Ok(Self {
-            sensor: Arc::new(parse_sensor(path, text)?),
-            text: text.to_owned(),
+            sensor: Arc::new(parse_sensor(Path::new(PHYSTAC.name), PHYSTAC.text)?),
+            text: PHYSTAC.text.to_owned(),
             folder: PathBuf::new(),
         })
     }

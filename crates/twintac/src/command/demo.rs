@@ -6,23 +6,25 @@ use twintac_lab::Reality;
 use twintac_simulate::SimulateSettings;
 
 use crate::arguments::Demo;
+use crate::built_in::{DEMO_PROTOCOL, REALITY};
 use crate::run::{Run, RunSettings, plan_text};
 use crate::sensor_file::SensorFile;
 use crate::stage::write_file;
 
-pub(super) const SENSOR: &str = include_str!("../../../../sensors/phystac.toml");
-const PROTOCOL: &str = include_str!("../../../../protocols/demo.toml");
-pub(super) const REALITY: &str = include_str!("../../../../realities/default.toml");
-
 /// Runs every stage on the emulated bench.
 pub(crate) fn run(arguments: &Demo) -> Result<()> {
-    let sensor = SensorFile::built_in("sensors/phystac.toml", SENSOR)?;
-    let reality = Reality::parse("realities/default.toml", REALITY)?;
-    let plans = plan_text("protocols/demo.toml", PROTOCOL, &sensor.sensor, arguments.seed)?;
+    let sensor = SensorFile::or_phystac(None)?;
+    let reality = Reality::parse(REALITY.name, REALITY.text)?;
+    let plans = plan_text(
+        DEMO_PROTOCOL.name,
+        DEMO_PROTOCOL.text,
+        &sensor.sensor,
+        arguments.seed,
+    )?;
     let source = format!("{} presses on the emulated bench", plans.len());
     let run = Run::start(&arguments.out, sensor, source, arguments.seed, settings())?;
-    write_file(&run.folder.join("protocol.toml"), PROTOCOL.as_bytes())?;
-    write_file(&run.folder.join("reality.toml"), REALITY.as_bytes())?;
+    write_file(&run.folder.join("protocol.toml"), DEMO_PROTOCOL.text.as_bytes())?;
+    write_file(&run.folder.join("reality.toml"), REALITY.text.as_bytes())?;
     run.record(&reality, &plans, &[])?;
     super::stages::finish(&run)
 }

@@ -5,16 +5,12 @@ use std::path::Path;
 use anyhow::Result;
 use twintac_live::{Format, Known, Limits, Live, Tally, dashboard, stream_rows};
 
-use super::demo::SENSOR;
 use crate::arguments::{RowFormat, Stream};
 use crate::progress::say;
-use crate::sensor_file::{SensorFile, read_sensor};
+use crate::sensor_file::SensorFile;
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
-    let sensor = match &arguments.sensor {
-        Some(path) => read_sensor(path)?,
-        None => SensorFile::built_in("sensors/phystac.toml", SENSOR)?,
-    };
+    let sensor = SensorFile::or_phystac(arguments.sensor.as_deref())?;
     let known = Known {
         counts_per_pa: arguments.scale,
         altitude_m: arguments.altitude_m,

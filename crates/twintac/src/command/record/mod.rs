@@ -5,7 +5,6 @@ mod lab;
 mod preview;
 
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,15 +22,12 @@ use twintac_recording::Provenance;
 use twintac_rig::SensorLimits;
 use twintac_rig::xarm::Client;
 
-use super::demo::{REALITY, SENSOR};
 use crate::arguments::Record;
-use crate::progress;
+use crate::built_in::{LAB_BENCH, REALITY};
+use crate::progress::{self, say};
 use crate::run::{Run, RunSettings, plan, plan_loads};
-use crate::sensor_file::{SensorFile, read_sensor};
+use crate::sensor_file::SensorFile;
 use bench::OpenBench;
-
-/// How the emulated bench presses.
-const LAB_BENCH: &str = include_str!("../../../../../benches/lab.toml");
 
 /// Set by Ctrl-C: the bench stops.
 static INTERRUPT: AtomicBool = AtomicBool::new(false);
@@ -55,10 +51,7 @@ struct Summary {
 }
 
 pub(super) fn run(arguments: &Record) -> Result<()> {
-    let sensor = match &arguments.sensor {
-        Some(path) => read_sensor(path)?,
-        None => SensorFile::built_in("sensors/phystac.toml", SENSOR)?,
-    };
+    let sensor = SensorFile::or_phystac(arguments.sensor.as_deref())?;
     let seed = arguments.start.seed;
     let plans = plan(&arguments.protocol, &sensor.sensor, seed)?;
     let loads = plan_loads(&arguments.protocol, &sensor.sensor, seed)?;
@@ -272,21 +265,11 @@ fn limits(sensor: &SensorFile) -> Result<SensorLimits> {
 }
 
 fn press_settings(file: Option<&Path>) -> Result<PressSettings> {
-    let Some(file) = file else {
-        return Ok(PressSettings::parse("benches/lab.toml", LAB_BENCH)?);
-    };
-    let text = std::fs::read_to_string(file).with_context(|| format!("reading {}", file.display()))?;
-    Ok(PressSettings::parse(&file.display().to_string(), &text)?)
+    let (name, text) = LAB_BENCH.unless(file)?;
+    Ok(PressSettings::parse(&name, &text)?)
 }
 
 fn read_reality(file: Option<&Path>) -> Result<Reality> {
-    let Some(file) = file else {
-        return Ok(Reality::parse("realities/default.toml", REALITY)?);
-    };
-    let text = std::fs::read_to_string(file).with_context(|| format!("reading {}", file.display()))?;
-    Ok(Reality::parse(&file.display().to_string(), &text)?)
-}
-
-fn say(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let (name, text) = REALITY.unless(file)?;
+    Ok(Reality::parse(&name, &text)?)
 }
