@@ -413,22 +413,25 @@ fn a_press_in_which_the_bench_stopped_is_left_out_and_named() {
         (1800, Event::Stopped { cause }),
     ];
     log(&log_file, &events);
-    let n_presses = |file: &Path| {
-        let output = characterize("sensors/phystac.toml", &[file], &folder.path().join("out"));
+    let n_presses = |files: &[&Path]| {
+        let output = characterize("sensors/phystac.toml", files, &folder.path().join("out"));
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success(), "{said}");
         let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         (found["n_presses"].as_u64().unwrap(), said)
     };
-    let (presses, said) = n_presses(&log_file);
+    let (presses, said) = n_presses(&[&log_file]);
     assert_eq!(presses, 1);
     assert!(
         said.contains("the bench stopped at 1.800 s: the operator stopped it"),
         "{said}"
     );
     assert!(said.contains("press `two` was not finished"), "{said}");
-    fs::rename(&log_file, &partial).unwrap();
-    assert_eq!(n_presses(&partial).0, 1);
+    fs::copy(&log_file, &partial).unwrap();
+    assert_eq!(n_presses(&[&partial]).0, 1);
+    let (presses, said) = n_presses(&[&log_file, &partial]);
+    assert_eq!(presses, 1);
+    assert!(said.contains("touch.mcap.partial is there whole"), "{said}");
 }
 
 #[test]
