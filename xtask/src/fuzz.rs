@@ -1,4 +1,4 @@
-//! Fuzzing of all that decodes what comes from wires and files: `fuzz/` with libFuzzer, without a nightly compiler.
+//! Fuzzing of what decodes the bench's wires, its logs and the force sensor's texts: `fuzz/` with libFuzzer, without a nightly compiler.
 
 use std::collections::VecDeque;
 use std::fmt::Write as _;
