@@ -256,17 +256,17 @@ fn each_fault_is_marked_or_stops_the_run() {
     let restarted = What::BarometerBrownOut { channel: 5 };
     let endless = What::EndlessConversion { channel: 1 };
     let table = [
-        (one_taxel, None, End::Note("taxel 2 is Missing")),
+        (one_taxel, None, End::Note("taxel 2 is missing")),
         (whole_bus, some_time, End::Gap(Stream::Tactile)),
         (whole_bus, None, End::Stop("the tactile sensor")),
         (stuck_bus, None, End::Gap(Stream::Tactile)),
         (stuck_taxel, None, End::Gap(Stream::Tactile)),
-        (short, None, End::Note("taxel 3 is Isolated")),
+        (short, None, End::Note("taxel 3 is isolated")),
         (slow_bus, None, End::Gap(Stream::Tactile)),
         // Where in a frame it happens decides what it costs; the mask is written again before each use.
         (What::SwitchBrownOut, None, End::Done),
         (restarted, None, End::Done),
-        (endless, None, End::Note("taxel 1 is Stuck")),
+        (endless, None, End::Note("taxel 1 is stuck")),
         (What::LostDatagrams, some_datagrams, End::Gap(Stream::Wrench)),
         (What::LostDatagrams, None, End::Stop("the force sensor")),
         (late, some_datagrams, End::Gap(Stream::Wrench)),

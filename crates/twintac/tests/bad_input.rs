@@ -471,4 +471,5 @@ fn a_bench_without_devices() {
         text(&out),
     ]);
     refused(&output, &["[devices]", "--lab"]);
+    assert!(!out.exists(), "nothing is begun");
 }

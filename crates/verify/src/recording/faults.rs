@@ -61,7 +61,7 @@ const FAULTS: [(&str, &str, Option<&str>, Ends); 20] = [
         "the switch loses power for a moment",
         "\"switch_brown_out\"",
         None,
-        Ends::Marks("tactile"),
+        Ends::Whole,
     ),
     (
         "a barometer loses power for a moment",

@@ -52,6 +52,9 @@ const LONGEST_SILENCE_S: f64 = 0.5;
 
 /// The devices of a bench that moves something real, and that it is watched closely.
 pub(super) fn real_devices(settings: &PressSettings) -> Result<&Devices> {
+    let devices = settings.devices.as_ref().context(
+        "the bench's settings have no [devices]: say where robot, force and tactile are, or press on the emulated bench with --lab",
+    )?;
     for (field, silence_s, longest_s) in [
         (
             "force_silence_s",
@@ -66,9 +69,7 @@ pub(super) fn real_devices(settings: &PressSettings) -> Result<&Devices> {
             "the bench's settings: `{field}` is {silence_s}, and a real bench must not go on for longer than {longest_s} s without hearing that device"
         );
     }
-    settings.devices.as_ref().context(
-        "the bench's settings have no [devices]: say where robot, force and tactile are, or press on the emulated bench with --lab",
-    )
+    Ok(devices)
 }
 
 /// Connects the devices of the settings. The robot is enabled, and stands.
