@@ -2,7 +2,7 @@
 //!
 //! Each place of a plan is computed before the robot moves, as a table over depth of the gel's instantaneous answer. What relaxes comes on top as
 //! a fading memory of what the table said, `σ(t) = (1 - Σ wᵢ) σₑ(t) + Σ wᵢ ∫ exp(-(t - s)/τᵢ) dσₑ(s)`: quasi-linear viscoelasticity (Fung,
-//! Biomechanics, 1981, section 7.6), which a robot may drive in whatever way it comes to.
+//! Biomechanics, 1981, section 7.6), which a robot may drive in whatever way it comes to, for as long as the indenter pushes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -245,13 +245,35 @@ impl Memory {
             }
         }
         (self.time_s, self.elastic) = (time_s, elastic);
-        felt
+        // The indenter pushes and never pulls: a gel that is slower than it has let go, and nothing is left on its surface that would strain it.
+        if felt[0] > 0.0 { felt } else { [0.0; VALUES] }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_is_felt_once_the_indenter_is_off() {
+        let terms = [Relaxation {
+            weight: 0.2,
+            time_s: 4.0,
+        }];
+        let mut memory = Memory {
+            time_s: 0.0,
+            elastic: [0.0; VALUES],
+            fading: vec![[0.0; VALUES]],
+            walk_kpa: [0.0; CHANNELS],
+        };
+        for step in 0..2000 {
+            memory.advance([5.0; VALUES], f64::from(step) * 1e-3, &terms);
+        }
+        for step in 2000..4000 {
+            let felt = memory.advance([0.0; VALUES], f64::from(step) * 1e-3, &terms);
+            assert_eq!(felt, [0.0; VALUES]);
+        }
+    }
 
     #[test]
     fn a_held_value_relaxes_as_its_terms_say() {
