@@ -4,10 +4,13 @@ use serde::Serialize;
 
 use crate::Finding;
 use crate::recorded::Recorded;
-use crate::statistics::{line, mean};
+use crate::statistics::{binned, line, mean};
 
 /// Smallest change of temperature that tells a coefficient, K.
 const LEAST_K: f64 = 1.0;
+
+/// Steps of temperature that readings are averaged in.
+const STEPS: usize = 25;
 
 /// How far a taxel comes back to zero after a press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,6 +43,8 @@ pub struct TemperatureDrift {
     pub between_c: [f64; 2],
     /// Readings that it was found from.
     pub n_readings: usize,
+    /// Means of the readings by rising temperature: °C, and unloaded pressure less the line's at the lowest temperature, kPa.
+    pub course: Vec<[f64; 2]>,
 }
 
 pub(crate) fn zero_return(recorded: &[Recorded<'_>], taxels: &[String]) -> Finding<Vec<ZeroReturn>> {
@@ -60,7 +65,10 @@ pub(crate) fn zero_return(recorded: &[Recorded<'_>], taxels: &[String]) -> Findi
 
 pub(crate) fn with_temperature(courses: &[UnloadedCourse]) -> Finding<Vec<TemperatureDrift>> {
     if courses.iter().all(|course| course.readings.is_empty()) {
-        return Finding::NotGiven("the recordings hold no temperatures".to_owned());
+        return Finding::NotGiven(
+            "the recordings hold no temperatures; logs do, recordings of presses in Parquet do not"
+                .to_owned(),
+        );
     }
     let mut widest_k: f64 = 0.0;
     let mut found = Vec::new();
@@ -72,12 +80,19 @@ pub(crate) fn with_temperature(courses: &[UnloadedCourse]) -> Finding<Vec<Temper
         if high_c - low_c < LEAST_K {
             continue;
         }
-        if let Some([coefficient_kpa_per_k, _]) = line(&course.readings) {
+        if let Some([coefficient_kpa_per_k, at_zero_kpa]) = line(&course.readings) {
+            let at_low_kpa = at_zero_kpa + coefficient_kpa_per_k * low_c;
+            let above = course.readings.iter();
+            let above: Vec<[f64; 2]> = above.map(|[c, kpa]| [c - low_c, kpa - at_low_kpa]).collect();
             found.push(TemperatureDrift {
                 taxel: course.taxel.clone(),
                 coefficient_kpa_per_k,
                 between_c: [low_c, high_c],
                 n_readings: course.readings.len(),
+                course: binned(&above, high_c - low_c, STEPS)
+                    .into_iter()
+                    .map(|[above_k, kpa]| [low_c + above_k, kpa])
+                    .collect(),
             });
         }
     }
@@ -102,6 +117,13 @@ mod tests {
         let finding = with_temperature(&[course(5.0)]);
         let found = &finding.found().unwrap()[0];
         assert!((found.coefficient_kpa_per_k - 0.3).abs() < 1e-9 && found.between_c == [25.0, 30.0]);
+        assert_eq!(found.course.len(), STEPS);
+        assert!(
+            found
+                .course
+                .iter()
+                .all(|[c, kpa]| (kpa - 0.3 * (c - 25.0)).abs() < 1e-9)
+        );
         assert!(
             with_temperature(&[course(0.5)])
                 .why_not()

@@ -9,7 +9,7 @@ pub struct Options {
     pub above_mm: f64,
     /// Shortest loading, from contact to hold, that is slow: clocks that differ by milliseconds do not matter then, s. Default 1.
     pub slow_s: f64,
-    /// Longest loading that is as good as a step, s. Default 0.15.
+    /// Longest rise of the force, from 10 to 90 % of its largest, that is as good as a step, s. Default 0.1.
     pub fast_s: f64,
     /// Shortest hold for creep, s. Default 10.
     pub long_s: f64,
@@ -26,7 +26,7 @@ impl Default for Options {
         Self {
             above_mm: 1.0,
             slow_s: 1.0,
-            fast_s: 0.15,
+            fast_s: 0.1,
             long_s: 10.0,
             linear_percent: 5.0,
             window_s: 0.5,

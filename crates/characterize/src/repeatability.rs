@@ -15,8 +15,8 @@ const BINS: usize = 25;
 /// Fewest presses that are a repetition.
 const FEWEST: usize = 3;
 
-/// How far places and depths of the same press may differ, mm.
-const SAME_MM: f64 = 0.01;
+/// How far places and depths of the same press may differ, mm: robots repeat themselves to so much, and readings are compared at the same force.
+const SAME_MM: f64 = 0.1;
 
 /// How well a taxel repeats itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -37,8 +37,8 @@ pub(crate) fn rise_time(recorded: &[Recorded<'_>], options: &Options) -> Finding
     let fast: Vec<(&Recorded<'_>, Rise)> = recorded
         .iter()
         .filter(|press| press.press.control == Control::Pose)
-        .filter(|press| duration_s(press.press, &press.phases.loading) <= options.fast_s)
         .filter_map(|press| Some((press, Rise::of(press)?)))
+        .filter(|(_, rise)| rise.force[1] - rise.force[0] <= options.fast_s)
         .collect();
     let of = |value: fn(&Rise) -> f64| median(&fast.iter().map(|(_, rise)| value(rise)).collect::<Vec<_>>());
     let found = || {
@@ -60,7 +60,7 @@ pub(crate) fn rise_time(recorded: &[Recorded<'_>], options: &Options) -> Finding
     found().map_or_else(
         || {
             Finding::NotGiven(format!(
-                "no press above a taxel loads in {} s or less and holds then",
+                "in no press above a taxel does the force rise from 10 to 90 % in {} s or less",
                 options.fast_s
             ))
         },

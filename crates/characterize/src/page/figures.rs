@@ -386,6 +386,26 @@ pub(super) fn creep(found: &Characterization, recorded: &[Recorded<'_>]) -> Opti
     Some((scene, caption))
 }
 
+/// Unloaded pressure over temperature.
+pub(super) fn drift(found: &Characterization) -> Option<Plot> {
+    let taxels = found.temperature_drift.found()?;
+    let series = (0..).zip(taxels).map(|(index, taxel)| {
+        let (name, course) = (&taxel.taxel, taxel.course.clone());
+        // There are more taxels than colours that tell them apart.
+        match index < 6 {
+            true => line(name, course, Ink::Series(index), 1.25),
+            false => dashed(name, course, Ink::Series(index)),
+        }
+    });
+    let scene = panels(
+        "Drift with temperature",
+        "temperature, °C",
+        vec![panel("unloaded pressure, kPa", series.collect())],
+    );
+    let caption = "Unloaded pressure against the barometers' own temperature, from where each taxel's line begins; what drifts with time alone is in it.";
+    Some((scene, caption.to_owned()))
+}
+
 /// What each taxel reads while each is pressed.
 pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
     const CELL: f64 = 36.0;

@@ -111,12 +111,15 @@ pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) 
             section(
                 "noise",
                 "Noise and drift",
-                plots(vec![bars(
-                    "Noise floor",
-                    "kPa",
-                    noise.collect(),
-                    "Standard deviation of single unloaded readings.",
-                )]),
+                plots(vec![
+                    bars(
+                        "Noise floor",
+                        "kPa",
+                        noise.collect(),
+                        "Standard deviation of single unloaded readings.",
+                    ),
+                    figures::drift(found),
+                ]),
             ),
             section("missing", "Not given by these recordings", missing(found)),
             section("definitions", "Definitions", definitions(found)),
@@ -307,7 +310,7 @@ fn definitions(found: &Characterization) -> Vec<Block> {
             "repeatability",
             "largest standard deviation of readings at the same force in three or more slow presses alike, in % of the response at their largest force".into(),
         ),
-        row("rise time", format!("from 10 to 90 % of the largest reading, in presses that load in {} s or less", words(options.fast_s))),
+        row("rise time", format!("from 10 to 90 % of the largest reading, in presses whose force rises so in {} s or less", words(options.fast_s))),
         row("creep", "change of reading over force in a hold (ISA-37.1, for a load that a robot cannot keep constant)".into()),
         row("cross-talk", "reading of another taxel over that of the pressed one, at the same force".into()),
         row("return to zero", "unloaded reading after a press, less that before".into()),
