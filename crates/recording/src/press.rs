@@ -42,7 +42,8 @@ impl std::fmt::Display for Control {
 pub struct Press {
     /// Unique in its recording: `<file stem>#<number>`, the number from 1.
     pub name: String,
-    /// Name of the file that it was read from, without folders.
+    /// Name of the file that it was read from, without folders; of presses that a bench recorded, what was mounted. All presses of a file
+    /// were made with the gel at one height.
     pub file: String,
     /// Name of the indenter in the sensor description.
     pub indenter: String,

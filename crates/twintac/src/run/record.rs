@@ -103,7 +103,11 @@ impl Run {
             let mut recording: Option<Recording> = None;
             let mut remarks = Vec::new();
             for file in &files {
-                let read = twintac_log::read_presses(file, &ReadOptions::default())?;
+                let mut read = twintac_log::read_presses(file, &ReadOptions::default())?;
+                for press in &mut read.recording.presses {
+                    // Every press has a log of its own; what they share is how the indenter was mounted.
+                    press.file.clone_from(&press.indenter);
+                }
                 remarks.extend(read.remarks.into_iter().map(|remark| (file.clone(), remark)));
                 match &mut recording {
                     None => recording = Some(read.recording),
