@@ -320,7 +320,7 @@ fn table(outcomes: &[Outcome]) -> String {
 /// Writes the figures down.
 fn record(root: &Path, options: &Options, outcomes: &[Outcome], all: &[String]) -> Result<()> {
     let command = format!(
-        "cargo xtask fuzz --seconds {} --jobs {} --keep",
+        "cargo xtask fuzz [target…] --seconds {} --jobs {} --keep",
         options.seconds, options.jobs
     );
     let results = root.join("docs/benchmarks");
@@ -342,7 +342,7 @@ fn record(root: &Path, options: &Options, outcomes: &[Outcome], all: &[String]) 
         targets,
     })?;
     let page = format!(
-        "# Fuzzing\n\nMade by `{command}`.\n\nEach target is a kind of bytes that comes from a wire or a file, and what must hold for them \
+        "# Fuzzing\n\nMade by `{command}`; each row is of its target's latest run.\n\nEach target is a kind of bytes that comes from a wire or a file, and what must hold for them \
          (`crates/fuzz`): what decodes encodes again, nothing grows beyond its bound, nothing panics. libFuzzer looks for inputs that \
          reach new code; an input may take {TIME_OUT_S} s, and allocate 16 MiB at once and 64 MiB in all. Edges are branches \
          of the compiled code that inputs reached, features those with how often.\n\n{table}\n\

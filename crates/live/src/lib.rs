@@ -37,7 +37,6 @@ mod tare;
 pub use about::{About, driver_settings};
 pub use emulated::{EmulatedPhysTac, WanderingBall, emulated_board, emulated_phystac, emulated_scale};
 pub use error::LiveError;
-
 #[cfg(target_os = "linux")]
 pub use linux::{LinuxBus, LinuxPhysTac, open_linux};
 pub use live::Live;

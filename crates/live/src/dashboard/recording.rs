@@ -16,7 +16,7 @@ pub struct Recording {
     sender: LogSender,
     path: PathBuf,
     frames: u64,
-    /// Number and time of the last frame.
+    /// Number and time of the last frame that was taken.
     last: Option<(u64, f64)>,
 }
 
@@ -66,8 +66,7 @@ impl Recording {
     /// # Errors
     /// [`LiveError::Log`]: the disk does not keep up, which the log marks as a gap, or fails.
     pub fn push(&mut self, reading: &Reading) -> Result<(), LiveError> {
-        let last = self.last.replace((reading.sequence, reading.bench_s));
-        if let Some((sequence, last_s)) = last
+        if let Some((sequence, last_s)) = self.last
             && reading.sequence > sequence + 1
         {
             let gap = Event::Gap {
@@ -83,6 +82,7 @@ impl Recording {
             reading.bench_s,
             Body::Tactile(reading.frame.clone()),
         ))?;
+        self.last = Some((reading.sequence, reading.bench_s));
         self.frames += 1;
         Ok(())
     }

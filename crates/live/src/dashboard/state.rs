@@ -36,8 +36,8 @@ pub struct State {
     pub prepared: PreparedMap,
     tare: Tare,
     taring: Option<Taring>,
-    /// Number and time of the frames that traces go back.
-    times: VecDeque<(u64, f64)>,
+    /// Times of the frames that traces go back, s.
+    times_s: VecDeque<f64>,
     strongest_kpa: f64,
 }
 
@@ -71,7 +71,7 @@ impl State {
                 baseline_kpa: vec![None; n],
             },
             taring: Some(Taring::default()),
-            times: VecDeque::with_capacity(HISTORY),
+            times_s: VecDeque::with_capacity(HISTORY),
             strongest_kpa: 0.0,
         })
     }
@@ -93,7 +93,7 @@ impl State {
         {
             keep(trace, above_kpa);
         }
-        keep(&mut self.times, (reading.sequence, reading.bench_s));
+        keep(&mut self.times_s, reading.bench_s);
         self.latest = Some(reading);
     }
 
@@ -127,11 +127,11 @@ impl State {
         self.traces_kpa.iter().map(newest).collect()
     }
 
-    /// Frames that were read in a second, Hz, over the traces.
+    /// Frames that came in a second, Hz, over the traces.
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
-        let ((first, first_s), (last, last_s)) = (self.times.front()?, self.times.back()?);
-        (last_s > first_s).then(|| (last - first) as f64 / (last_s - first_s))
+        let (first_s, last_s) = (self.times_s.front()?, self.times_s.back()?);
+        (last_s > first_s).then(|| (self.times_s.len() - 1) as f64 / (last_s - first_s))
     }
 
     /// Mean temperature of the taxels that have one, °C.
