@@ -132,9 +132,9 @@ impl<'a> Press<'a> {
             }
             Decision::Stop => {
                 self.note_latency(0.0); // found in this period
-                let robot_fails = matches!(self.cause(), Some(Cause::RobotInError));
                 let held_s = now_s - *self.held_s.get_or_insert(now_s);
-                if robot_fails || self.has_retreated || held_s >= RETREAT_WAIT_S {
+                let is_over = self.has_retreated || held_s >= RETREAT_WAIT_S;
+                if is_over || !self.supervisor.can_retreat(now_s) {
                     return self.stop(now_s, arm);
                 }
                 Ok(Standing::Going)

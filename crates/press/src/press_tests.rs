@@ -88,6 +88,8 @@ struct Outcome {
     cause: Option<Cause>,
     /// Number of the period in which what stops the press was said, and number of poses that had gone out before it.
     latency_s: Option<f64>,
+    /// Periods from that of the cause to that of the command to stop.
+    periods_to_stop: usize,
     arm: Fake,
     events: Vec<LogEvent>,
     deepest_mm: f64,
@@ -134,6 +136,7 @@ impl Script {
             missing_s: 0.0,
         };
         let (mut now_s, mut deepest_mm) = (0.0, f64::NEG_INFINITY);
+        let mut periods_to_stop = 0;
         loop {
             now_s += PERIOD_S;
             assert!(now_s < 60.0, "it ends");
@@ -155,6 +158,7 @@ impl Script {
             if standing != Standing::Going {
                 break;
             }
+            periods_to_stop += usize::from(press.cause().is_some());
         }
         let (cause, latency_s) = (press.cause().cloned(), press.stop_latency_s);
         journal.end(now_s).unwrap();
@@ -167,6 +171,7 @@ impl Script {
         Outcome {
             cause,
             latency_s,
+            periods_to_stop,
             arm,
             events: events.collect(),
             deepest_mm,
@@ -325,6 +330,11 @@ fn silence_errors_losses_and_people_stop_a_press() {
     });
     assert!(matches!(force.cause, Some(Cause::StreamSilent { .. })));
     assert!(force.arm.depth_mm() > 0.0, "blind, it stays where it is");
+    assert_eq!(
+        (force.periods_to_stop, force.arm.stops),
+        (0, 1),
+        "and is stopped at once"
+    );
     let taxels = Script::new(2.0).run(|_, depth_mm, heard| {
         if late(depth_mm) {
             quiet(heard, |what| !matches!(what, What::Frame(_)));

@@ -218,17 +218,24 @@ impl Supervisor {
         if !was_stopped {
             return Decision::Stop;
         }
-        let is_safe = self.watchdog.is_alive(StreamId::FORCE, now_s)
-            && self.watchdog.is_alive(StreamId::ROBOT, now_s)
-            && !self.robot_in_error
-            && self.measured.is_finite();
+        let can_retreat = self.can_retreat(now_s);
         match self
             .retreat
-            .next(&self.setup, is_safe, &self.farthest(), self.force_n)
+            .next(&self.setup, can_retreat, &self.farthest(), self.force_n)
         {
             Some(pose) => Decision::Retreat(pose),
             None => Decision::Stop,
         }
+    }
+
+    /// Whether a way back would be watched: force sensor and robot are alive, and the robot is without error. If not, there is nothing to
+    /// wait for.
+    #[must_use]
+    pub fn can_retreat(&self, now_s: f64) -> bool {
+        self.watchdog.is_alive(StreamId::FORCE, now_s)
+            && self.watchdog.is_alive(StreamId::ROBOT, now_s)
+            && !self.robot_in_error
+            && self.measured.is_finite()
     }
 
     /// The last goal, as far from the sensor as it is itself or the robot is measured, whichever is farther: a report is old when it
