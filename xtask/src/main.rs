@@ -65,7 +65,7 @@ fn test() -> Result<()> {
 fn bench() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(2).collect();
     if given.first().is_some_and(|bench| bench == "recording") {
-        cargo(&["build", "--release", "--package", "twintac"])?; // it is run as its users run it
+        cargo(&["build", "--release", "--package", "twintac-cli"])?; // it is run as its users run it
     }
     cargo(&of_verify(&given))
 }

@@ -131,7 +131,7 @@ fn files_named_in_the_documents_exist() {
                     "protocols",
                     "imports",
                     "realities",
-                    "benches",
+                    "rigs",
                     "materials",
                     "xtask",
                     "docs",

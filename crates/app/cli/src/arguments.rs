@@ -1,0 +1,383 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+
+/// Barometric touch sensors and their digital twin.
+///
+/// `demo` needs neither hardware nor data; `reproduce` does the same on recordings of a real sensor. Both run the stages below, which are
+/// commands of their own: record or import, mesh, simulate, align, train, evaluate, report.
+#[derive(Debug, Parser)]
+#[command(name = "twintac", version)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Threads to compute with; the results do not depend on it [default: one per core].
+    #[arg(long, global = true, value_name = "N")]
+    pub(crate) threads: Option<usize>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// The whole road on the emulated bench: no hardware, no data, minutes.
+    Demo(Demo),
+    /// The whole road on recordings of a real sensor.
+    Reproduce(Reproduce),
+    /// Look at a sensor description.
+    #[command(subcommand)]
+    Sensor(SensorCommand),
+    /// Mesh a sensor's gel, or check a Gmsh mesh.
+    Mesh(Mesh),
+    /// Press the simulated gel along a protocol.
+    Simulate(Simulate),
+    /// Fit the gel's material to measured presses.
+    Calibrate(Calibrate),
+    /// Find out what a sensor does from recorded presses: sensitivity, noise, hysteresis, and more.
+    Characterize(Characterize),
+    /// Watch a sensor as it is touched: on a dashboard, or as rows of text.
+    Stream(Stream),
+    /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
+    Record(Record),
+    /// Write the frames of logs as Parquet tables; make logs that were cut whole.
+    Export(Export),
+    /// Read recordings of a real sensor.
+    Import(Import),
+    /// Pair recorded presses with simulated ones.
+    Align(Align),
+    /// Train a twin on paired frames.
+    Train(Train),
+    /// Judge a twin on recordings.
+    Evaluate(Evaluate),
+    /// Write the report of a run.
+    Report(Report),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Demo {
+    /// Folder of the run.
+    #[arg(long, value_name = "DIR", default_value = "runs/demo")]
+    pub(crate) out: PathBuf,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+/// What every run is started with.
+#[derive(Args, Debug)]
+pub(crate) struct Start {
+    /// Settings (TOML) that differ from the usual ones: any of those in a run's run.json, in tables like [simulate] and [train].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
+    /// Seed of all that chance decides.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+/// Recordings and how to read them.
+#[derive(Args, Debug)]
+pub(crate) struct Recorded {
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Recordings: CSV files or patterns like 'data/*.csv'.
+    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
+    pub(crate) recordings: Vec<String>,
+    /// How to read the recordings (TOML) [default: the file that the sensor description names].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Reproduce {
+    #[command(flatten)]
+    pub(crate) recorded: Recorded,
+    /// Folder of the run [default: runs/<sensor>].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) start: Start,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum SensorCommand {
+    /// Print a sensor description with units, and draw it.
+    Show(SensorShow),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct SensorShow {
+    /// Sensor description (TOML).
+    pub(crate) file: PathBuf,
+    /// Draw it, top and section, into this PNG or SVG file.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) draw: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Mesh {
+    /// Sensor description (TOML) whose gel to mesh.
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "check",
+        required_unless_present = "check"
+    )]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Edge length, mm [default: a sixth of the gel's height].
+    #[arg(long, value_name = "MM", conflicts_with_all = ["nodes", "check"])]
+    pub(crate) edge_mm: Option<f64>,
+    /// Number of nodes, met within a tenth.
+    #[arg(long, value_name = "N", conflicts_with = "check")]
+    pub(crate) nodes: Option<usize>,
+    /// Read a Gmsh file instead and say how good it is.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) check: Option<PathBuf>,
+    /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Simulate {
+    /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
+    #[arg(long, value_name = "DIR", conflicts_with = "sensor")]
+    pub(crate) run: Option<PathBuf>,
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Press protocol (TOML).
+    #[arg(long, value_name = "FILE", requires = "sensor", requires = "out")]
+    pub(crate) protocol: Option<PathBuf>,
+    /// Folder to write one table over depth per press to.
+    #[arg(long, value_name = "DIR", requires = "protocol")]
+    pub(crate) out: Option<PathBuf>,
+    /// Path of one indenter (TOML): prints force and pressures along it.
+    #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with = "protocol")]
+    pub(crate) path: Option<PathBuf>,
+    /// Say what a path's frames spend their time on.
+    #[arg(long, requires = "path")]
+    pub(crate) profile: bool,
+    /// Print what comes of a path as JSON.
+    #[arg(long, requires = "path")]
+    pub(crate) json: bool,
+    /// Settings (TOML) that differ from the usual ones, in a table [simulate].
+    #[arg(long, value_name = "FILE", requires = "sensor")]
+    pub(crate) settings: Option<PathBuf>,
+    /// Also write the pressed gel of every frame for ParaView.
+    #[arg(long, requires = "protocol")]
+    pub(crate) vtk: bool,
+    /// Seed of the protocol's random places.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Calibrate {
+    /// Sensor description (TOML); its material is where the fit starts.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Measured presses (CSV): columns time_s, depth_mm, and force_n or <taxel>_kpa.
+    #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "curves", requires = "indenter")]
+    pub(crate) csv: Vec<String>,
+    /// Name of the sensor's indenter that the CSV files were measured with.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) indenter: Option<String>,
+    /// Place of the press in the gel's plane, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub(crate) x_mm: f64,
+    /// Place of the press in the gel's plane, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub(crate) y_mm: f64,
+    /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
+    pub(crate) curves: Option<PathBuf>,
+    /// What is free: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
+    /// bulk_modulus_kpa), poissons_ratio, depth_offset_mm, force_scale, force_offset_n.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
+    pub(crate) free: Vec<String>,
+    /// Frames to simulate of each curve, about.
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    pub(crate) frames: usize,
+    /// Settings (TOML) that differ from the usual ones, in a table [simulate].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
+    /// Folder to write material.toml, calibration.json and the plot to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print everything as JSON instead of the material as TOML.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Characterize {
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Recordings: presses.parquet files, MCAP logs, also cut ones (`.mcap.partial`), or patterns of them.
+    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
+    pub(crate) recordings: Vec<String>,
+    /// Folder to write characterization.json, report.html and datasheet.html to.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print everything as JSON instead of a table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A run that was stopped or killed goes on with the first press that is not done. The robot is stopped by Ctrl-C, by any limit, and by
+/// silence of any device.
+#[derive(Args, Debug)]
+pub(crate) struct Record {
+    /// Press protocol (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) protocol: PathBuf,
+    /// The emulated bench, with a reality of its own (TOML) [default: realities/default.toml].
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    pub(crate) lab: Option<Option<PathBuf>>,
+    /// How presses are carried out (TOML) and, without --lab, where the devices are [default: rigs/lab.toml].
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["lab", "dry_run"])]
+    pub(crate) bench: Option<PathBuf>,
+    /// Sensor description (TOML) [default: PhysTac].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "lab")]
+    pub(crate) scale: Option<u16>,
+    /// Altitude of the bench, m, whose free air the scale is checked against [default: anything up to 2000].
+    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
+    pub(crate) altitude_m: Option<f32>,
+    /// Folder of the run [default: runs/<protocol>].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Only say and draw what would be done, and how long it would take.
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// What goes wrong on the emulated bench (TOML), in tables [[faults]].
+    #[arg(long, value_name = "FILE", requires = "lab")]
+    pub(crate) faults: Option<PathBuf>,
+    /// Compute what the emulated bench would record, without devices and without waiting.
+    #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json"])]
+    pub(crate) at_once: bool,
+    /// End with one line of JSON on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) start: Start,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Export {
+    /// Logs of `stream` or `record`: MCAP files, also cut ones (`.mcap.partial`), or patterns like 'runs/touch/*.mcap'.
+    #[arg(value_name = "LOGS", num_args = 1.., required = true)]
+    pub(crate) logs: Vec<String>,
+    /// Folder of the tables [default: beside the logs].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print what was written as JSON, a line for each log.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Import {
+    #[command(flatten)]
+    pub(crate) recorded: Recorded,
+    /// Folder of the run.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) start: Start,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Align {
+    /// Folder of a run with its recordings and simulations.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Train {
+    /// Folder of a run with its paired frames.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Evaluate {
+    /// Folder of a run: judge its twin on the presses that it held back.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["model", "recordings", "import"], required_unless_present = "model")]
+    pub(crate) run: Option<PathBuf>,
+    /// Folder of a model to judge on other recordings of its sensor.
+    #[arg(long, value_name = "DIR", requires = "recordings")]
+    pub(crate) model: Option<PathBuf>,
+    /// Recordings: CSV files, presses.parquet files, or patterns.
+    #[arg(long, value_name = "FILES", num_args = 1..)]
+    pub(crate) recordings: Vec<String>,
+    /// How to read CSV recordings (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Print the figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Report {
+    /// Folder of an evaluated run.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+}
+
+/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` they are a dashboard.
+#[derive(Args, Debug)]
+#[command(group = ArgGroup::new("source").required(true))]
+pub(crate) struct Stream {
+    /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
+    #[arg(long, value_name = "PATH", group = "source")]
+    pub(crate) bus: Option<PathBuf>,
+    /// The emulated sensor, pressed by a slow motion.
+    #[arg(long, group = "source")]
+    pub(crate) lab: bool,
+    /// Sensor description (TOML) [default: PhysTac].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) scale: Option<u16>,
+    /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
+    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
+    pub(crate) altitude_m: Option<f32>,
+    /// Rows on standard output instead of the dashboard.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<RowFormat>,
+    /// End after so many rows.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format")]
+    pub(crate) frames: Option<u64>,
+    /// End after so long, s.
+    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format")]
+    pub(crate) seconds: Option<f64>,
+    /// Folder of the dashboard's recordings (MCAP).
+    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]
+    pub(crate) out: PathBuf,
+}
+
+/// A time, s, that passes.
+fn duration_s(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => Ok(seconds),
+        _ => Err("expected seconds, a finite number above 0".to_owned()),
+    }
+}
+
+/// How frames are written.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum RowFormat {
+    /// Comma-separated values under a header.
+    Csv,
+    /// A JSON object a line.
+    Jsonl,
+}

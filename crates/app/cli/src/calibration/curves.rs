@@ -1,0 +1,343 @@
+//! Measured curves: CSV files, and recorded presses.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use glam::DQuat;
+use serde::Deserialize;
+use twintac_calibrate::{Curve, Quantity, Signal};
+use twintac_recording::{Control, Import, Press, Provenance, Recording};
+use twintac_sensor::Sensor;
+use twintac_simulate::Gel;
+
+use crate::command::indenter;
+
+/// Recorded frames before and after the press are kept up to this far above the gel, mm.
+const ABOVE_MM: f64 = 0.25;
+
+/// Without a choice, taxels count whose largest reading of a press is above this part of the press's largest.
+const LOUD: f64 = 0.3;
+
+/// Which curves to fit.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CurvesFile {
+    #[serde(default)]
+    curves: Vec<CsvCurve>,
+    #[serde(default)]
+    recordings: Vec<Recorded>,
+}
+
+/// A CSV file with one press: columns `time_s`, `depth_mm`, `force_n`, `<taxel>_kpa`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CsvCurve {
+    file: PathBuf,
+    indenter: String,
+    #[serde(default)]
+    x_mm: f64,
+    #[serde(default)]
+    y_mm: f64,
+}
+
+/// A curve, and where it comes from.
+pub(crate) type Measured = (Curve, Provenance);
+
+/// With what and where a curve was measured.
+#[derive(Clone, Debug)]
+pub(crate) struct CsvPlace {
+    /// Name of the sensor's indenter.
+    pub(crate) indenter: String,
+    /// Place of its origin, mm.
+    pub(crate) x_mm: f64,
+    /// Place of its origin, mm.
+    pub(crate) y_mm: f64,
+}
+
+/// Presses out of recordings.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Recorded {
+    /// `presses.parquet` of a run, or a CSV file of a lab.
+    file: PathBuf,
+    /// How to read a CSV file; what the sensor names if absent.
+    import: Option<PathBuf>,
+    /// Names of presses; all if empty.
+    #[serde(default)]
+    presses: Vec<String>,
+    signals: Signals,
+    /// Names of the taxels whose readings count; those near the press, and not doubtful, if empty.
+    #[serde(default)]
+    taxels: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Signals {
+    Force,
+    Readings,
+    Both,
+}
+
+/// The curves that a file names; paths in it are relative to it.
+pub(crate) fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result<Vec<Measured>> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let file = twintac_config::read::<CurvesFile>(path)?.value;
+    let mut curves = Vec::new();
+    for curve in &file.curves {
+        let place = CsvPlace {
+            indenter: curve.indenter.clone(),
+            x_mm: curve.x_mm,
+            y_mm: curve.y_mm,
+        };
+        curves.push(of_csv(&folder.join(&curve.file), &place, gel.sensor())?);
+    }
+    for recorded in &file.recordings {
+        let import = recorded.import.as_ref().map(|import| folder.join(import));
+        let import = import.or_else(|| sensor_import.clone());
+        let found = of_recording(recorded, &folder.join(&recorded.file), import.as_deref(), gel);
+        curves.extend(found.with_context(|| path.display().to_string())?);
+    }
+    if curves.is_empty() {
+        bail!(
+            "{}: names no curves; give [[curves]] or [[recordings]]",
+            path.display()
+        );
+    }
+    Ok(curves)
+}
+
+/// One curve from a CSV file, which is taken to be measured on hardware.
+pub(crate) fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured> {
+    let at = || path.display().to_string();
+    let mut reader = csv::Reader::from_path(path).with_context(|| format!("reading {}", at()))?;
+    let headers = reader.headers().with_context(at)?.clone();
+    let column = |name: &str| headers.iter().position(|header| header.trim() == name);
+    let needed = |name: &str| {
+        column(name).with_context(|| {
+            format!(
+                "{}: there is no column `{name}`; expected time_s, depth_mm, and force_n or <taxel>_kpa",
+                at()
+            )
+        })
+    };
+    let (time, depth) = (needed("time_s")?, needed("depth_mm")?);
+    let mut columns: Vec<(usize, Quantity)> = Vec::new();
+    columns.extend(column("force_n").map(|column| (column, Quantity::Force)));
+    for (taxel, described) in sensor.taxels.iter().enumerate() {
+        let found = column(&format!("{}_kpa", described.name));
+        columns.extend(found.map(|column| (column, Quantity::Taxel(taxel))));
+    }
+    if columns.is_empty() {
+        needed("force_n")?;
+    }
+    let mut curve = Curve {
+        name: path
+            .file_stem()
+            .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
+        shape: indenter(sensor, &place.indenter).with_context(at)?.clone(),
+        x_mm: place.x_mm,
+        y_mm: place.y_mm,
+        rotation: DQuat::IDENTITY,
+        time_s: Vec::new(),
+        depth_mm: Vec::new(),
+        signals: columns
+            .iter()
+            .map(|(_, quantity)| Signal {
+                quantity: *quantity,
+                values: Vec::new(),
+            })
+            .collect(),
+    };
+    for (row, record) in reader.records().enumerate() {
+        // The header is the first line.
+        let line = row + 2;
+        let record = record.with_context(at)?;
+        let number = |column: usize| -> Result<f64> {
+            let text = record.get(column).unwrap_or_default().trim();
+            let parsed: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite());
+            parsed.with_context(|| {
+                format!(
+                    "{}:{line}: `{}` is `{text}`, expected a finite number",
+                    at(),
+                    &headers[column]
+                )
+            })
+        };
+        curve.time_s.push(number(time)?);
+        curve.depth_mm.push(number(depth)?);
+        for ((column, _), signal) in columns.iter().zip(&mut curve.signals) {
+            signal.values.push(number(*column)?);
+        }
+    }
+    Ok((curve, Provenance::Real))
+}
+
+fn of_recording(recorded: &Recorded, path: &Path, import: Option<&Path>, gel: &Gel) -> Result<Vec<Measured>> {
+    let sensor = gel.sensor();
+    let is_parquet = path.extension().is_some_and(|extension| extension == "parquet");
+    let recording = if is_parquet {
+        Recording::read_parquet(path)?
+    } else {
+        let import = import
+            .with_context(|| format!("{}: nothing says how to read it; give `import`", path.display()))?;
+        let text =
+            std::fs::read_to_string(import).with_context(|| format!("reading {}", import.display()))?;
+        Import::parse(&import.display().to_string(), &text)?
+            .read_csv(path)?
+            .0
+    };
+    if recording.sensor != sensor.name {
+        bail!(
+            "{}: is a recording of `{}`, expected `{}`",
+            path.display(),
+            recording.sensor,
+            sensor.name
+        );
+    }
+    let named: Vec<&Press> = if recorded.presses.is_empty() {
+        recording.presses.iter().collect()
+    } else {
+        recorded
+            .presses
+            .iter()
+            .map(|name| {
+                let found = recording.presses.iter().find(|press| press.name == *name);
+                found.with_context(|| format!("{}: there is no press `{name}`", path.display()))
+            })
+            .collect::<Result<_>>()?
+    };
+    let chosen: Vec<usize> = recorded
+        .taxels
+        .iter()
+        .map(|name| {
+            let found = recording.taxels.iter().position(|taxel| taxel == name);
+            found.with_context(|| format!("{}: there is no taxel `{name}`", path.display()))
+        })
+        .collect::<Result<_>>()?;
+    named
+        .into_iter()
+        .map(|press| {
+            let curve = of_press(press, recorded.signals, &chosen, gel);
+            Ok((curve.with_context(|| press.name.clone())?, recording.provenance))
+        })
+        .collect()
+}
+
+fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Result<Curve> {
+    if press.control != Control::Pose {
+        bail!("was made with a prescribed force: how deep it went is not known, and a curve needs that");
+    }
+    let shape = indenter(gel.sensor(), &press.indenter)?;
+    let Some(first) = press.gel_from_indenter.first() else {
+        bail!("has no frames");
+    };
+    let touch_mm = gel.touch(shape, first)?.position_mm.z;
+    let depth = |frame: usize| touch_mm - press.gel_from_indenter[frame].position_mm.z;
+    let near: Vec<usize> = (0..press.time_s.len())
+        .filter(|&frame| depth(frame) > -ABOVE_MM)
+        .collect();
+    let (Some(&from), Some(&to)) = (near.first(), near.last()) else {
+        bail!("never comes near the gel");
+    };
+    let frames = from..=to;
+    let mut found = Vec::new();
+    if signals != Signals::Readings {
+        let force_n = press
+            .force_n
+            .as_ref()
+            .context("no force was recorded; ask for readings")?;
+        found.push(Signal {
+            quantity: Quantity::Force,
+            values: force_n[frames.clone()].to_vec(),
+        });
+    }
+    if signals != Signals::Force {
+        let reading = |frame: usize, taxel: usize| {
+            let valid = press.valid[frame][taxel];
+            if valid {
+                press.taxels_kpa[frame][taxel]
+            } else {
+                f64::NAN
+            }
+        };
+        let peak = |taxel: usize| {
+            frames
+                .clone()
+                .map(|frame| reading(frame, taxel))
+                .fold(0.0, f64::max)
+        };
+        let taxels = &gel.sensor().taxels;
+        let loudest = (0..taxels.len()).map(peak).fold(0.0, f64::max);
+        let counts = |taxel: &usize| {
+            if chosen.is_empty() {
+                taxels[*taxel].doubtful.is_none() && peak(*taxel) > LOUD * loudest
+            } else {
+                chosen.contains(taxel)
+            }
+        };
+        found.extend((0..taxels.len()).filter(counts).map(|taxel| Signal {
+            quantity: Quantity::Taxel(taxel),
+            values: frames.clone().map(|frame| reading(frame, taxel)).collect(),
+        }));
+    }
+    Ok(Curve {
+        name: press.name.clone(),
+        shape: shape.clone(),
+        x_mm: first.position_mm.x,
+        y_mm: first.position_mm.y,
+        rotation: first.rotation,
+        time_s: press.time_s[frames.clone()].to_vec(),
+        depth_mm: frames.clone().map(depth).collect(),
+        signals: found,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::print_stdout)] // a test that cannot set itself up has failed
+    use super::*;
+
+    #[test]
+    fn a_recorded_press_becomes_a_curve_of_the_taxels_below_it() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+        let file = root.join("../shared/data/strip4/gelD_test_20230706_164635.csv");
+        if !file.exists() {
+            println!("skipped: no recording at {}", file.display());
+            return;
+        }
+        let sensor = Sensor::read(root.join("sensors/strip4-gel-d.toml")).unwrap();
+        let gel = Gel::new(
+            std::sync::Arc::new(sensor),
+            twintac_simulate::SimulateSettings::default(),
+        );
+        let recorded = |presses: &[&str], signals| Recorded {
+            file: file.clone(),
+            import: None,
+            presses: presses.iter().map(|name| (*name).to_owned()).collect(),
+            signals,
+            taxels: Vec::new(),
+        };
+        let import = root.join("imports/strip4.toml");
+        let read = |recorded: &Recorded| of_recording(recorded, &file, Some(&import), &gel);
+        let name = "gelD_test_20230706_164635#7";
+        let curves = read(&recorded(&[name], Signals::Readings)).unwrap();
+        // At x = 6.03 mm, beside S2; 4 mm of travel of which 2.08 mm lead to the gel.
+        assert_eq!(curves.len(), 1);
+        let (curve, provenance) = &curves[0];
+        assert_eq!(*provenance, Provenance::Real);
+        assert!(
+            curve
+                .signals
+                .iter()
+                .any(|signal| signal.quantity == Quantity::Taxel(2))
+        );
+        let deepest_mm = curve.depth_mm.iter().copied().fold(0.0, f64::max);
+        assert!((deepest_mm - 1.92).abs() < 0.02, "{deepest_mm}");
+        assert!(curve.depth_mm.iter().all(|depth_mm| *depth_mm > -0.3));
+        let no_force = read(&recorded(&[name], Signals::Force)).unwrap_err();
+        assert!(format!("{no_force:#}").contains("no force was recorded"));
+        let no_press = read(&recorded(&["nothing"], Signals::Readings)).unwrap_err();
+        assert!(format!("{no_press:#}").contains("there is no press `nothing`"));
+    }
+}

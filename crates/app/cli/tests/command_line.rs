@@ -1,0 +1,55 @@
+//! What the command line says, as snapshots. After a wanted change: `INSTA_UPDATE=always cargo test --release --workspace`.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use std::path::Path;
+use std::process::Command;
+
+/// Standard output of a command run from the repository's root.
+fn said(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_twintac"))
+        .args(arguments)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.."))
+        .env("COLUMNS", "140")
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn help() {
+    insta::assert_snapshot!(said(&["--help"]));
+}
+
+#[test]
+fn help_on_each_command() {
+    for command in [
+        "demo",
+        "reproduce",
+        "sensor",
+        "mesh",
+        "simulate",
+        "calibrate",
+        "stream",
+        "characterize",
+        "export",
+        "record",
+        "import",
+        "align",
+        "train",
+        "evaluate",
+        "report",
+    ] {
+        insta::assert_snapshot!(format!("help_{command}"), said(&["help", command]));
+    }
+}
+
+#[test]
+fn a_sensor_is_shown_with_units_and_what_is_inferred() {
+    insta::assert_snapshot!(said(&["sensor", "show", "sensors/strip4-gel-d.toml"]));
+}

@@ -1,0 +1,268 @@
+//! How the emulated bench differs from its drawings.
+
+use serde::{Deserialize, Serialize};
+use twintac_config::{ConfigError, Document};
+
+/// The imperfections of one emulated bench. Everything that is drawn at random comes from `seed`, by name, once per bench or press.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reality {
+    /// What this reality is meant to be like.
+    pub summary: String,
+    /// Seed of the cast and of every press.
+    pub seed: u64,
+    /// The gel as it was cast.
+    pub gel: GelReality,
+    /// The barometers and their clock.
+    pub readout: ReadoutReality,
+    /// The robot and the force sensor.
+    pub robot: RobotReality,
+    /// How warm the sensor is. Default: always 25 °C.
+    #[serde(default)]
+    pub climate: ClimateReality,
+}
+
+/// The gel as it was cast, and how finely it is computed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GelReality {
+    /// Edges of the lab's own mesh over the gel's height.
+    pub edges_per_height: f64,
+    /// Edges across the contact's radius.
+    pub edges_per_contact_radius: f64,
+    /// Yeoh constants C10, C20, C30 of the instantaneous response, kPa.
+    pub yeoh_kpa: [f64; 3],
+    /// Bulk modulus, kPa.
+    pub bulk_modulus_kpa: f64,
+    /// Relaxation: share of the instantaneous stiffness and time constant of each term.
+    pub relaxation: Vec<Relaxation>,
+    /// Largest change of depth between two computed moments, mm.
+    pub depth_step_mm: f64,
+}
+
+/// One term of the gel's relaxation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Relaxation {
+    /// Share of the instantaneous isochoric stiffness that relaxes, 0 to 1.
+    pub weight: f64,
+    /// Time constant, s.
+    pub time_s: f64,
+}
+
+/// The barometers and their clock. Standard deviations are of normal distributions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReadoutReality {
+    /// Mean gain of the taxels: what one reads over the pressure that the gel has at its port. A cast that bonds badly or keeps bubbles has less,
+    /// a cavity that gathers pressure more. Default 1.
+    #[serde(default = "one")]
+    pub gain_mean: f64,
+    /// Standard deviation of a taxel's gain, as a part of the mean.
+    pub gain_deviation: f64,
+    /// Standard deviation of a taxel's offset, kPa.
+    pub offset_deviation_kpa: f64,
+    /// Standard deviation of a taxel's place along x and y, mm.
+    pub position_deviation_mm: f64,
+    /// Standard deviation of the noise of one reading, kPa.
+    pub noise_kpa: f64,
+    /// Standard deviation of a random walk of each offset over one second, kPa.
+    pub drift_kpa_per_sqrt_s: f64,
+    /// By how much an offset moves with temperature, mean of the taxels, kPa/K. Default 0.
+    #[serde(default)]
+    pub offset_kpa_per_k: f64,
+    /// Standard deviation of that between taxels, kPa/K. Default 0.
+    #[serde(default)]
+    pub offset_deviation_kpa_per_k: f64,
+    /// How long after the time stamp the first taxel is read, s.
+    pub lag_s: f64,
+    /// How much later each next taxel is read, s.
+    pub lag_per_taxel_s: f64,
+    /// Standard deviation of a frame's time stamp about its schedule, s.
+    pub jitter_s: f64,
+}
+
+/// The robot and the force sensor. Standard deviations are of normal distributions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotReality {
+    /// Standard deviation of a press's place along x and y, mm.
+    pub place_deviation_mm: f64,
+    /// Depth by which every press goes deeper than commanded (the surface is not where it was taught), mm.
+    pub depth_offset_mm: f64,
+    /// Standard deviation of a press's depth about that, mm.
+    pub depth_deviation_mm: f64,
+    /// Standard deviation of the noise of one force sample, N.
+    pub force_noise_n: f64,
+    /// How late the force sensor's samples are, s.
+    pub force_lag_s: f64,
+}
+
+/// How warm the sensor is: from when it is switched on it warms up, by what its own chips and a robot above it give off.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClimateReality {
+    /// Temperature when the bench is switched on, °C.
+    pub start_c: f64,
+    /// By how much it rises in the end, K.
+    pub warming_k: f64,
+    /// Time constant of that, s.
+    pub warming_time_s: f64,
+}
+
+impl Default for ClimateReality {
+    /// Always 25 °C.
+    fn default() -> Self {
+        Self {
+            start_c: 25.0,
+            warming_k: 0.0,
+            warming_time_s: 300.0,
+        }
+    }
+}
+
+impl ClimateReality {
+    /// How much warmer than at its start the sensor is, K, so long after the bench was switched on, s.
+    pub(crate) fn warmed_k(&self, time_s: f64) -> f64 {
+        -self.warming_k * (-time_s / self.warming_time_s).exp_m1()
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Reality {
+    /// Reads a reality from the text of a TOML file; errors name file, line and field.
+    pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
+        let document = twintac_config::parse::<Self>(file, text)?;
+        document.value.check(&document)?;
+        Ok(document.value)
+    }
+
+    fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
+        let (gel, readout, robot, climate) = (&self.gel, &self.readout, &self.robot, &self.climate);
+        let positive = [
+            ("gel.edges_per_height", gel.edges_per_height),
+            ("gel.edges_per_contact_radius", gel.edges_per_contact_radius),
+            ("gel.yeoh_kpa[0]", gel.yeoh_kpa[0]),
+            ("gel.bulk_modulus_kpa", gel.bulk_modulus_kpa),
+            ("gel.depth_step_mm", gel.depth_step_mm),
+            ("readout.gain_mean", readout.gain_mean),
+            ("climate.warming_time_s", climate.warming_time_s),
+        ];
+        for (field, value) in positive {
+            if value <= 0.0 {
+                return Err(document.error(field, format!("is {value}"), "give a value above zero"));
+            }
+        }
+        let not_negative = [
+            ("readout.gain_deviation", readout.gain_deviation),
+            ("readout.offset_deviation_kpa", readout.offset_deviation_kpa),
+            ("readout.position_deviation_mm", readout.position_deviation_mm),
+            ("readout.noise_kpa", readout.noise_kpa),
+            ("readout.drift_kpa_per_sqrt_s", readout.drift_kpa_per_sqrt_s),
+            (
+                "readout.offset_deviation_kpa_per_k",
+                readout.offset_deviation_kpa_per_k,
+            ),
+            ("readout.lag_s", readout.lag_s),
+            ("readout.lag_per_taxel_s", readout.lag_per_taxel_s),
+            ("readout.jitter_s", readout.jitter_s),
+            ("robot.place_deviation_mm", robot.place_deviation_mm),
+            ("robot.depth_deviation_mm", robot.depth_deviation_mm),
+            ("robot.force_noise_n", robot.force_noise_n),
+            ("robot.force_lag_s", robot.force_lag_s),
+        ];
+        for (field, value) in not_negative {
+            if value < 0.0 {
+                return Err(document.error(field, format!("is {value}"), "give zero or more"));
+            }
+        }
+        // What the barometers' registers can say.
+        for (field, temperature_c) in [
+            ("climate.start_c", climate.start_c),
+            ("climate.warming_k", climate.start_c + climate.warming_k),
+        ] {
+            if !(-128.0..128.0).contains(&temperature_c) {
+                let problem = format!("makes the sensor {temperature_c} °C");
+                return Err(document.error(field, problem, "keep it between -128 and 128 °C"));
+            }
+        }
+        for (index, term) in gel.relaxation.iter().enumerate() {
+            if term.time_s <= 0.0 || term.weight <= 0.0 {
+                let field = format!("gel.relaxation[{index}]");
+                return Err(document.error(
+                    &field,
+                    "has no positive weight and time",
+                    "give both above zero",
+                ));
+            }
+        }
+        let relaxing: f64 = gel.relaxation.iter().map(|term| term.weight).sum();
+        if relaxing >= 1.0 {
+            let problem = format!("relaxes {relaxing} of the stiffness");
+            return Err(document.error("gel.relaxation", problem, "keep the weights' sum below 1"));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHIPPED: &str = include_str!("../../../../realities/default.toml");
+
+    #[test]
+    fn the_shipped_reality_is_valid() {
+        Reality::parse("default.toml", SHIPPED).unwrap();
+    }
+
+    #[test]
+    fn a_gel_that_relaxes_to_nothing_is_refused() {
+        let text = SHIPPED.replace("weight = 0.06", "weight = 0.96");
+        let error = Reality::parse("default.toml", &text).unwrap_err().to_string();
+        assert!(
+            error.contains("gel.relaxation") && error.contains("below 1"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_bench_without_a_climate_keeps_its_temperature() {
+        let (before, _) = SHIPPED.split_once("[climate]").unwrap();
+        let reality = Reality::parse("default.toml", before).unwrap();
+        assert_eq!(reality.climate.warmed_k(1000.0), 0.0);
+    }
+
+    #[test]
+    fn it_warms_by_two_thirds_in_its_time_constant_and_no_further_than_said() {
+        let climate = ClimateReality {
+            start_c: 20.0,
+            warming_k: 3.0,
+            warming_time_s: 100.0,
+        };
+        assert_eq!(climate.warmed_k(0.0), 0.0);
+        assert!((climate.warmed_k(100.0) - 3.0 * (1.0 - (-1.0_f64).exp())).abs() < 1e-12);
+        assert!((climate.warmed_k(1e5) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_temperature_that_no_register_can_say_is_refused() {
+        let text = SHIPPED.replace("start_c = ", "start_c = 2");
+        let error = Reality::parse("default.toml", &text).unwrap_err();
+        assert_eq!(error.field, "climate.start_c");
+    }
+
+    #[test]
+    fn a_negative_noise_is_refused_at_its_line() {
+        let text = SHIPPED.replace("noise_kpa = ", "noise_kpa = -");
+        let error = Reality::parse("default.toml", &text).unwrap_err();
+        assert_eq!(error.field, "readout.noise_kpa");
+        assert!(
+            text.lines().nth(error.line - 1).unwrap().starts_with("noise_kpa"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,63 @@
+//! The emulated sensor in virtual time.
+
+#![allow(dead_code, unreachable_pub)] // each test file uses its own part
+
+use phystac::{Thresholds, Transfer};
+use twintac_emulate::i2c::Bus;
+use twintac_emulate::{Fault, LabClock, Moment, What};
+use twintac_live::{
+    About, BoxedClock, EmulatedPhysTac, FrameReader, Known, PowerOn, TAXELS, emulated_phystac, power_on,
+};
+use twintac_recording::Provenance;
+use twintac_sensor::Sensor;
+
+pub type LabReader = FrameReader<Bus, LabClock, BoxedClock, TAXELS>;
+
+pub fn sensor() -> Sensor {
+    Sensor::read("../../../sensors/phystac.toml").unwrap()
+}
+
+pub fn phystac(faults: &[Fault]) -> EmulatedPhysTac {
+    emulated_phystac(&sensor(), LabClock::virtual_time(), faults).unwrap()
+}
+
+pub fn reader(faults: &[Fault]) -> (LabReader, About) {
+    let mut phystac = phystac(faults);
+    let checked = power_on(&mut phystac, &sensor(), &scale(8)).unwrap();
+    let about = About::new(
+        &sensor(),
+        "name = \"phystac\"",
+        Provenance::Emulated,
+        checked.transfer,
+        0,
+    );
+    (FrameReader::new(phystac, &checked), about)
+}
+
+/// Somebody who knows the scale.
+pub fn scale(counts_per_pa: u16) -> Known {
+    Known {
+        counts_per_pa: Some(counts_per_pa),
+        ..Known::default()
+    }
+}
+
+/// A sensor that was switched on and found to be like this, whatever its range.
+pub fn checked(transfer: Transfer) -> PowerOn {
+    PowerOn {
+        transfer,
+        thresholds: Thresholds::default(),
+        notes: Vec::new(),
+    }
+}
+
+/// A barometer that is gone from a time on, s.
+pub fn gone(channel: u8, from_s: f64) -> Fault {
+    Fault {
+        what: What::NoAcknowledge {
+            channel: Some(channel),
+        },
+        begins: Moment::TimeS(from_s),
+        lasts: None,
+    }
+}

@@ -1,0 +1,353 @@
+//! The report.
+
+use twintac_recording::Recording;
+use twintac_report::data::Fact;
+use twintac_report::{Block, Cell, Page, PageSection};
+use twintac_sensor::Sensor;
+
+use super::figures::{self, Plot};
+use super::sheet::table;
+use super::words::{number, or_not};
+use crate::{Characterization, Finding};
+
+/// How descriptions of the TwinTac paper's sensor name their source.
+const PAPER: &str = "arXiv 2509.10063";
+
+/// Everything that was found, with plots, definitions, and what was not found.
+#[must_use]
+pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
+    let recorded = super::recorded(found, recording, sensor);
+    let section = |id, title, blocks| PageSection { id, title, blocks };
+    let plots = |plots: Vec<Option<Plot>>| -> Vec<Block> {
+        let plots: Vec<Plot> = plots.into_iter().flatten().collect();
+        if plots.is_empty() {
+            Vec::new()
+        } else {
+            vec![Block::Figures(plots)]
+        }
+    };
+    let mut range = plots(vec![
+        figures::smallest_step(found, &recorded),
+        figures::largest_force(found, recording, &recorded),
+        figures::responses(found),
+        figures::linearity(found),
+    ]);
+    range.extend(response_table(found));
+    range.extend(step_table(found));
+    if sensor.source.contains(PAPER) {
+        range.push(Block::Text(format!(
+            "For its own sensor the TwinTac paper ({PAPER}) reports 7.24 kPa/N with a round indenter 25 mm wide, a step of 0.007 N seen, and 212 N \
+             as the largest force."
+        )));
+    }
+    let bars = |title: &str, x_label: &str, values: Vec<(String, f64)>, caption: &str| {
+        (!values.is_empty()).then(|| {
+            (
+                figures::bars(title, x_label, values.into_iter(), 2),
+                caption.to_owned(),
+            )
+        })
+    };
+    let noise = found
+        .noise
+        .found()
+        .into_iter()
+        .flatten()
+        .map(|noise| (noise.taxel.clone(), noise.deviation_kpa));
+    let repeats = found.repeatability.found().into_iter().flatten();
+    let repeats = repeats.map(|taxel| (taxel.taxel.clone(), taxel.percent));
+    let loops = found
+        .hysteresis
+        .found()
+        .into_iter()
+        .flatten()
+        .map(|taxel| (taxel.taxel.clone(), taxel.percent));
+    Page {
+        kind: "Characterization".into(),
+        title: found.sensor.clone(),
+        provenance: super::badge(found.provenance),
+        lead: lead(found),
+        warnings: super::warnings(found),
+        sections: vec![
+            section("result", "Result", result(found, sensor)),
+            section(
+                "time",
+                "Over time",
+                plots(vec![figures::over_time(recording, &recorded)]),
+            ),
+            section("range", "Range and sensitivity", range),
+            section(
+                "repeats",
+                "Hysteresis and repeatability",
+                plots(vec![
+                    figures::hysteresis(found),
+                    bars(
+                        "Hysteresis",
+                        "% of full scale",
+                        loops.collect(),
+                        "Largest difference of unloading from loading at the same force.",
+                    ),
+                    bars(
+                        "Repeatability",
+                        "% of full scale",
+                        repeats.collect(),
+                        "Largest standard deviation at the same force.",
+                    ),
+                ]),
+            ),
+            section(
+                "speed",
+                "Rise and creep",
+                plots(vec![
+                    figures::rise(found, &recorded),
+                    figures::creep(found, &recorded),
+                ]),
+            ),
+            section(
+                "cross-talk",
+                "Cross-talk",
+                plots(vec![found.cross_talk.found().map(figures::cross_talk)]),
+            ),
+            section(
+                "noise",
+                "Noise and drift",
+                plots(vec![
+                    bars(
+                        "Noise floor",
+                        "kPa",
+                        noise.collect(),
+                        "Standard deviation of single unloaded readings.",
+                    ),
+                    figures::drift(found),
+                ]),
+            ),
+            section("missing", "Not given by these recordings", missing(found)),
+            section("definitions", "Definitions", definitions(found)),
+        ],
+        is_sheet: false,
+    }
+}
+
+fn lead(found: &Characterization) -> String {
+    let sensitivity = or_not(&found.overall, |overall| {
+        format!(
+            "{} kPa/N on average over {} taxels, linear to {} N",
+            number(overall.mean_kpa_per_n, 3),
+            overall.n_taxels,
+            number(overall.linear_to_n, 2)
+        )
+    });
+    let range = found.range.found().map_or(String::new(), |range| {
+        format!(" The data go up to {} N.", number(range.force_n, 3))
+    });
+    format!("Sensitivity {sensitivity}, from {} presses.{range}", found.n_used)
+}
+
+fn result(found: &Characterization, sensor: &Sensor) -> Vec<Block> {
+    let mut cards = Vec::new();
+    let mut card = |value: Option<String>, name: &str| {
+        cards.extend(value.map(|value| Fact::new(name, value)));
+    };
+    let overall = found.overall.found();
+    card(
+        overall.map(|overall| format!("{} kPa/N", number(overall.mean_kpa_per_n, 3))),
+        "mean sensitivity",
+    );
+    card(
+        found
+            .smallest_step()
+            .map(|step| format!("{} N", number(step.force_n, 2))),
+        "smallest step detected",
+    );
+    let range = found.range.found();
+    card(
+        range.map(|range| format!("{} N", number(range.force_n, 3))),
+        "largest force in the data",
+    );
+    let widest = found
+        .hysteresis
+        .found()
+        .into_iter()
+        .flatten()
+        .map(|taxel| taxel.percent.abs());
+    card(
+        widest
+            .reduce(f64::max)
+            .map(|percent| format!("{} %", number(percent, 2))),
+        "largest hysteresis",
+    );
+    let mut blocks = Vec::new();
+    if !cards.is_empty() {
+        blocks.push(Block::Cards(cards));
+    }
+    blocks.push(table(found, sensor));
+    blocks
+}
+
+fn response_table(found: &Characterization) -> Option<Block> {
+    let rows = found.sensitivity.found()?.iter().map(|taxel| {
+        vec![
+            Cell::Words(taxel.taxel.clone()),
+            Cell::Number(number(taxel.sensitivity_kpa_per_n, 3)),
+            Cell::Number(number(taxel.linear_to_n, 3)),
+            Cell::Number(number(taxel.linearity_percent, 2)),
+            Cell::Words(if taxel.is_linear_to_end { "yes" } else { "no" }.into()),
+            Cell::Number(number(taxel.data_to_n, 3)),
+            Cell::Number(taxel.n_presses.to_string()),
+        ]
+    });
+    let head = [
+        "taxel",
+        "kPa/N",
+        "linear to, N",
+        "linearity, %",
+        "to the end of the data",
+        "data to, N",
+        "presses",
+    ];
+    let caption = "Sensitivity over the linear range, by taxel.".to_owned();
+    Some(Block::Table(
+        caption,
+        head.map(str::to_owned).to_vec(),
+        rows.collect(),
+    ))
+}
+
+fn step_table(found: &Characterization) -> Option<Block> {
+    let mut steps: Vec<_> = found.steps.found()?.iter().collect();
+    steps.sort_by(|a, b| a.force_n.total_cmp(&b.force_n));
+    let rows = steps.into_iter().map(|step| {
+        vec![
+            Cell::Words(step.press.clone()),
+            Cell::Words(step.taxel.clone()),
+            Cell::Number(number(step.force_n, 2)),
+            Cell::Number(number(step.step_kpa, 2)),
+            Cell::Number(number(step.z_single, 2)),
+            Cell::Number(number(step.z_averaged, 2)),
+            Cell::Words(if step.is_detected { "yes" } else { "no" }.into()),
+        ]
+    });
+    let head = [
+        "weight",
+        "taxel",
+        "N",
+        "step, kPa",
+        "z, one reading",
+        "z, mean",
+        "detected",
+    ];
+    let caption = format!(
+        "Steps of known force. z is the step over the standard deviation of one reading, and of the change of the mean over {} s while nothing happens; \
+         detected from z = {} of the mean on.",
+        found.options.window_s, found.options.sigmas
+    );
+    Some(Block::Table(
+        caption,
+        head.map(str::to_owned).to_vec(),
+        rows.collect(),
+    ))
+}
+
+fn missing(found: &Characterization) -> Vec<Block> {
+    fn why<T>(name: &str, finding: &Finding<T>) -> Option<Fact> {
+        finding.why_not().map(|why| Fact::new(name, why))
+    }
+    let facts: Vec<Fact> = [
+        why("noise floor", &found.noise),
+        why("sensitivity", &found.sensitivity),
+        why("detection limit", &found.detection_limit),
+        why("steps of known force", &found.steps),
+        why("range", &found.range),
+        why("hysteresis", &found.hysteresis),
+        why("repeatability", &found.repeatability),
+        why("rise time", &found.rise_time),
+        why("creep", &found.creep),
+        why("cross-talk", &found.cross_talk),
+        why("return to zero", &found.zero_return),
+        why("drift with temperature", &found.temperature_drift),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if facts.is_empty() {
+        Vec::new()
+    } else {
+        vec![Block::Facts(facts)]
+    }
+}
+
+fn definitions(found: &Characterization) -> Vec<Block> {
+    let options = &found.options;
+    let words = |value: f64| value.to_string();
+    let row = |name: &str, text: String| vec![Cell::Words(name.to_owned()), Cell::Words(text)];
+    let rows = vec![
+        row("above a taxel", format!("the indenter’s centre within {} mm of the taxel’s, in plan", words(options.above_mm))),
+        row("slow press", format!("to a depth, {} s or longer from contact to hold", words(options.slow_s))),
+        row(
+            "sensitivity",
+            "slope of the least-squares line through the response to slow loading over the linear range, the response averaged in a hundred steps of force".into(),
+        ),
+        row(
+            "linear range",
+            format!(
+                "the longest from no force on in which no point is farther from the range’s own line than {} % of the response at its end (independent \
+                 linearity, IEC 61298-2)",
+                words(options.linear_percent)
+            ),
+        ),
+        row("noise floor", "standard deviation of unloaded readings about the mean of their press, all presses pooled".into()),
+        row("detection limit", format!("{} times the noise floor over the sensitivity", words(options.sigmas))),
+        row(
+            "detected step",
+            format!(
+                "the mean over {} s after a known step, less that before it, is {} or more standard deviations of such a difference while nothing happens",
+                words(options.window_s),
+                words(options.sigmas)
+            ),
+        ),
+        row("hysteresis", "largest difference of unloading from loading at the same force, in % of the response at the largest force (ISA-51.1)".into()),
+        row(
+            "repeatability",
+            "largest standard deviation of readings at the same force in three or more slow presses alike, in % of the response at their largest force".into(),
+        ),
+        row("rise time", format!("from 10 to 90 % of the largest reading, in presses whose force rises so in {} s or less", words(options.fast_s))),
+        row("creep", "change of reading over force in a hold (ISA-37.1, for a load that a robot cannot keep constant)".into()),
+        row("cross-talk", "reading of another taxel over that of the pressed one, at the same force".into()),
+        row("return to zero", "unloaded reading after a press, less that before".into()),
+    ];
+    vec![Block::Table(
+        String::new(),
+        vec!["figure".into(), "definition".into()],
+        rows,
+    )]
+}
+
+#[cfg(test)]
+mod tests {
+    use twintac_recording::Provenance;
+
+    use super::*;
+    use crate::synthetic::{Shape, press};
+    use crate::{Options, characterize};
+
+    #[test]
+    fn the_papers_figures_stand_beside_those_of_its_sensor_only() {
+        let text = include_str!("../../../../../sensors/phystac.toml");
+        let mut sensor = Sensor::parse("phystac.toml", text, &|name| std::fs::read(name)).unwrap();
+        sensor.taxels.truncate(2);
+        sensor.taxels[0].position_mm = glam::DVec3::ZERO; // where the press is
+        let recording = Recording {
+            sensor: sensor.name.clone(),
+            provenance: Provenance::Emulated,
+            taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+            presses: vec![press(&Shape::default())],
+        };
+        let found = characterize(&recording, &[], &sensor, &Options::default()).unwrap();
+        let page = report(&found, &recording, &sensor).render();
+        assert!(page.contains("212 N as the largest force"));
+        assert!(page.contains("clocks that may differ"));
+        sensor.source = "measured by its maker".to_owned();
+        let page = report(&found, &recording, &sensor).render();
+        assert!(!page.contains("TwinTac paper"));
+    }
+}

@@ -1,0 +1,243 @@
+//! The protocol as people write it.
+
+use serde::{Deserialize, Serialize};
+use twintac_config::ConfigError;
+
+use crate::{Load, LoadPlan, Part, PlanError, PressPlan, Target};
+
+/// What is pressed, and what is put on the gel.
+///
+/// A file is one [`Part`], or has a summary and lists of `[[parts]]` and `[[loads]]`, each with a name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Protocol {
+    /// What the protocol is for.
+    pub summary: String,
+    /// Presses to a depth, kind by kind.
+    #[serde(default)]
+    pub parts: Vec<Part>,
+    /// Weights put on the gel.
+    #[serde(default)]
+    pub loads: Vec<Load>,
+}
+
+/// What tells a file of parts from a file that is one.
+#[derive(Deserialize)]
+struct Lists {
+    parts: Option<serde::de::IgnoredAny>,
+    loads: Option<serde::de::IgnoredAny>,
+}
+
+impl Protocol {
+    /// Reads a protocol from the text of a TOML file.
+    ///
+    /// # Errors
+    /// The first field that is wrong, with file and line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
+        let lists = twintac_config::parse::<Lists>(file, text)?.value;
+        if lists.parts.is_none() && lists.loads.is_none() {
+            let document = twintac_config::parse::<Part>(file, text)?;
+            document.value.check(&document, "")?;
+            return Ok(Self {
+                summary: document.value.summary.clone(),
+                parts: vec![document.value],
+                loads: Vec::new(),
+            });
+        }
+        let document = twintac_config::parse::<Self>(file, text)?;
+        let protocol = &document.value;
+        for (index, part) in protocol.parts.iter().enumerate() {
+            part.check(&document, &format!("parts[{index}]."))?;
+        }
+        for (index, load) in protocol.loads.iter().enumerate() {
+            load.check(&document, &format!("loads[{index}]."))?;
+        }
+        let parts = protocol.parts.iter().map(|part| &part.name);
+        let names: Vec<&String> = parts
+            .chain(protocol.loads.iter().map(|load| &load.name))
+            .collect();
+        for (index, name) in names.iter().enumerate() {
+            let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+            if name.is_empty() || !name.chars().all(is_plain) || names[..index].contains(name) {
+                let n_parts = protocol.parts.len();
+                let field = match index.checked_sub(n_parts) {
+                    None => format!("parts[{index}].name"),
+                    Some(load) => format!("loads[{load}].name"),
+                };
+                let problem = format!("is `{name}`");
+                let hint = "give each part and load a name of its own, of letters, digits and dashes";
+                return Err(document.error(&field, problem, hint));
+            }
+        }
+        Ok(document.value)
+    }
+
+    /// The presses on a sensor: for each part and each indenter, the whole list of places as often as it is repeated.
+    ///
+    /// # Errors
+    /// An indenter or a taxel that the sensor does not have.
+    pub fn plan(&self, target: &Target, seed: u64) -> Result<Vec<PressPlan>, PlanError> {
+        let plans: Result<Vec<_>, _> = self.parts.iter().map(|part| part.plan(target, seed)).collect();
+        Ok(plans?.concat())
+    }
+
+    /// The weights put on a sensor, in the same order.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn loads(&self, target: &Target, seed: u64) -> Result<Vec<LoadPlan>, PlanError> {
+        let plans: Result<Vec<_>, _> = self.loads.iter().map(|load| load.plan(target, seed)).collect();
+        Ok(plans?.concat())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::AllWord;
+    use crate::{Indenters, Places};
+
+    const DEMO: &str = include_str!("../../../../protocols/demo.toml");
+    const CHARACTERIZE: &str = include_str!("../../../../protocols/characterize.toml");
+    const REAL_TO_SIM: &str = include_str!("../../../../protocols/real2sim.toml");
+
+    fn known() -> Target {
+        let indenters = [
+            "sphere-25",
+            "cube",
+            "x",
+            "ring",
+            "triangle",
+            "wedge",
+            "cylinder",
+            "sphere",
+        ]
+        .map(str::to_owned)
+        .to_vec();
+        let taxels = vec![("t0".to_owned(), [-4.0, 1.0]), ("t5".to_owned(), [4.0, 2.0])];
+        Target { indenters, taxels }
+    }
+
+    #[test]
+    fn shipped_protocols_are_valid_and_stay_within_their_ranges() {
+        for (file, text) in [("demo.toml", DEMO), ("real2sim.toml", REAL_TO_SIM)] {
+            let protocol = Protocol::parse(file, text).unwrap();
+            for part in &protocol.parts {
+                let [shallow, deep] = part.depth_mm.ends();
+                let mut alone = Protocol {
+                    parts: vec![part.clone()],
+                    ..protocol.clone()
+                };
+                alone.parts[0].indenters = Indenters::All(AllWord::All);
+                for plan in alone.plan(&known(), 3).unwrap() {
+                    assert!((shallow..=deep).contains(&plan.depth_mm), "{plan:?}");
+                    assert!((plan.rotation.length() - 1.0).abs() < 1e-12, "{plan:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_press_depends_on_seed_and_name_alone() {
+        let mut protocol = Protocol::parse("demo.toml", DEMO).unwrap();
+        protocol.parts[0].indenters = Indenters::Named(vec!["cube".into(), "ring".into()]);
+        let both = protocol.plan(&known(), 3).unwrap();
+        protocol.parts[0].indenters = Indenters::Named(vec!["ring".into()]);
+        let ring = protocol.plan(&known(), 3).unwrap();
+        assert_eq!(both[both.len() / 2..], ring[..]);
+        assert_ne!(protocol.plan(&known(), 4).unwrap(), ring);
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_line() {
+        let text = DEMO.replace("clearance_mm = ", "clearance_mm = -");
+        let error = Protocol::parse("demo.toml", &text).unwrap_err();
+        assert_eq!(error.field, "clearance_mm");
+        assert!(
+            text.lines()
+                .nth(error.line - 1)
+                .unwrap()
+                .starts_with("clearance_mm"),
+            "{error}"
+        );
+        let wrong = |old: &str, new: &str| {
+            assert!(DEMO.contains(old), "{old}");
+            Protocol::parse("demo.toml", &DEMO.replace(old, new))
+                .unwrap_err()
+                .field
+        };
+        assert_eq!(
+            wrong("count = 16", "count = 16, margin_mm = 1"),
+            "places.margin_mm"
+        );
+        assert_eq!(wrong("count = 16", "count = 0"), "places.count");
+        assert_eq!(wrong("count = 16", "count = 4000000000"), "places.count");
+        assert_eq!(wrong("count = 16", "number = 16"), "places.count");
+        assert_eq!(wrong("x_mm = [-9.0, 9.0]", "x_mm = [9.0, -9.0]"), "places.x_mm");
+        assert_eq!(
+            wrong("depth_mm = [0.6, 1.6]", "depth_mm = [1.6, 0.6]"),
+            "depth_mm"
+        );
+        assert_eq!(wrong("depth_mm = [0.6, 1.6]", "depth_mm = \"deep\""), "depth_mm");
+        assert_eq!(
+            wrong("speed_mm_per_s = [1.5, 4.0]", "speed_mm_per_s = 0.0"),
+            "speed_mm_per_s"
+        );
+        assert_eq!(wrong("hold_s = [0.5, 1.5]", "hold_s = inf"), "hold_s");
+        assert_eq!(
+            wrong("indenters = [", "indenters = [\"cylinder\", "),
+            "indenters[2]"
+        );
+        let protocol = Protocol::parse("demo.toml", DEMO).unwrap();
+        assert!(protocol.plan(&Target::default(), 1).is_err());
+    }
+
+    #[test]
+    fn parts_and_loads_stand_in_one_file_and_have_names_of_their_own() {
+        let protocol = Protocol::parse("characterize.toml", CHARACTERIZE).unwrap();
+        assert!(protocol.parts.len() > 1 && !protocol.loads.is_empty());
+        let (plans, loads) = (protocol.plan(&known(), 3).unwrap(), protocol.loads(&known(), 3));
+        let names = plans.iter().map(|plan| &plan.name);
+        let mut names: Vec<String> = names
+            .chain(loads.unwrap().iter().map(|load| &load.name))
+            .cloned()
+            .collect();
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+        let first = &protocol.parts[0].name;
+        let wrong = CHARACTERIZE.replacen("clearance_mm = ", "clearance_mm = -", 1);
+        let error = Protocol::parse("characterize.toml", &wrong).unwrap_err();
+        assert_eq!(error.field, "parts[0].clearance_mm");
+        let again = CHARACTERIZE.replacen(
+            &format!("name = \"{}\"", protocol.parts[1].name),
+            &format!("name = \"{first}\""),
+            1,
+        );
+        assert_eq!(
+            Protocol::parse("characterize.toml", &again).unwrap_err().field,
+            "parts[1].name"
+        );
+    }
+
+    #[test]
+    fn taxels_are_pressed_from_above_where_they_are() {
+        let mut protocol = Protocol::parse("demo.toml", DEMO).unwrap();
+        protocol.parts[0].indenters = Indenters::Named(vec!["cube".into()]);
+        protocol.parts[0].places = Places::Taxels { names: None };
+        protocol.parts[0].repeats = 2;
+        let places: Vec<_> = protocol
+            .plan(&known(), 1)
+            .unwrap()
+            .iter()
+            .map(|plan| [plan.x_mm, plan.y_mm])
+            .collect();
+        assert_eq!(places, [[-4.0, 1.0], [4.0, 2.0], [-4.0, 1.0], [4.0, 2.0]]);
+        protocol.parts[0].places = Places::Taxels {
+            names: Some(vec!["t9".into()]),
+        };
+        let error = protocol.plan(&known(), 1).unwrap_err();
+        assert_eq!((error.how, error.known.as_str()), ("above", "t0, t5"));
+    }
+}
