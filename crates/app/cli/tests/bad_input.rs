@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 
 use glam::{DQuat, DVec3};
 use twintac_log::{
-    Body, Description, Event, LogWriter, Message, PoseReading, TactileFrame, Taxel, TaxelState,
+    Body, Description, Event, LogWriter, Message, PoseReading, TactileFrame, TaxelReading, TaxelState,
 };
 use twintac_recording::{Control, Provenance};
 use twintac_shape::Pose;
@@ -278,7 +278,7 @@ fn characterize(sensor: &str, recordings: &[&Path], out: &Path) -> Output {
 
 /// A frame of the log below, so many ms after its start.
 fn frame(at_ms: u64) -> Message {
-    let taxel = Taxel {
+    let taxel = TaxelReading {
         state: TaxelState::Good,
         read_us: 0,
         counts: None,

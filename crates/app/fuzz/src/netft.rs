@@ -1,7 +1,7 @@
 //! The force/torque sensor's datagrams.
 
 use twintac_emulate::force::{ForceSensor, ForceSettings};
-use twintac_emulate::{Hertz, LabClock, Scene};
+use twintac_emulate::{Hertz, LabClock, Workcell};
 use twintac_rig::netft::{
     Configuration, REQUEST_BYTES, Record, Request, SequenceTracker, decode_records, encode_records,
 };
@@ -39,8 +39,8 @@ fn follow(records: &[Record]) {
 fn ask(bytes: &[u8]) {
     let clock = LabClock::virtual_time();
     let robot = twintac_emulate::robot::RobotSettings::default();
-    let scene = Scene::new(clock.clone(), Hertz::default(), robot.first_pose, robot.arm);
-    let mut sensor = ForceSensor::new(scene, ForceSettings::default(), &[]).unwrap();
+    let workcell = Workcell::new(clock.clone(), Hertz::default(), robot.first_pose, robot.arm);
+    let mut sensor = ForceSensor::new(workcell, ForceSettings::default(), &[]).unwrap();
     let mut is_streaming = false;
     for request in bytes.chunks(REQUEST_BYTES).take(16) {
         is_streaming |= sensor.hear(request);

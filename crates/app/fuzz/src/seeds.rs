@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::{DQuat, DVec3};
 use twintac_log::{
-    Body, CountTransfer, Description, Event, LogWriter, Message, PoseReading, Stream, TactileFrame, Taxel,
-    TaxelState, WrenchReading,
+    Body, CountTransfer, Description, Event, LogWriter, Message, PoseReading, Stream, TactileFrame,
+    TaxelReading, TaxelState, WrenchReading,
 };
 use twintac_recording::{Control, Provenance};
 use twintac_rig::TcpPose;
@@ -217,7 +217,7 @@ fn description() -> Description {
 /// One press, with a gap in it.
 fn press() -> Vec<Message> {
     let frame = |n: u64| {
-        let taxel = |state, counts| Taxel {
+        let taxel = |state, counts| TaxelReading {
             state,
             read_us: 1000 * n + 7,
             counts,

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
-use phystac::{Fault, FreeAir, Health, Oversampling, PhysTac, Settings, Thresholds, Transfer, propose};
+use phystac::{Fault, FreeAir, Health, Oversampling, PhysTac, Settings, Thresholds, Transfer, scale_hint};
 use twintac_log::{TactileFrame, TaxelState};
 
 const SWITCH: u8 = 0x70;
@@ -160,9 +160,9 @@ fn check(frame: &mut phystac::Frame<8>, health: &mut Health<8>, transfer: &Trans
         }
     }
     let air = FreeAir::default();
-    if let Ok(proposal) = propose(frame, air) {
-        assert!(air.lowest_pa <= proposal.lowest_pa && proposal.highest_pa <= air.highest_pa);
-        assert!(proposal.lowest_pa <= proposal.highest_pa);
+    if let Ok(hint) = scale_hint(frame, air) {
+        assert!(air.lowest_pa <= hint.lowest_pa && hint.highest_pa <= air.highest_pa);
+        assert!(hint.lowest_pa <= hint.highest_pa);
     }
     let before = *frame;
     health.screen(frame);

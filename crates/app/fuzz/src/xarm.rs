@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use twintac_emulate::robot::{Controller, RobotSettings};
-use twintac_emulate::{Hertz, LabClock, Scene};
+use twintac_emulate::{Hertz, LabClock, Workcell};
 use twintac_rig::xarm::{
     Answer, Client, Command, FEEDBACK, Incoming, LARGEST_FRAME_BYTES, LARGEST_REPORT_BYTES, Pair,
     RealTimeReport, Report, ReportPort, Request, report_splitter, splitter,
@@ -64,9 +64,9 @@ fn converse(bytes: &[u8]) {
 pub(crate) fn controller(bytes: &[u8]) {
     let clock = LabClock::virtual_time();
     let settings = RobotSettings::default();
-    let scene = Scene::new(clock.clone(), Hertz::default(), settings.first_pose, settings.arm);
+    let workcell = Workcell::new(clock.clone(), Hertz::default(), settings.first_pose, settings.arm);
     let [low_mm, high_mm] = settings.reach_mm;
-    let mut controller = Controller::new(scene, settings, &[]).unwrap();
+    let mut controller = Controller::new(workcell, settings, &[]).unwrap();
     for frame in split(splitter(), LARGEST_FRAME_BYTES, bytes, bytes.len()) {
         clock.wait_s(f64::from(frame[1] & 7) * 1e-3);
         let Some(answer) = controller.respond(&frame) else {

@@ -8,7 +8,7 @@ use crate::{CHANNELS, EmulateError};
 ///
 /// ```
 /// # #[derive(serde::Deserialize)]
-/// # struct File { faults: Vec<twintac_emulate::Fault> }
+/// # struct File { faults: Vec<twintac_emulate::ScheduledFault> }
 /// # let file: File = toml::from_str(r#"
 /// [[faults]]                                   # the third barometer is away for half a second
 /// what = { no_acknowledge = { channel = 2 } }
@@ -23,9 +23,9 @@ use crate::{CHANNELS, EmulateError};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Fault {
+pub struct ScheduledFault {
     /// What goes wrong.
-    pub what: What,
+    pub what: FaultKind,
     /// When.
     pub begins: Moment,
     /// For how long, if it is something that lasts; left out: for ever.
@@ -46,7 +46,7 @@ pub enum Moment {
 /// Something that can go wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum What {
+pub enum FaultKind {
     /// Lasts: a channel's barometer, or without a channel the switch, does not acknowledge.
     NoAcknowledge {
         /// The channel.
@@ -106,7 +106,7 @@ pub enum What {
 
 /// Where a fault shows, and whose events count for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wire {
+pub(crate) enum FaultWire {
     /// The sensor's bus.
     I2c,
     /// The robot's connections.
@@ -115,10 +115,10 @@ pub enum Wire {
     Force,
 }
 
-impl What {
+impl FaultKind {
     /// Where it shows.
     #[must_use]
-    pub fn wire(&self) -> Wire {
+    pub(crate) fn wire(&self) -> FaultWire {
         match self {
             Self::NoAcknowledge { .. }
             | Self::Short { .. }
@@ -126,13 +126,13 @@ impl What {
             | Self::ClockStretch { .. }
             | Self::SwitchBrownOut
             | Self::BarometerBrownOut { .. }
-            | Self::EndlessConversion { .. } => Wire::I2c,
-            Self::ConnectionReset | Self::RobotError { .. } | Self::UnansweredRequests => Wire::Robot,
+            | Self::EndlessConversion { .. } => FaultWire::I2c,
+            Self::ConnectionReset | Self::RobotError { .. } | Self::UnansweredRequests => FaultWire::Robot,
             Self::LostDatagrams
             | Self::LateDatagrams { .. }
             | Self::DoubledDatagrams
             | Self::ReorderedDatagrams
-            | Self::SaturatedForce => Wire::Force,
+            | Self::SaturatedForce => FaultWire::Force,
         }
     }
 
@@ -160,7 +160,7 @@ impl What {
     }
 }
 
-impl Fault {
+impl ScheduledFault {
     /// That it makes sense; `field` is its path in errors.
     pub(crate) fn check(&self, field: &str) -> Result<(), EmulateError> {
         let bad = |name: &str, problem: &str| Err(EmulateError::setting(format!("{field}.{name}"), problem));
@@ -171,12 +171,12 @@ impl Fault {
         {
             return bad("what.channel", "expected 0 to 7");
         }
-        if let What::ClockStretch { by_s } | What::LateDatagrams { by_s } = self.what
+        if let FaultKind::ClockStretch { by_s } | FaultKind::LateDatagrams { by_s } = self.what
             && !(by_s > 0.0 && by_s.is_finite())
         {
             return bad("what.by_s", "expected a time above zero");
         }
-        if matches!(self.what, What::RobotError { code: 0 }) {
+        if matches!(self.what, FaultKind::RobotError { code: 0 }) {
             return bad("what.code", "expected a code from 1 on");
         }
         for (name, moment) in [("begins", Some(self.begins)), ("lasts", self.lasts)] {
@@ -197,7 +197,7 @@ impl Fault {
 ///
 /// # Errors
 /// The first that does not, by its field.
-pub fn check_faults(faults: &[Fault]) -> Result<(), EmulateError> {
+pub fn check_faults(faults: &[ScheduledFault]) -> Result<(), EmulateError> {
     let mut indexed = faults.iter().enumerate();
     indexed.try_for_each(|(index, fault)| fault.check(&format!("faults[{index}]")))
 }
@@ -206,9 +206,9 @@ pub fn check_faults(faults: &[Fault]) -> Result<(), EmulateError> {
 mod tests {
     use super::*;
 
-    fn lost(begins: Moment, lasts: Option<Moment>) -> Fault {
-        let what = What::LostDatagrams;
-        Fault { what, begins, lasts }
+    fn lost(begins: Moment, lasts: Option<Moment>) -> ScheduledFault {
+        let what = FaultKind::LostDatagrams;
+        ScheduledFault { what, begins, lasts }
     }
 
     #[test]
@@ -217,8 +217,8 @@ mod tests {
         let lasts = None;
         for (fault, words) in [
             (
-                Fault {
-                    what: What::Short { channel: 8 },
+                ScheduledFault {
+                    what: FaultKind::Short { channel: 8 },
                     begins,
                     lasts,
                 },
@@ -233,16 +233,16 @@ mod tests {
                 "`faults[0].lasts` expected a time not below zero",
             ),
             (
-                Fault {
-                    what: What::ConnectionReset,
+                ScheduledFault {
+                    what: FaultKind::ConnectionReset,
                     begins,
                     lasts: Some(begins),
                 },
                 "`faults[0].lasts` is given, but the fault happens once",
             ),
             (
-                Fault {
-                    what: What::ClockStretch { by_s: 0.0 },
+                ScheduledFault {
+                    what: FaultKind::ClockStretch { by_s: 0.0 },
                     begins,
                     lasts,
                 },

@@ -1,18 +1,18 @@
 //! The devices of a bench, emulated at the level of their protocols, with faults on demand.
 //!
 //! A sensor's eight barometers behind their I²C switch ([`i2c`]), a robot arm that listens on TCP ([`robot`]) and a force/torque sensor
-//! that streams by UDP ([`force`]) share one [`LabClock`] and one [`Scene`]: where the robot's tool is, and what a [`Physics`] of the
-//! caller's says that is felt there. [`Bench`] puts them together.
+//! that streams by UDP ([`force`]) share one [`LabClock`] and one [`Workcell`]: where the robot's tool is, and what a [`Physics`] of the
+//! caller's says that is felt there. [`EmulatedBench`] puts them together.
 //!
 //! What devices report depends on times of the lab's clock and on seeds alone, and not on how often or in which order they are asked.
 //! In virtual time the whole bench therefore repeats itself bit for bit, as far as requests come at the same times of that clock.
 //!
 //! ```
 //! use embedded_hal::i2c::I2c;
-//! use twintac_emulate::{Bench, Hertz, LabClock, Settings};
+//! use twintac_emulate::{EmulatedBench, EmulatedBenchSettings, Hertz, LabClock};
 //!
 //! let clock = LabClock::virtual_time();
-//! let bench = Bench::start(clock.clone(), Hertz::default(), &Settings::default())?;
+//! let bench = EmulatedBench::start(clock.clone(), Hertz::default(), &EmulatedBenchSettings::default())?;
 //! println!("robot at {}, force sensor at {}", bench.robot.commands(), bench.force.requests());
 //! bench.board.bus().write(0x70, &[0xFF]).unwrap(); // opens all channels
 //! assert_eq!(clock.now_us(), 50); // 20 clocks at 400 kHz
@@ -21,26 +21,26 @@
 //!
 //! Lengths are in mm, forces in N, torques in N mm, pressures in kPa (absolute, as barometers read them), angles in radians.
 
-mod bench;
 mod chance;
 mod clock;
+mod emulated_bench;
 mod error;
 mod fault;
 mod hertz;
 mod physics;
-mod scene;
 mod schedule;
+mod workcell;
 mod worker;
 
 pub mod force;
 pub mod i2c;
 pub mod robot;
 
-pub use bench::{Bench, Settings};
 pub use chance::Chance;
 pub use clock::LabClock;
+pub use emulated_bench::{EmulatedBench, EmulatedBenchSettings};
 pub use error::EmulateError;
-pub use fault::{Fault, Moment, What, Wire, check_faults};
+pub use fault::{FaultKind, Moment, ScheduledFault, check_faults};
 pub use hertz::Hertz;
 pub use physics::{CHANNELS, Physics, Sensed};
-pub use scene::{Scene, Situation};
+pub use workcell::{Situation, Workcell};

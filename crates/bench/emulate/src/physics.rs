@@ -20,7 +20,7 @@ pub struct Sensed {
 pub trait Physics: Send {
     /// What is felt with the tool at a pose of the robot's base frame, at a time of the lab's clock, s.
     ///
-    /// It is asked in steps of time that are all the same ([`Scene::STEP_S`](crate::Scene::STEP_S)), from zero on and each once:
+    /// It is asked in steps of time that are all the same ([`Workcell::STEP_S`](crate::Workcell::STEP_S)), from zero on and each once:
     /// it may remember what was before. In real time it has to keep up with them: all devices wait meanwhile.
     fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed;
 }

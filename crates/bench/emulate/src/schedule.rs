@@ -1,11 +1,11 @@
 //! The faults of a wire, as time goes by.
 
-use crate::fault::{Fault, Moment, What, Wire};
+use crate::fault::{FaultKind, FaultWire, Moment, ScheduledFault};
 
 /// The faults of one wire, as its time and its events go by.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Schedule {
-    faults: Vec<(Fault, Stage)>,
+    faults: Vec<(ScheduledFault, Stage)>,
     count: u64,
 }
 
@@ -19,7 +19,7 @@ enum Stage {
 
 impl Schedule {
     /// Those of all faults that show on a wire.
-    pub(crate) fn new(faults: &[Fault], wire: Wire) -> Self {
+    pub(crate) fn new(faults: &[ScheduledFault], wire: FaultWire) -> Self {
         let here = faults.iter().filter(|fault| fault.what.wire() == wire);
         Self {
             faults: here.map(|fault| (*fault, Stage::Ahead)).collect(),
@@ -28,19 +28,19 @@ impl Schedule {
     }
 
     /// Another fault, for a moment ahead or at once.
-    pub(crate) fn add(&mut self, fault: Fault) {
+    pub(crate) fn add(&mut self, fault: ScheduledFault) {
         self.faults.push((fault, Stage::Ahead));
     }
 
     /// The next event happens: what goes wrong once now.
-    pub(crate) fn next_event(&mut self, now_s: f64) -> Vec<What> {
+    pub(crate) fn next_event(&mut self, now_s: f64) -> Vec<FaultKind> {
         let happened = self.look(now_s);
         self.count += 1;
         happened
     }
 
     /// What goes wrong once now, with the next event still ahead.
-    pub(crate) fn look(&mut self, now_s: f64) -> Vec<What> {
+    pub(crate) fn look(&mut self, now_s: f64) -> Vec<FaultKind> {
         let mut happened = Vec::new();
         for (fault, stage) in &mut self.faults {
             let is_due = match fault.begins {
@@ -74,7 +74,7 @@ impl Schedule {
     }
 
     /// What goes wrong all the while, as of the last look.
-    pub(crate) fn active(&self) -> impl Iterator<Item = What> {
+    pub(crate) fn active(&self) -> impl Iterator<Item = FaultKind> {
         let active = self
             .faults
             .iter()
@@ -83,7 +83,7 @@ impl Schedule {
     }
 
     /// Whether one of those is this one.
-    pub(crate) fn has(&self, what: What) -> bool {
+    pub(crate) fn has(&self, what: FaultKind) -> bool {
         self.active().any(|active| active == what)
     }
 }
@@ -92,19 +92,19 @@ impl Schedule {
 mod tests {
     use super::*;
 
-    fn lost(begins: Moment, lasts: Option<Moment>) -> Fault {
-        let what = What::LostDatagrams;
-        Fault { what, begins, lasts }
+    fn lost(begins: Moment, lasts: Option<Moment>) -> ScheduledFault {
+        let what = FaultKind::LostDatagrams;
+        ScheduledFault { what, begins, lasts }
     }
 
     #[test]
     fn counts_and_times_begin_and_end_what_lasts() {
-        let active_at = |fault: Fault| -> Vec<u64> {
-            let mut schedule = Schedule::new(&[fault], Wire::Force);
+        let active_at = |fault: ScheduledFault| -> Vec<u64> {
+            let mut schedule = Schedule::new(&[fault], FaultWire::Force);
             let mut active = Vec::new();
             for event in 0..10 {
                 assert_eq!(schedule.next_event(event as f64), []);
-                if schedule.has(What::LostDatagrams) {
+                if schedule.has(FaultKind::LostDatagrams) {
                     active.push(event);
                 }
             }
@@ -120,12 +120,12 @@ mod tests {
 
     #[test]
     fn what_happens_happens_once_and_on_its_own_wire() {
-        let fault = Fault {
-            what: What::SwitchBrownOut,
+        let fault = ScheduledFault {
+            what: FaultKind::SwitchBrownOut,
             begins: Moment::Count(1),
             lasts: None,
         };
-        let mut schedule = Schedule::new(&[fault, lost(Moment::Count(0), None)], Wire::I2c);
+        let mut schedule = Schedule::new(&[fault, lost(Moment::Count(0), None)], FaultWire::I2c);
         let happened: Vec<usize> = (0..4).map(|_| schedule.next_event(0.0).len()).collect();
         assert_eq!(happened, [0, 1, 0, 0]);
         assert_eq!(schedule.active().count(), 0);

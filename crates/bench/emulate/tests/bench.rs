@@ -5,21 +5,21 @@
 use std::time::Duration;
 
 use phystac::{PhysTac, Transfer};
-use twintac_emulate::{Bench, EmulateError, Hertz, LabClock, Settings};
+use twintac_emulate::{EmulateError, EmulatedBench, EmulatedBenchSettings, Hertz, LabClock};
 use twintac_rig::netft;
 use twintac_rig::xarm::Client;
 use twintac_rig::{BenchClock, NetFtSource, WrenchSource};
 
 const SOON: Duration = Duration::from_secs(10);
 
-fn force_client(bench: &Bench) -> netft::Client {
+fn force_client(bench: &EmulatedBench) -> netft::Client {
     let configuration = netft::Client::read_configuration(&bench.force.page().to_string()).unwrap();
     netft::Client::connect(bench.force.requests(), configuration).unwrap()
 }
 
 fn sensor(
     clock: &LabClock,
-    bench: &Bench,
+    bench: &EmulatedBench,
 ) -> PhysTac<impl embedded_hal::i2c::I2c, LabClock, impl phystac::Clock, 8> {
     let now = clock.clone();
     PhysTac::new(
@@ -33,9 +33,9 @@ fn sensor(
 #[test]
 fn a_press_shows_on_all_wires() {
     let clock = LabClock::real();
-    let mut settings = Settings::default();
+    let mut settings = EmulatedBenchSettings::default();
     settings.robot.first_pose.position_mm.z = 101.0;
-    let bench = Bench::start(clock.clone(), Hertz::default(), &settings).unwrap();
+    let bench = EmulatedBench::start(clock.clone(), Hertz::default(), &settings).unwrap();
     let mut sensor = sensor(&clock, &bench);
     let mut robot = Client::connect(bench.robot.commands()).unwrap();
     robot.enable().unwrap();
@@ -70,7 +70,8 @@ fn a_press_shows_on_all_wires() {
 #[test]
 fn in_virtual_time_the_wires_wait_for_whoever_moves_the_clock() {
     let clock = LabClock::virtual_time();
-    let bench = Bench::start(clock.clone(), Hertz::default(), &Settings::default()).unwrap();
+    let bench =
+        EmulatedBench::start(clock.clone(), Hertz::default(), &EmulatedBenchSettings::default()).unwrap();
     let mut client = force_client(&bench);
     client.start(false).unwrap();
     // A server that is held up is asked twice, and sends its first record twice.
@@ -113,15 +114,15 @@ what = "lost_datagrams"
 begins = { count = 1000 }
 lasts = { count = 20 }
 "#;
-    let settings: Settings = toml::from_str(text).unwrap();
+    let settings: EmulatedBenchSettings = toml::from_str(text).unwrap();
     assert_eq!(settings.faults.len(), 2);
-    let again: Settings = toml::from_str(&toml::to_string(&settings).unwrap()).unwrap();
+    let again: EmulatedBenchSettings = toml::from_str(&toml::to_string(&settings).unwrap()).unwrap();
     assert_eq!(settings, again);
-    assert!(toml::from_str::<Settings>("[board]\nbus = 1").is_err());
+    assert!(toml::from_str::<EmulatedBenchSettings>("[board]\nbus = 1").is_err());
 
     let mut wrong = settings.clone();
     wrong.faults[1].lasts = Some(twintac_emulate::Moment::TimeS(-1.0));
-    let error = Bench::start(LabClock::virtual_time(), Hertz::default(), &wrong).unwrap_err();
+    let error = EmulatedBench::start(LabClock::virtual_time(), Hertz::default(), &wrong).unwrap_err();
     assert!(matches!(error, EmulateError::Setting { .. }));
     assert_eq!(
         error.to_string(),

@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::DVec3;
 use twintac_emulate::force::{ForceSensor, ForceServer, ForceSettings, Outgoing};
 use twintac_emulate::robot::ArmSettings;
-use twintac_emulate::{EmulateError, Fault, Hertz, LabClock, Moment, Scene, What};
+use twintac_emulate::{EmulateError, FaultKind, Hertz, LabClock, Moment, ScheduledFault, Workcell};
 use twintac_rig::netft::{
     BiasTolerance, Client, Command, Record, Request, SequenceReport, SequenceTracker, decode_records,
 };
@@ -16,26 +16,26 @@ use twintac_rig::{BenchClock, NetFtSource, RigError, TcpPose, WrenchSource};
 const SOON: Duration = Duration::from_secs(10);
 
 /// The ball, pressed in by 1 mm.
-fn scene(clock: &LabClock) -> Scene {
+fn workcell(clock: &LabClock) -> Workcell {
     let tool = TcpPose {
         position_mm: DVec3::new(200.0, 0.0, 99.0),
         roll_pitch_yaw_rad: DVec3::new(std::f64::consts::PI, 0.0, 0.0),
     };
-    Scene::new(clock.clone(), Hertz::default(), tool, ArmSettings::default())
+    Workcell::new(clock.clone(), Hertz::default(), tool, ArmSettings::default())
 }
 
-fn fault(what: What, begins: Moment, lasts: Option<Moment>) -> Fault {
-    Fault { what, begins, lasts }
+fn fault(what: FaultKind, begins: Moment, lasts: Option<Moment>) -> ScheduledFault {
+    ScheduledFault { what, begins, lasts }
 }
 
 /// A sensor on the loopback and a client that streams from it. Few records a second: a client that is held up finds them all in its
 /// socket.
-fn streaming(faults: &[Fault], rate_hz: f64, buffered: bool) -> (ForceServer, Client) {
+fn streaming(faults: &[ScheduledFault], rate_hz: f64, buffered: bool) -> (ForceServer, Client) {
     let settings = ForceSettings {
         rate_hz,
         ..ForceSettings::default()
     };
-    let server = ForceServer::start(scene(&LabClock::real()), settings, faults).unwrap();
+    let server = ForceServer::start(workcell(&LabClock::real()), settings, faults).unwrap();
     let configuration = Client::read_configuration(&server.page().to_string()).unwrap();
     let mut client = Client::connect(server.requests(), configuration).unwrap();
     client.start(buffered).unwrap();
@@ -86,13 +86,13 @@ fn lost_doubled_late_and_reordered_datagrams_are_told_apart() {
         }
         source.report()
     };
-    let lost = seen(What::LostDatagrams);
+    let lost = seen(FaultKind::LostDatagrams);
     assert_eq!((lost.lost, lost.longest_gap, lost.late), (10, 10, 0), "{lost}");
-    let doubled = seen(What::DoubledDatagrams);
+    let doubled = seen(FaultKind::DoubledDatagrams);
     assert_eq!((doubled.doubled, doubled.lost), (10, 0), "{doubled}");
-    let late = seen(What::LateDatagrams { by_s: 0.1 });
+    let late = seen(FaultKind::LateDatagrams { by_s: 0.1 });
     assert_eq!((late.late, late.lost, late.longest_gap), (10, 0, 10), "{late}");
-    let reordered = seen(What::ReorderedDatagrams);
+    let reordered = seen(FaultKind::ReorderedDatagrams);
     assert_eq!(
         (reordered.late, reordered.lost, reordered.longest_gap),
         (5, 0, 1),
@@ -102,7 +102,7 @@ fn lost_doubled_late_and_reordered_datagrams_are_told_apart() {
 
 #[test]
 fn saturation_is_an_error_of_the_source() {
-    let saturated = fault(What::SaturatedForce, Moment::Count(20), None);
+    let saturated = fault(FaultKind::SaturatedForce, Moment::Count(20), None);
     let (_server, client) = streaming(&[saturated], 250.0, false);
     let mut source = NetFtSource::new(client, BenchClock::start());
     let error = (0..100).find_map(|_| source.next_sample(SOON).err()).unwrap();
@@ -113,14 +113,14 @@ fn saturation_is_an_error_of_the_source() {
 #[test]
 fn a_page_that_is_not_there_and_a_port_that_is_taken_are_named() {
     let clock = LabClock::real();
-    let server = ForceServer::start(scene(&clock), ForceSettings::default(), &[]).unwrap();
+    let server = ForceServer::start(workcell(&clock), ForceSettings::default(), &[]).unwrap();
     let elsewhere = format!("{}/other", server.page());
     assert!(Client::read_configuration(&elsewhere).is_err());
     let settings = ForceSettings {
         ports: [server.requests().port(), 0],
         ..ForceSettings::default()
     };
-    let taken = ForceServer::start(scene(&clock), settings, &[]);
+    let taken = ForceServer::start(workcell(&clock), settings, &[]);
     assert!(matches!(
         taken,
         Err(EmulateError::System {
@@ -132,7 +132,7 @@ fn a_page_that_is_not_there_and_a_port_that_is_taken_are_named() {
         rate_hz: 8000.0,
         ..ForceSettings::default()
     };
-    let error = ForceServer::start(scene(&clock), settings, &[]).unwrap_err();
+    let error = ForceServer::start(workcell(&clock), settings, &[]).unwrap_err();
     assert_eq!(
         error.to_string(),
         "`force.rate_hz` is 8000, expected at most 7000"
@@ -142,12 +142,12 @@ fn a_page_that_is_not_there_and_a_port_that_is_taken_are_named() {
 /// All that a sensor sends in a second of virtual time, asked every so often.
 fn second(
     settings: ForceSettings,
-    faults: &[Fault],
+    faults: &[ScheduledFault],
     every_s: f64,
     requests: &[(Command, u32)],
 ) -> Vec<Outgoing> {
     let clock = LabClock::virtual_time();
-    let mut sensor = ForceSensor::new(scene(&clock), settings, faults).unwrap();
+    let mut sensor = ForceSensor::new(workcell(&clock), settings, faults).unwrap();
     for (command, samples) in requests {
         let (command, samples) = (*command, *samples);
         sensor.hear(&Request { command, samples }.encode());
@@ -169,14 +169,18 @@ fn records(sent: &[Outgoing]) -> Vec<Record> {
 #[test]
 fn what_is_sent_does_not_depend_on_how_often_it_is_asked_for() {
     let faults = [
-        fault(What::LostDatagrams, Moment::Count(100), Some(Moment::Count(3))),
         fault(
-            What::SaturatedForce,
+            FaultKind::LostDatagrams,
+            Moment::Count(100),
+            Some(Moment::Count(3)),
+        ),
+        fault(
+            FaultKind::SaturatedForce,
             Moment::TimeS(0.5),
             Some(Moment::TimeS(0.01)),
         ),
         fault(
-            What::LateDatagrams { by_s: 0.02 },
+            FaultKind::LateDatagrams { by_s: 0.02 },
             Moment::TimeS(0.7),
             Some(Moment::TimeS(0.01)),
         ),
@@ -248,7 +252,7 @@ fn a_monitor_condition_stays_latched_until_it_is_reset() {
         noise_n: 0.0,
         ..ForceSettings::default()
     };
-    let mut sensor = ForceSensor::new(scene(&clock), settings, &[]).unwrap();
+    let mut sensor = ForceSensor::new(workcell(&clock), settings, &[]).unwrap();
     let request = |command| Request { command, samples: 1 }.encode();
     let mut status = |commands: &[Command]| {
         for command in commands {

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use serde_json::Value;
 use twintac_emulate::robot::{RobotServer, RobotSettings};
-use twintac_emulate::{Hertz, LabClock, Scene};
+use twintac_emulate::{Hertz, LabClock, Workcell};
 use twintac_rig::xarm::ReportPort;
 
 #[test]
@@ -25,13 +25,13 @@ fn the_manufacturers_client_drives_the_robot() {
 
     let mut settings = RobotSettings::default();
     settings.first_pose.roll_pitch_yaw_rad.x = 3.0; // half a turn has two names
-    let scene = Scene::new(
+    let workcell = Workcell::new(
         LabClock::real(),
         Hertz::default(),
         settings.first_pose,
         settings.arm,
     );
-    let robot = RobotServer::start(scene, settings, &[]).unwrap();
+    let robot = RobotServer::start(workcell, settings, &[]).unwrap();
     let ports = [
         robot.commands().port(),
         robot.reports(ReportPort::Normal).port(),

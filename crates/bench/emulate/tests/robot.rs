@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use twintac_emulate::robot::{Controller, RobotServer, RobotSettings};
-use twintac_emulate::{Fault, Hertz, LabClock, Moment, Scene, What};
+use twintac_emulate::{FaultKind, Hertz, LabClock, Moment, ScheduledFault, Workcell};
 use twintac_rig::xarm::{
     Client, Command, ControllerCode, Mode, MotionState, MoveTo, PROTOCOL, ReportPort, ReportReader, Request,
     SetState,
@@ -16,21 +16,21 @@ use twintac_rig::{RigError, TcpPose};
 
 const SOON: Duration = Duration::from_secs(10);
 
-fn scene(clock: &LabClock) -> Scene {
+fn workcell(clock: &LabClock) -> Workcell {
     let settings = RobotSettings::default();
-    Scene::new(clock.clone(), Hertz::default(), settings.first_pose, settings.arm)
+    Workcell::new(clock.clone(), Hertz::default(), settings.first_pose, settings.arm)
 }
 
-fn robot(faults: &[(What, Moment, Option<Moment>)]) -> RobotServer {
-    let faults: Vec<Fault> = faults
+fn robot(faults: &[(FaultKind, Moment, Option<Moment>)]) -> RobotServer {
+    let faults: Vec<ScheduledFault> = faults
         .iter()
-        .map(|(what, begins, lasts)| Fault {
+        .map(|(what, begins, lasts)| ScheduledFault {
             what: *what,
             begins: *begins,
             lasts: *lasts,
         })
         .collect();
-    RobotServer::start(scene(&LabClock::real()), RobotSettings::default(), &faults).unwrap()
+    RobotServer::start(workcell(&LabClock::real()), RobotSettings::default(), &faults).unwrap()
 }
 
 fn client(robot: &RobotServer) -> Client<TcpStream> {
@@ -189,7 +189,7 @@ fn reports_come_at_their_rates_and_say_what_is() {
 
 #[test]
 fn an_error_on_demand_stops_the_robot_and_is_reported() {
-    let what = What::RobotError { code: 31 };
+    let what = FaultKind::RobotError { code: 31 };
     // Enabling takes six requests; a report meets the error.
     let robot = robot(&[(what, Moment::Count(6), None)]);
     let mut client = client(&robot);
@@ -207,7 +207,7 @@ fn an_error_on_demand_stops_the_robot_and_is_reported() {
 
 #[test]
 fn an_emergency_stop_takes_the_motors_along() {
-    let what = What::RobotError { code: 1 };
+    let what = FaultKind::RobotError { code: 1 };
     // Enabling takes six requests; the seventh meets the error.
     let robot = robot(&[(what, Moment::Count(6), None)]);
     let mut client = client(&robot);
@@ -230,7 +230,7 @@ fn an_emergency_stop_takes_the_motors_along() {
 
 #[test]
 fn connections_that_are_reset_fail_and_new_ones_work() {
-    let robot = robot(&[(What::ConnectionReset, Moment::Count(7), None)]);
+    let robot = robot(&[(FaultKind::ConnectionReset, Moment::Count(7), None)]);
     let mut first = client(&robot);
     let mut development = reader(&robot, ReportPort::Development);
     development.next_report(SOON).unwrap().unwrap();
@@ -246,7 +246,11 @@ fn connections_that_are_reset_fail_and_new_ones_work() {
 
 #[test]
 fn a_robot_that_does_not_answer_is_late() {
-    let robot = robot(&[(What::UnansweredRequests, Moment::Count(1), Some(Moment::Count(1)))]);
+    let robot = robot(&[(
+        FaultKind::UnansweredRequests,
+        Moment::Count(1),
+        Some(Moment::Count(1)),
+    )]);
     let mut client = client(&robot);
     client.state().unwrap();
     assert!(matches!(client.state(), Err(RigError::Timeout { .. })));
@@ -257,14 +261,14 @@ fn a_robot_that_does_not_answer_is_late() {
 fn the_controller_alone_repeats_itself_in_virtual_time() {
     let run = || -> Vec<Vec<u8>> {
         let clock = LabClock::virtual_time();
-        let what = What::RobotError { code: 31 };
+        let what = FaultKind::RobotError { code: 31 };
         let begins = Moment::TimeS(0.9);
-        let faults = [Fault {
+        let faults = [ScheduledFault {
             what,
             begins,
             lasts: None,
         }];
-        let mut controller = Controller::new(scene(&clock), RobotSettings::default(), &faults).unwrap();
+        let mut controller = Controller::new(workcell(&clock), RobotSettings::default(), &faults).unwrap();
         let mut heard = Vec::new();
         let mut transaction = 0;
         let mut call = |controller: &mut Controller, command: Command| {

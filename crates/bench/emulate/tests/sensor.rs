@@ -8,7 +8,7 @@ use phystac::recovery::{free_bus, reset_switch};
 use phystac::{Budget, Error, Frame, Oversampling, PhysTac, Settings, Transfer};
 use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
-use twintac_emulate::{Fault, Hertz, LabClock, Moment, Scene, What};
+use twintac_emulate::{FaultKind, Hertz, LabClock, Moment, ScheduledFault, Workcell};
 use twintac_rig::TcpPose;
 
 const BAROMETER: u8 = 0x6D;
@@ -16,16 +16,16 @@ const SWITCH: u8 = 0x70;
 const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 
 /// The ball, pressed in by so much, mm.
-fn scene(clock: &LabClock, depth_mm: f64) -> Scene {
+fn workcell(clock: &LabClock, depth_mm: f64) -> Workcell {
     let tool = TcpPose {
         position_mm: DVec3::new(200.0, 0.0, 100.0 - depth_mm),
         roll_pitch_yaw_rad: DVec3::new(std::f64::consts::PI, 0.0, 0.0),
     };
-    Scene::new(clock.clone(), Hertz::default(), tool, ArmSettings::default())
+    Workcell::new(clock.clone(), Hertz::default(), tool, ArmSettings::default())
 }
 
-fn board(clock: &LabClock, settings: &BoardSettings, faults: &[Fault]) -> Board {
-    Board::new(scene(clock, 1.0), settings, faults).unwrap()
+fn board(clock: &LabClock, settings: &BoardSettings, faults: &[ScheduledFault]) -> Board {
+    Board::new(workcell(clock, 1.0), settings, faults).unwrap()
 }
 
 type Sensor = PhysTac<Bus, LabClock, Box<dyn Fn() -> u64>, 8>;
@@ -41,10 +41,10 @@ fn sensor(clock: &LabClock, board: &Board) -> Sensor {
 }
 
 /// A sensor whose bus has these faults.
-fn faulty(faults: &[(What, Moment, Option<Moment>)]) -> (LabClock, Board, Sensor) {
-    let faults: Vec<Fault> = faults
+fn faulty(faults: &[(FaultKind, Moment, Option<Moment>)]) -> (LabClock, Board, Sensor) {
+    let faults: Vec<ScheduledFault> = faults
         .iter()
-        .map(|(what, begins, lasts)| Fault {
+        .map(|(what, begins, lasts)| ScheduledFault {
             what: *what,
             begins: *begins,
             lasts: *lasts,
@@ -72,7 +72,7 @@ fn frames_read_the_pressures_of_the_scene() {
     };
     let board = board(&clock, &settings, &[]);
     let frame = sensor(&clock, &board).frame().unwrap();
-    let truth_kpa = scene(&clock, 1.0).now().sensed.taxel_pressures_kpa;
+    let truth_kpa = workcell(&clock, 1.0).now().sensed.taxel_pressures_kpa;
     assert!(
         truth_kpa[0] == 101.325 && truth_kpa[1] > 105.0,
         "some taxels are pressed: {truth_kpa:?}"
@@ -124,8 +124,8 @@ fn the_same_seed_gives_the_same_frames_and_another_one_others() {
             seed,
             ..BoardSettings::default()
         };
-        let faults = [Fault {
-            what: What::NoAcknowledge { channel: Some(4) },
+        let faults = [ScheduledFault {
+            what: FaultKind::NoAcknowledge { channel: Some(4) },
             begins: Moment::Count(60),
             lasts: Some(Moment::TimeS(0.05)),
         }];
@@ -247,7 +247,7 @@ fn reads_with_several_channels_open_collide() {
 
 #[test]
 fn a_missing_barometer_and_a_missing_switch_are_named() {
-    let absent = |channel| What::NoAcknowledge { channel };
+    let absent = |channel| FaultKind::NoAcknowledge { channel };
     let (_, _, mut sensor) = faulty(&[(absent(Some(5)), Moment::Count(0), None)]);
     assert_eq!(
         faults_of(&sensor.frame().unwrap()),
@@ -280,7 +280,7 @@ fn a_board_with_four_barometers_is_one_with_four_missing() {
 #[test]
 fn a_brown_out_of_the_switch_is_noticed_and_over_with_the_next_frame() {
     for count in 0..80 {
-        let (_, _, mut sensor) = faulty(&[(What::SwitchBrownOut, Moment::Count(count), None)]);
+        let (_, _, mut sensor) = faulty(&[(FaultKind::SwitchBrownOut, Moment::Count(count), None)]);
         let outcomes: Vec<_> = (0..3).map(|_| sensor.frame()).collect();
         let is_fine = |outcome: &Result<Frame<8>, _>| {
             matches!(outcome, Err(Error::SwitchReset { .. }))
@@ -294,7 +294,7 @@ fn a_brown_out_of_the_switch_is_noticed_and_over_with_the_next_frame() {
 #[test]
 fn a_conversion_that_never_ends_is_stuck_until_it_does() {
     let lasts = Some(Moment::TimeS(0.2));
-    let what = What::EndlessConversion { channel: 6 };
+    let what = FaultKind::EndlessConversion { channel: 6 };
     let (clock, _, mut sensor) = faulty(&[(what, Moment::TimeS(0.05), lasts)]);
     let mut stuck = 0;
     while clock.now_s() < 0.4 {
@@ -312,7 +312,7 @@ fn a_conversion_that_never_ends_is_stuck_until_it_does() {
 #[test]
 fn a_stretched_clock_is_only_late() {
     let by_s = 0.002;
-    let what = What::ClockStretch { by_s };
+    let what = FaultKind::ClockStretch { by_s };
     let (clock, _, mut sensor) = faulty(&[(what, Moment::TimeS(0.1), None)]);
     let frame_s = |sensor: &mut Sensor| {
         let begun_s = clock.now_s();
@@ -332,7 +332,7 @@ fn a_stretched_clock_is_only_late() {
 
 #[test]
 fn nine_clocks_free_a_bus_that_the_switch_holds() {
-    let what = What::StuckBus { channel: None };
+    let what = FaultKind::StuckBus { channel: None };
     let (_, board, mut sensor) = faulty(&[(what, Moment::Count(40), None)]);
     let hung = (0..9).find_map(|_| sensor.frame().err()).unwrap();
     assert!(
@@ -355,7 +355,7 @@ fn nine_clocks_free_a_bus_that_the_switch_holds() {
 
 #[test]
 fn a_barometer_that_holds_the_bus_gets_its_clocks_while_its_channel_is_open() {
-    let what = What::StuckBus { channel: Some(3) };
+    let what = FaultKind::StuckBus { channel: Some(3) };
     let (_, board, mut sensor) = faulty(&[(what, Moment::Count(40), None)]);
     let hung = (0..9).find_map(|_| sensor.frame().err()).unwrap();
     assert!(matches!(hung, Error::BusHung { .. }), "{hung}");
@@ -368,7 +368,7 @@ fn a_barometer_that_holds_the_bus_gets_its_clocks_while_its_channel_is_open() {
 
 #[test]
 fn a_shorted_channel_is_isolated_after_resets() {
-    let what = What::Short { channel: 2 };
+    let what = FaultKind::Short { channel: 2 };
     let (_, board, mut sensor) = faulty(&[(what, Moment::TimeS(0.1), None)]);
     let mut resets = 0;
     let frame = loop {
@@ -390,7 +390,7 @@ fn a_shorted_channel_is_isolated_after_resets() {
 
 #[test]
 fn a_barometer_that_loses_power_has_no_sample_of_that_frame() {
-    let what = What::BarometerBrownOut { channel: 7 };
+    let what = FaultKind::BarometerBrownOut { channel: 7 };
     let (_, _, mut sensor) = faulty(&[(what, Moment::Count(60), None)]);
     let mut faults = Vec::new();
     for _ in 0..6 {

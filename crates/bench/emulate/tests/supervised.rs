@@ -5,7 +5,7 @@
 use glam::DVec3;
 use twintac_emulate::force::{ForceSensor, ForceSettings};
 use twintac_emulate::robot::{Controller, RobotSettings};
-use twintac_emulate::{Fault, Hertz, LabClock, Moment, Scene, What};
+use twintac_emulate::{FaultKind, Hertz, LabClock, Moment, ScheduledFault, Workcell};
 use twintac_rig::netft::{
     Arrival, Command as ForceCommand, Health, Request as ForceRequest, SequenceTracker, decode_records,
 };
@@ -13,7 +13,7 @@ use twintac_rig::xarm::{
     Command, Incoming, Mode, MoveTo, PROTOCOL, Report, ReportPort, Request, Response, SetState,
 };
 use twintac_rig::{
-    Cause, Decision, Event, Limits, Retreat, SensorLimits, Setup, Start, StreamId, Supervisor, TcpPose,
+    Cause, Decision, Limits, Observation, Retreat, SensorLimits, Setup, Start, StreamId, Supervisor, TcpPose,
     Workspace,
 };
 
@@ -40,7 +40,7 @@ struct Outcome {
 /// The bench and what the client of it remembers.
 struct Rig {
     clock: LabClock,
-    scene: Scene,
+    workcell: Workcell,
     controller: Controller,
     force: ForceSensor,
     tracker: SequenceTracker,
@@ -50,13 +50,13 @@ struct Rig {
 }
 
 impl Rig {
-    fn new(faults: &[Fault], force_limit_n: f64) -> Self {
+    fn new(faults: &[ScheduledFault], force_limit_n: f64) -> Self {
         let clock = LabClock::virtual_time();
         let settings = RobotSettings {
             first_pose: at(1.0),
             ..RobotSettings::default()
         };
-        let scene = Scene::new(clock.clone(), Hertz::default(), at(1.0), settings.arm);
+        let workcell = Workcell::new(clock.clone(), Hertz::default(), at(1.0), settings.arm);
         let setup = Setup {
             limits: Limits {
                 force_n: force_limit_n,
@@ -89,17 +89,17 @@ impl Rig {
             pose: at(1.0),
             force_n: DVec3::ZERO,
         };
-        let mut force = ForceSensor::new(scene.clone(), ForceSettings::default(), faults).unwrap();
+        let mut force = ForceSensor::new(workcell.clone(), ForceSettings::default(), faults).unwrap();
         let (command, samples) = (ForceCommand::StartRealTime, 0);
         force.hear(&ForceRequest { command, samples }.encode());
         let mut rig = Self {
-            controller: Controller::new(scene.clone(), settings, faults).unwrap(),
+            controller: Controller::new(workcell.clone(), settings, faults).unwrap(),
             force,
             tracker: SequenceTracker::default(),
             supervisor: Supervisor::new(setup, &sensor, start).unwrap(),
             transaction: 0,
             most_n: 0.0,
-            scene,
+            workcell,
             clock,
         };
         let (mode, detection) = (Mode::Servo, Some(0));
@@ -134,18 +134,18 @@ impl Rig {
         for outgoing in self.force.due() {
             for record in decode_records(&outgoing.datagram).unwrap() {
                 let event = match self.tracker.track(&record).arrival {
-                    _ if record.status.health() == Health::Error => Event::DeviceError {
+                    _ if record.status.health() == Health::Error => Observation::DeviceError {
                         stream: StreamId::FORCE,
                         problem: record.status.to_string(),
                     },
-                    Arrival::AfterGap { lost } => Event::DataLost {
+                    Arrival::AfterGap { lost } => Observation::DataLost {
                         stream: StreamId::FORCE,
                         records: lost.into(),
                     },
                     Arrival::InOrder => {
                         let force_n = self.force.configuration().wrench(record.counts).force_n;
                         self.most_n = self.most_n.max(force_n.length());
-                        Event::Force(force_n)
+                        Observation::Force(force_n)
                     }
                     _ => continue,
                 };
@@ -158,7 +158,7 @@ impl Rig {
         self.controller.look();
         let frame = self.controller.report_frame(ReportPort::Rich);
         let report = Report::decode(ReportPort::Rich, &frame).unwrap();
-        let event = Event::Robot {
+        let event = Observation::Robot {
             pose: report.pose,
             in_error: report.status.unwrap().error != 0,
         };
@@ -177,7 +177,7 @@ impl Rig {
             let problem = "no good answer".to_owned();
             let stream = StreamId::ROBOT;
             self.supervisor
-                .observe(now_s, Event::DeviceError { stream, problem });
+                .observe(now_s, Observation::DeviceError { stream, problem });
         }
     }
 
@@ -202,21 +202,21 @@ impl Rig {
             cause: self.supervisor.cause().cloned(),
             period: stopped.unwrap_or(PERIODS),
             most_n: self.most_n,
-            last_height_mm: self.scene.now().tool.position_mm.z - 100.0,
+            last_height_mm: self.workcell.now().tool.position_mm.z - 100.0,
         }
     }
 }
 
 /// A press with a fault from 0.6 s on, when the goal has just got to its depth.
-fn with(what: What, lasts: Option<Moment>) -> Outcome {
+fn with(what: FaultKind, lasts: Option<Moment>) -> Outcome {
     let begins = Moment::TimeS(0.6);
-    let press = || Rig::new(&[Fault { what, begins, lasts }], 10.0).press();
+    let press = || Rig::new(&[ScheduledFault { what, begins, lasts }], 10.0).press();
     let outcome = press();
     assert_eq!(outcome, press(), "repeats itself");
     outcome
 }
 
-fn cause(what: What, lasts: Option<Moment>) -> Cause {
+fn cause(what: FaultKind, lasts: Option<Moment>) -> Cause {
     let outcome = with(what, lasts);
     assert!((150..165).contains(&outcome.period), "{outcome:?}");
     outcome.cause.unwrap()
@@ -250,34 +250,37 @@ fn a_force_beyond_the_limit_stops_the_press_and_takes_the_robot_back() {
 fn each_fault_of_the_force_sensor_has_its_name() {
     let ten = Some(Moment::Count(10));
     assert!(matches!(
-        cause(What::LostDatagrams, ten),
+        cause(FaultKind::LostDatagrams, ten),
         Cause::DataLost { records: 10, .. }
     ));
     assert!(matches!(
-        cause(What::LostDatagrams, None),
+        cause(FaultKind::LostDatagrams, None),
         Cause::StreamSilent { .. }
     ));
     assert!(matches!(
-        cause(What::ReorderedDatagrams, ten),
+        cause(FaultKind::ReorderedDatagrams, ten),
         Cause::DataLost { records: 1, .. }
     ));
-    let late = What::LateDatagrams { by_s: 0.05 };
+    let late = FaultKind::LateDatagrams { by_s: 0.05 };
     assert!(matches!(cause(late, None), Cause::StreamSilent { .. }));
-    match cause(What::SaturatedForce, ten) {
+    match cause(FaultKind::SaturatedForce, ten) {
         Cause::DeviceError { problem, .. } => assert!(problem.contains("saturation"), "{problem}"),
         other => panic!("{other}"),
     }
-    assert_eq!(with(What::DoubledDatagrams, None).cause, None, "harmless");
+    assert_eq!(with(FaultKind::DoubledDatagrams, None).cause, None, "harmless");
 }
 
 #[test]
 fn each_fault_of_the_robot_has_its_name() {
-    assert_eq!(cause(What::RobotError { code: 31 }, None), Cause::RobotInError);
+    assert_eq!(
+        cause(FaultKind::RobotError { code: 31 }, None),
+        Cause::RobotInError
+    );
     assert!(matches!(
-        cause(What::UnansweredRequests, None),
+        cause(FaultKind::UnansweredRequests, None),
         Cause::DeviceError { .. }
     ));
-    let outcome = with(What::RobotError { code: 31 }, None);
+    let outcome = with(FaultKind::RobotError { code: 31 }, None);
     assert!(
         outcome.last_height_mm < 0.0,
         "with its motors' error it stays where it is: {outcome:?}"

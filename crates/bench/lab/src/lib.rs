@@ -5,14 +5,14 @@
 //! differently from the drawing, noise, quantization, late and jittery clocks, a robot that misses its place. All of that is in a
 //! [`Reality`], read from a TOML file. What it records is marked `emulated`.
 //!
-//! [`Bench::press`] records a planned press at once, [`Bench::load`] a weight put on the gel; [`Bench::live`] is felt by emulated devices (`twintac-emulate`) while a robot moves.
+//! [`Lab::press`] records a planned press at once, [`Lab::load`] a weight put on the gel; [`Lab::live`] is felt by emulated devices (`twintac-emulate`) while a robot moves.
 
-mod bench;
 mod chain;
+mod lab;
 mod live;
 mod load;
 mod reality;
 
-pub use bench::{Bench, LabError};
+pub use lab::{Lab, LabError};
 pub use live::{LiveGel, LiveTable, Selector};
 pub use reality::{ClimateReality, GelReality, ReadoutReality, Reality, RobotReality};

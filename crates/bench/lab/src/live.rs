@@ -16,7 +16,7 @@ use twintac_shape::Pose;
 use twintac_simulate::{Pchip, SweepFrame};
 
 use crate::ClimateReality;
-use crate::bench::{Bench, LabError, Port};
+use crate::lab::{Lab, LabError, Port};
 use crate::reality::Relaxation;
 
 /// How much deeper than planned the tables go, mm.
@@ -79,7 +79,7 @@ struct Memory {
     walk_kpa: [f64; CHANNELS],
 }
 
-impl Bench {
+impl Lab {
     /// Computes the gel's answer at the place of a press.
     ///
     /// # Errors

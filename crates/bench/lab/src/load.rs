@@ -6,8 +6,8 @@ use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::{Control, Press};
 use twintac_simulate::{Pchip, PressPlace, Sweep, SweepFrame};
 
-use crate::bench::{Bench, Frames, LabError, Moment};
 use crate::chain::Chain;
+use crate::lab::{Frames, Lab, LabError, Moment};
 
 /// The depth that is tried first for a weight, mm.
 const FIRST_DEPTH_MM: f64 = 0.1;
@@ -15,7 +15,7 @@ const FIRST_DEPTH_MM: f64 = 0.1;
 /// A table goes this much beyond the weight.
 const MARGIN: f64 = 1.05;
 
-impl Bench {
+impl Lab {
     /// Puts a weight on the gel, takes it off again, and records it. The recorded force is the weight.
     ///
     /// The pressure under a constant force is read off the table of the gel's instantaneous answer: what relaxes changes how deep a weight

@@ -6,7 +6,7 @@ use glam::DVec3;
 use phystac::{PhysTac, SCALES_PER_PA};
 use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
-use twintac_emulate::{Fault, Hertz, LabClock, Physics, Scene, Sensed};
+use twintac_emulate::{Hertz, LabClock, Physics, ScheduledFault, Sensed, Workcell};
 use twintac_rig::TcpPose;
 use twintac_sensor::Sensor;
 
@@ -85,7 +85,7 @@ pub type EmulatedPhysTac = PhysTac<Bus, LabClock, BoxedClock, TAXELS>;
 pub fn emulated_phystac(
     sensor: &Sensor,
     clock: LabClock,
-    faults: &[Fault],
+    faults: &[ScheduledFault],
 ) -> Result<EmulatedPhysTac, LiveError> {
     let settings = driver_settings(sensor)?;
     let nowhere = TcpPose {
@@ -93,8 +93,8 @@ pub fn emulated_phystac(
         roll_pitch_yaw_rad: DVec3::new(PI, 0.0, 0.0),
     };
     let ball = WanderingBall::over(sensor);
-    let scene = Scene::new(clock.clone(), ball, nowhere, ArmSettings::default());
-    let board = Board::new(scene, &emulated_board(sensor), faults)?;
+    let workcell = Workcell::new(clock.clone(), ball, nowhere, ArmSettings::default());
+    let board = Board::new(workcell, &emulated_board(sensor), faults)?;
     let now = clock.clone();
     let now: BoxedClock = Box::new(move || now.now_us());
     Ok(PhysTac::new(board.bus(), clock, now, settings))

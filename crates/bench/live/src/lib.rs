@@ -44,7 +44,7 @@ pub use reader::{FrameReader, Reading};
 pub use rows::{Format, RowWriter};
 pub use scale::{Known, PowerOn, power_on};
 pub use source::{FrameSource, Tally};
-pub use stream::{Limits, Streamed, stream_rows};
+pub use stream::{StopAfter, Streamed, stream_rows};
 pub use tare::{Tare, Taring};
 
 /// Taxels of a sensor that is read here: as many as the switch has channels.

@@ -2,7 +2,7 @@
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, propose};
+use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, scale_hint};
 use twintac_log::Screening;
 use twintac_sensor::Sensor;
 
@@ -64,7 +64,7 @@ impl PowerOn {
 /// Counts per Pa are of two's complement, as the family's data sheet has it, unless only unsigned ones reach the description's range.
 ///
 /// # Errors
-/// [`LiveError::ScaleUnconfirmed`]: nobody has; with what free air proposes. [`LiveError::ScaleContradicted`]: free air is not what
+/// [`LiveError::ScaleUnconfirmed`]: nobody has; with the scale hint of free air. [`LiveError::ScaleContradicted`]: free air is not what
 /// most taxels then read. [`LiveError::Bus`].
 pub fn power_on<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
     phystac: &mut PhysTac<I2C, D, C, N>,
@@ -116,11 +116,11 @@ struct Found {
 
 impl Found {
     fn of<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Self {
-        match propose(frame, air) {
+        match scale_hint(frame, air) {
             Ok(found) => Self {
                 counts_per_pa: Some(found.counts_per_pa),
                 text: format!(
-                    "free air proposes {} counts per Pa: the taxels then read {:.1} to {:.1} kPa",
+                    "free air hints at {} counts per Pa: the taxels then read {:.1} to {:.1} kPa",
                     found.counts_per_pa,
                     1e-3 * found.lowest_pa,
                     1e-3 * found.highest_pa
@@ -128,7 +128,7 @@ impl Found {
             },
             Err(error) => Self {
                 counts_per_pa: None,
-                text: format!("free air proposes no scale: {error}"),
+                text: format!("free air gives no scale hint: {error}"),
             },
         }
     }

@@ -7,7 +7,7 @@ use crate::{About, Format, FrameSource, LiveError, Reading, RowWriter, Tally, Ta
 
 /// When to end by oneself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Limits {
+pub struct StopAfter {
     /// After so many frames.
     pub frames: Option<u64>,
     /// After so long, s of the bench's clock, from the first frame on.
@@ -35,7 +35,7 @@ pub fn stream_rows(
     source: &mut FrameSource,
     about: &About,
     format: Format,
-    limits: Limits,
+    limits: StopAfter,
     out: impl Write,
 ) -> Result<Streamed, LiveError> {
     let mut streamed = Streamed::default();
@@ -51,7 +51,7 @@ fn write_rows(
     source: &mut FrameSource,
     about: &About,
     format: Format,
-    limits: Limits,
+    limits: StopAfter,
     out: impl Write,
     streamed: &mut Streamed,
 ) -> Result<(), LiveError> {

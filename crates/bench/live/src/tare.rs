@@ -13,7 +13,7 @@ impl Tare {
     /// Pressures above it, kPa; none of a taxel that gives none, or gave none then.
     #[must_use]
     pub fn above_kpa(&self, frame: &TactileFrame) -> Vec<Option<f64>> {
-        let above = |(taxel, baseline): (&twintac_log::Taxel, &Option<f64>)| {
+        let above = |(taxel, baseline): (&twintac_log::TaxelReading, &Option<f64>)| {
             Some(1e-3 * taxel.pressure_pa? - (*baseline)?)
         };
         frame.taxels.iter().zip(&self.baseline_kpa).map(above).collect()

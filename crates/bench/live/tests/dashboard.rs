@@ -9,14 +9,14 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::Color;
-use twintac_emulate::Fault;
-use twintac_live::dashboard::{Recorded, Recording, State, draw};
+use twintac_emulate::ScheduledFault;
+use twintac_live::dashboard::{DashboardState, RecordingStatus, TouchRecording, draw};
 use twintac_log::{Body, Event, LogReader};
 
 /// The state after so many frames.
-fn state(frames: usize, faults: &[Fault]) -> State {
+fn state(frames: usize, faults: &[ScheduledFault]) -> DashboardState {
     let (mut reader, about) = reader(faults);
-    let mut state = State::new(about).unwrap();
+    let mut state = DashboardState::new(about).unwrap();
     for _ in 0..frames {
         state.push(reader.read().unwrap());
         state.refresh().unwrap();
@@ -24,7 +24,7 @@ fn state(frames: usize, faults: &[Fault]) -> State {
     state
 }
 
-fn picture(state: &State, columns: u16, lines: u16) -> (String, Buffer) {
+fn picture(state: &DashboardState, columns: u16, lines: u16) -> (String, Buffer) {
     let mut terminal = Terminal::new(TestBackend::new(columns, lines)).unwrap();
     terminal.draw(|frame| draw(frame, state)).unwrap();
     (
@@ -42,7 +42,7 @@ fn nothing_was_read_yet() {
 fn a_press_shows_in_map_and_traces() {
     let mut state = state(300, &[gone(2, 0.5)]);
     state.tally.missed = 3;
-    state.recording = Some(Recorded {
+    state.recording = Some(RecordingStatus {
         file: "touch-0001.mcap".to_owned(),
         frames: 12,
     });
@@ -72,7 +72,7 @@ fn the_map_is_brightest_where_it_is_pressed() {
 #[test]
 fn a_tare_makes_what_is_felt_now_nothing() {
     let (mut reader, about) = reader(&[]);
-    let mut state = State::new(about).unwrap();
+    let mut state = DashboardState::new(about).unwrap();
     for _ in 0..270 {
         state.push(reader.read().unwrap());
     }
@@ -98,7 +98,7 @@ fn what_is_recorded_reads_back() {
     let folder = tempfile::tempdir().unwrap();
     let (mut reader, about) = reader(&[]);
     for number in 1..=2 {
-        let mut recording = Recording::begin(folder.path(), &about).unwrap();
+        let mut recording = TouchRecording::begin(folder.path(), &about).unwrap();
         let readings: Vec<_> = (0..50).map(|_| reader.read().unwrap()).collect();
         for reading in &readings {
             recording.push(reading).unwrap();
@@ -122,7 +122,7 @@ fn what_is_recorded_reads_back() {
 fn what_was_missed_is_marked() {
     let folder = tempfile::tempdir().unwrap();
     let (mut reader, about) = reader(&[]);
-    let mut recording = Recording::begin(folder.path(), &about).unwrap();
+    let mut recording = TouchRecording::begin(folder.path(), &about).unwrap();
     let readings: Vec<_> = (0..10).map(|_| reader.read().unwrap()).collect();
     for reading in readings
         .iter()

@@ -9,7 +9,7 @@ use glam::DVec3;
 use phystac::PhysTac;
 use twintac_emulate::i2c::{Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
-use twintac_emulate::{LabClock, Physics, Scene, Sensed};
+use twintac_emulate::{LabClock, Physics, Sensed, Workcell};
 use twintac_live::{BoxedClock, FrameReader, Known, TAXELS, driver_settings, emulated_board, power_on};
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
@@ -52,14 +52,14 @@ fn reader(board: &BoardSettings) -> FrameReader<Bus, LabClock, BoxedClock, TAXEL
         position_mm: DVec3::ZERO,
         roll_pitch_yaw_rad: DVec3::ZERO,
     };
-    let scene = Scene::new(clock.clone(), Stairs, nowhere, ArmSettings::default());
+    let workcell = Workcell::new(clock.clone(), Stairs, nowhere, ArmSettings::default());
     let mut board = board.clone();
     board.barometer.noise_pa = 0.0;
     let known = Known {
         counts_per_pa: Some(board.barometer.counts_per_pa as u16),
         ..Known::default()
     };
-    let board = Board::new(scene, &board, &[]).unwrap();
+    let board = Board::new(workcell, &board, &[]).unwrap();
     let now = clock.clone();
     let now: BoxedClock = Box::new(move || now.now_us());
     let mut phystac = PhysTac::new(board.bus(), clock, now, driver_settings(&sensor()).unwrap());

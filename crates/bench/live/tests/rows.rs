@@ -14,16 +14,16 @@ use glam::DVec3;
 use phystac::{PhysTac, Settings, Transfer};
 use twintac_emulate::i2c::{Board, BoardSettings};
 use twintac_emulate::robot::ArmSettings;
-use twintac_emulate::{Fault, Hertz, LabClock, Scene};
+use twintac_emulate::{Hertz, LabClock, ScheduledFault, Workcell};
 use twintac_live::{
-    Format, FrameReader, FrameSource, Known, Limits, LiveError, RowWriter, Taring, emulated_board,
+    Format, FrameReader, FrameSource, Known, LiveError, RowWriter, StopAfter, Taring, emulated_board,
     emulated_phystac, power_on, stream_rows,
 };
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
 
 /// So many frames as text, read and written on one thread.
-fn rows(format: Format, frames: usize, faults: &[Fault]) -> String {
+fn rows(format: Format, frames: usize, faults: &[ScheduledFault]) -> String {
     let (mut reader, about) = reader(faults);
     let mut out = Vec::new();
     let mut writer = RowWriter::new(&mut out, format, &about).unwrap();
@@ -113,10 +113,10 @@ fn a_frozen_barometer_keeps_its_counts_and_has_no_pressure() {
         position_mm: DVec3::new(0.0, 0.0, 200.0),
         roll_pitch_yaw_rad: DVec3::ZERO,
     };
-    let scene = Scene::new(clock.clone(), Hertz::default(), tool, ArmSettings::default());
+    let workcell = Workcell::new(clock.clone(), Hertz::default(), tool, ArmSettings::default());
     let mut board = BoardSettings::default();
     board.barometer.noise_pa = 0.0; // no living part reads the same again and again
-    let board = Board::new(scene, &board, &[]).unwrap();
+    let board = Board::new(workcell, &board, &[]).unwrap();
     let now = clock.clone();
     let phystac = PhysTac::new(board.bus(), clock, move || now.now_us(), Settings::<8>::default());
     let mut reader = FrameReader::new(phystac, &checked(Transfer::per_pa(32)));
@@ -152,7 +152,7 @@ fn who_does_not_take_frames_misses_them_and_the_numbers_say_which() {
 
 #[test]
 fn a_stream_ends_at_its_limits() {
-    let run = |limits: Limits| {
+    let run = |limits: StopAfter| {
         let (reader, about) = reader(&[]);
         let mut source = FrameSource::start(reader, 100_000).unwrap();
         let mut out = Vec::new();
@@ -160,13 +160,13 @@ fn a_stream_ends_at_its_limits() {
         (streamed, String::from_utf8(out).unwrap())
     };
     for frames in [0, 5, 200] {
-        let (streamed, csv) = run(Limits {
+        let (streamed, csv) = run(StopAfter {
             frames: Some(frames),
             seconds: None,
         });
         assert_eq!((streamed.rows, csv.lines().count() as u64), (frames, frames + 1));
     }
-    let (streamed, _) = run(Limits {
+    let (streamed, _) = run(StopAfter {
         frames: None,
         seconds: Some(1.5),
     });
@@ -202,7 +202,7 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
                 &mut source,
                 &about,
                 format,
-                Limits::default(),
+                StopAfter::default(),
                 Ending(20_000, kind, Arc::default()),
             )
         };
@@ -216,14 +216,14 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
 fn no_scale_is_guessed() {
     let check = |known| power_on(&mut phystac(&[]), &sensor(), &known);
     let said = check(Known::default()).unwrap_err().to_string();
-    assert!(said.contains("free air proposes 8 counts per Pa"), "{said}");
+    assert!(said.contains("free air hints at 8 counts per Pa"), "{said}");
     assert!(
         said.contains("`--scale 8`") && said.contains("`counts_per_pa = 8` under [readout]"),
         "{said}"
     );
     let said = check(scale(32)).unwrap_err().to_string();
     assert!(
-        said.contains("with 32 counts per Pa 0 of 8 taxels read free air: free air proposes 8"),
+        said.contains("with 32 counts per Pa 0 of 8 taxels read free air: free air hints at 8"),
         "{said}"
     );
     let confirmed = check(scale(8)).unwrap();
@@ -299,8 +299,8 @@ fn a_high_place_is_free_air_where_it_is_said_to_be_high() {
             position_mm: DVec3::ZERO,
             roll_pitch_yaw_rad: DVec3::ZERO,
         };
-        let scene = Scene::new(clock.clone(), High, nowhere, ArmSettings::default());
-        let board = Board::new(scene, &emulated_board(&sensor()), &[]).unwrap();
+        let workcell = Workcell::new(clock.clone(), High, nowhere, ArmSettings::default());
+        let board = Board::new(workcell, &emulated_board(&sensor()), &[]).unwrap();
         let mut phystac = PhysTac::new(board.bus(), clock, || 0, Settings::<8>::default());
         let known = Known {
             altitude_m,
@@ -318,7 +318,7 @@ fn a_high_place_is_free_air_where_it_is_said_to_be_high() {
 #[test]
 fn a_described_transfer_is_used_as_it_is() {
     let mut described = sensor();
-    let span = twintac_sensor::Transfer {
+    let span = twintac_sensor::ConfirmedTransfer {
         pa_per_count: 3_750_000.0 / 8_388_608.0,
         offset_pa: -1_000_000.0,
         signed: false,

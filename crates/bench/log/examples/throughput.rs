@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
 use twintac_log::{
-    Body, Description, LogReader, Message, PoseReading, Recorder, TactileFrame, Taxel, TaxelState,
+    Body, Description, LogReader, Message, PoseReading, Recorder, TactileFrame, TaxelReading, TaxelState,
     WrenchReading,
 };
 use twintac_recording::Provenance;
@@ -79,7 +79,7 @@ fn description() -> Description {
 }
 
 fn tactile() -> Body {
-    let taxel = Taxel {
+    let taxel = TaxelReading {
         state: TaxelState::Good,
         read_us: 0,
         counts: Some(3_242_400),

@@ -3,7 +3,7 @@
 use phystac::{Fault, Frame, Health, Thresholds, Transfer};
 use twintac_rig::{Stamp, TcpPose, WrenchSample};
 
-use crate::{CountTransfer, PoseReading, TactileFrame, Taxel, TaxelState, WrenchReading};
+use crate::{CountTransfer, PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 
 impl TactileFrame {
     /// A frame of the driver. A taxel whose counts are at an end of the range keeps them, and has no pressure.
@@ -13,7 +13,7 @@ impl TactileFrame {
         Self {
             triggered_us: frame.triggered_us,
             taxels: taxels
-                .map(|(taxel, read_us)| Taxel::from_driver(*taxel, read_us, transfer))
+                .map(|(taxel, read_us)| TaxelReading::from_driver(*taxel, read_us, transfer))
                 .collect(),
         }
     }
@@ -48,7 +48,7 @@ impl<const N: usize> Screening<N> {
     }
 }
 
-impl Taxel {
+impl TaxelReading {
     fn from_driver(taxel: Result<phystac::Sample, Fault>, read_us: u64, transfer: &Transfer) -> Self {
         let pressure_pa = taxel.and_then(|sample| transfer.pressure_pa(sample.counts));
         let count = |sample: phystac::Sample| match transfer.signed {
@@ -139,7 +139,7 @@ mod tests {
             ],
         };
         let taxels = TactileFrame::from_driver(&frame, &Transfer::per_pa(32)).taxels;
-        let good = Taxel {
+        let good = TaxelReading {
             state: TaxelState::Good,
             read_us: 11,
             counts: Some(64),

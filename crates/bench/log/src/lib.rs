@@ -46,7 +46,9 @@ pub use description::{CountTransfer, Description};
 pub use devices::Screening;
 pub use error::LogError;
 pub use event::Event;
-pub use message::{Body, Message, PoseReading, Stream, TactileFrame, Taxel, TaxelState, WrenchReading};
+pub use message::{
+    Body, Message, PoseReading, Stream, TactileFrame, TaxelReading, TaxelState, WrenchReading,
+};
 pub use press::{ReadBack, ReadOptions, presses, read_presses};
 pub use reader::{Ending, LogReader};
 pub use recorder::{LogSender, Recorded, Recorder};

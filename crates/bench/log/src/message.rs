@@ -86,12 +86,12 @@ pub struct TactileFrame {
     /// When the taxels were triggered, on the sensor's own clock, µs.
     pub triggered_us: u64,
     /// The taxels, in the order of [`Description::taxels`](crate::Description::taxels).
-    pub taxels: Vec<Taxel>,
+    pub taxels: Vec<TaxelReading>,
 }
 
 /// What one taxel gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taxel {
+pub struct TaxelReading {
     /// Whether its pressure can be used, or why not.
     pub state: TaxelState,
     /// When it was read, on the sensor's own clock, µs.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use twintac_recording::{FrameTable, TaxelCell};
 
-use crate::{Body, Ending, Event, LogError, LogReader, Stream, Taxel};
+use crate::{Body, Ending, Event, LogError, LogReader, Stream, TaxelReading};
 
 /// What was exported.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ pub fn export_frames(log: &Path, table: &Path) -> Result<Exported, LogError> {
     })
 }
 
-fn cell(taxel: &Taxel) -> TaxelCell {
+fn cell(taxel: &TaxelReading) -> TaxelCell {
     TaxelCell {
         absolute_kpa: taxel.pressure_pa.map(|pa| 1e-3 * pa),
         counts: taxel.counts,

@@ -318,7 +318,7 @@ fn presses_go_on_to_parquet() {
     let path = folder.path().join("bench.mcap");
     std::fs::write(&path, log(&description(2), &stream())).unwrap();
     let back = read_presses(&path, &ReadOptions::default()).unwrap();
-    assert_eq!(back.recording.presses[0].file, "bench.mcap");
+    assert_eq!(back.recording.presses[0].mounting, "bench.mcap");
     let parquet = folder.path().join("bench.parquet");
     back.recording.write_parquet(&parquet).unwrap();
     assert_eq!(Recording::read_parquet(&parquet).unwrap(), back.recording);

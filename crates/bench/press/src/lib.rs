@@ -30,4 +30,4 @@ pub use operator::{Mounting, Operator};
 pub use placement::Placement;
 pub use runner::{Bench, RunSummary, Runner};
 pub use settings::{Devices, PressSettings};
-pub use streams::{Heard, Source, Streams, What};
+pub use streams::{Heard, Source, StreamEvent, Streams};

@@ -1,15 +1,15 @@
 //! One press, one servo period after the other.
 
-use twintac_log::{Event as LogEvent, LogError};
+use twintac_log::{Event, LogError};
 use twintac_protocol::PressPlan;
 use twintac_recording::Control;
 use twintac_rig::{
-    Cause, Decision, Event, RigError, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench,
+    Cause, Decision, Observation, RigError, SensorLimits, Start, StreamId, Supervisor, TcpPose, Wrench,
 };
 
 use crate::journal::Journal;
 use crate::touch::Touch;
-use crate::{Arm, Heard, Motion, Phase, PressError, PressSettings, Source, What};
+use crate::{Arm, Heard, Motion, Phase, PressError, PressSettings, Source, StreamEvent};
 
 /// How long a retreat may wait for the force to be steady, s: a robot goes on for as long as it lags behind.
 const RETREAT_WAIT_S: f64 = 0.1;
@@ -101,11 +101,11 @@ impl<'a> Press<'a> {
         is_interrupted: bool,
         arm: &mut impl Arm,
     ) -> Result<Standing, LogError> {
-        for Heard { bench_s, what } in heard {
-            self.hear(now_s, bench_s, what)?;
+        for Heard { bench_s, event } in heard {
+            self.hear(now_s, bench_s, event)?;
         }
         if is_interrupted {
-            self.observe(now_s, now_s, Event::OperatorStop);
+            self.observe(now_s, now_s, Observation::OperatorStop);
         }
         self.hear_answers(now_s, arm);
         let was_stopped = self.cause().is_some();
@@ -147,7 +147,7 @@ impl<'a> Press<'a> {
         match arm.hear() {
             Ok(missing_s) => {
                 let heard_s = now_s - missing_s;
-                self.observe(heard_s, heard_s, Event::Heard(self.answers));
+                self.observe(heard_s, heard_s, Observation::Heard(self.answers));
             }
             Err(error) => self.arm_fails(now_s, &error),
         }
@@ -161,7 +161,7 @@ impl<'a> Press<'a> {
 
     fn arm_fails(&mut self, now_s: f64, error: &RigError) {
         let (stream, problem) = (StreamId::ROBOT, error.to_string());
-        self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+        self.observe(now_s, now_s, Observation::DeviceError { stream, problem });
     }
 
     fn stop(&mut self, now_s: f64, arm: &mut impl Arm) -> Result<Standing, LogError> {
@@ -174,11 +174,11 @@ impl<'a> Press<'a> {
             }
         }
         for text in self.remarks.clone() {
-            self.journal.event(now_s, LogEvent::Note { text })?;
+            self.journal.event(now_s, Event::Note { text })?;
         }
         if let Some(cause) = self.cause() {
             let cause = cause.to_string();
-            self.journal.event(now_s, LogEvent::Stopped { cause })?;
+            self.journal.event(now_s, Event::Stopped { cause })?;
         }
         Ok(Standing::Stopped)
     }
@@ -197,7 +197,7 @@ impl<'a> Press<'a> {
     }
 
     /// Tells the supervisor first; what arrived, if anything, arrived at `arrived_s`.
-    fn observe(&mut self, now_s: f64, arrived_s: f64, event: Event) {
+    fn observe(&mut self, now_s: f64, arrived_s: f64, event: Observation) {
         let was_stopped = self.cause().is_some();
         let is_stopped = self.supervisor.observe(now_s, event).is_some();
         if is_stopped && !was_stopped {
@@ -205,39 +205,39 @@ impl<'a> Press<'a> {
         }
     }
 
-    fn hear(&mut self, now_s: f64, bench_s: f64, what: What) -> Result<(), LogError> {
-        match what {
-            What::Wrench(sample) => {
+    fn hear(&mut self, now_s: f64, bench_s: f64, event: StreamEvent) -> Result<(), LogError> {
+        match event {
+            StreamEvent::Wrench(sample) => {
                 if sample.lost_before > self.settings.tolerated_loss {
                     let (stream, records) = (StreamId::FORCE, sample.lost_before.into());
-                    self.observe(now_s, bench_s, Event::DataLost { stream, records });
+                    self.observe(now_s, bench_s, Observation::DataLost { stream, records });
                 }
                 let force_n = sample.wrench.force_n - self.tare.force_n;
-                self.observe(now_s, bench_s, Event::Force(force_n));
+                self.observe(now_s, bench_s, Observation::Force(force_n));
                 self.touch
                     .hear(bench_s, force_n.dot(self.settings.placement.force_axis));
                 self.journal.wrench(&sample)
             }
-            What::Robot { pose, in_error } => {
-                self.observe(now_s, bench_s, Event::Robot { pose, in_error });
+            StreamEvent::Robot { pose, in_error } => {
+                self.observe(now_s, bench_s, Observation::Robot { pose, in_error });
                 self.measured = pose;
                 self.journal.pose(bench_s, &pose)
             }
-            What::Frame(frame) => {
-                self.observe(now_s, bench_s, Event::Heard(self.tactile));
+            StreamEvent::Frame(frame) => {
+                self.observe(now_s, bench_s, Observation::Heard(self.tactile));
                 self.journal.frame(bench_s, frame)
             }
-            What::NoFrame { problem } => {
+            StreamEvent::NoFrame { problem } => {
                 self.journal.no_frame(problem);
                 Ok(())
             }
-            What::Failed { source, problem } => {
+            StreamEvent::Failed { source, problem } => {
                 let stream = match source {
                     Source::Force => StreamId::FORCE,
                     Source::Robot => StreamId::ROBOT,
                     Source::Tactile => self.tactile,
                 };
-                self.observe(now_s, bench_s, Event::DeviceError { stream, problem });
+                self.observe(now_s, bench_s, Observation::DeviceError { stream, problem });
                 Ok(())
             }
         }
@@ -250,7 +250,7 @@ impl<'a> Press<'a> {
             let height_mm = self.settings.placement.indenter(&self.measured).position_mm.z;
             self.motion.touch(height_mm);
             let text = format!("first touch {height_mm:.3} mm above the described surface");
-            self.journal.event(now_s, LogEvent::Note { text })?;
+            self.journal.event(now_s, Event::Note { text })?;
         }
         let is_approach = self.motion.phase() == Some(Phase::Approach);
         let mut goal = self.motion.next_pose();
@@ -260,7 +260,7 @@ impl<'a> Press<'a> {
                 self.settings.search_mm
             );
             let stream = StreamId::FORCE;
-            self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+            self.observe(now_s, now_s, Observation::DeviceError { stream, problem });
             goal = Some(self.goal);
         }
         let phase = self.motion.phase();
@@ -270,7 +270,7 @@ impl<'a> Press<'a> {
             if phase == Some(Phase::Approach) && self.touch.is_touching() {
                 let problem = "there is force before the approach: the surface is higher than described, or the indenter longer";
                 let (stream, problem) = (StreamId::FORCE, problem.to_owned());
-                self.observe(now_s, now_s, Event::DeviceError { stream, problem });
+                self.observe(now_s, now_s, Observation::DeviceError { stream, problem });
             }
         }
         Ok(goal)
@@ -282,7 +282,7 @@ impl<'a> Press<'a> {
         match self.phase {
             Some(Phase::Approach) => {
                 self.has_begun = true;
-                let event = LogEvent::PressBegun {
+                let event = Event::PressBegun {
                     name,
                     indenter: self.plan.indenter.clone(),
                     control: Control::Pose,
@@ -290,7 +290,7 @@ impl<'a> Press<'a> {
                 self.journal.event(now_s, event)
             }
             Some(Phase::Travel) | None if std::mem::take(&mut self.has_begun) => {
-                self.journal.event(now_s, LogEvent::PressEnded { name })
+                self.journal.event(now_s, Event::PressEnded { name })
             }
             _ => Ok(()),
         }

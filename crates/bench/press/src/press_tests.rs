@@ -202,7 +202,7 @@ fn heard(now_s: f64, force_n: f64, pose: &TcpPose) -> Vec<Heard> {
         };
         Heard {
             bench_s: now_s - ago_s,
-            what: What::Wrench(WrenchSample {
+            event: StreamEvent::Wrench(WrenchSample {
                 stamp,
                 wrench: Wrench {
                     force_n: DVec3::NEG_Z * force_n,
@@ -223,14 +223,14 @@ fn heard(now_s: f64, force_n: f64, pose: &TcpPose) -> Vec<Heard> {
         wrench(0.001),
         Heard {
             bench_s: now_s,
-            what: What::Robot {
+            event: StreamEvent::Robot {
                 pose: *pose,
                 in_error: false,
             },
         },
         Heard {
             bench_s: now_s,
-            what: What::Frame(frame),
+            event: StreamEvent::Frame(frame),
         },
     ]
 }
@@ -320,11 +320,12 @@ fn a_gel_that_is_not_there_is_no_place_to_go_on_to() {
 
 #[test]
 fn silence_errors_losses_and_people_stop_a_press() {
-    let quiet = |heard: &mut Vec<Heard>, keep: fn(&What) -> bool| heard.retain(|heard| keep(&heard.what));
+    let quiet =
+        |heard: &mut Vec<Heard>, keep: fn(&StreamEvent) -> bool| heard.retain(|heard| keep(&heard.event));
     let late = |depth_mm: f64| depth_mm > 0.5;
     let force = Script::new(2.0).run(|_, depth_mm, heard| {
         if late(depth_mm) {
-            quiet(heard, |what| !matches!(what, What::Wrench(_)));
+            quiet(heard, |event| !matches!(event, StreamEvent::Wrench(_)));
         }
         false
     });
@@ -337,7 +338,7 @@ fn silence_errors_losses_and_people_stop_a_press() {
     );
     let taxels = Script::new(2.0).run(|_, depth_mm, heard| {
         if late(depth_mm) {
-            quiet(heard, |what| !matches!(what, What::Frame(_)));
+            quiet(heard, |event| !matches!(event, StreamEvent::Frame(_)));
         }
         false
     });
@@ -350,7 +351,7 @@ fn silence_errors_losses_and_people_stop_a_press() {
     );
     let robot = Script::new(2.0).run(|_, depth_mm, heard| {
         for heard in heard.iter_mut().filter(|_| late(depth_mm)) {
-            if let What::Robot { in_error, .. } = &mut heard.what {
+            if let StreamEvent::Robot { in_error, .. } = &mut heard.event {
                 *in_error = true;
             }
         }
@@ -360,7 +361,7 @@ fn silence_errors_losses_and_people_stop_a_press() {
     assert!(robot.arm.depth_mm() > 0.0, "no pose for a robot in error");
     let lost = Script::new(2.0).run(|_, depth_mm, heard| {
         for heard in heard.iter_mut().filter(|_| late(depth_mm)) {
-            if let What::Wrench(sample) = &mut heard.what {
+            if let StreamEvent::Wrench(sample) = &mut heard.event {
                 sample.lost_before = 1000;
             }
         }

@@ -13,7 +13,7 @@ use crate::audit::audit;
 use crate::folder::Folder;
 use crate::journal::Journal;
 use crate::press::{Press, Standing};
-use crate::{Arm, Heard, Mounting, Operator, PressError, PressSettings, Source, Streams, What};
+use crate::{Arm, Heard, Mounting, Operator, PressError, PressSettings, Source, StreamEvent, Streams};
 
 /// How long devices may take to be heard at all, before a press, s.
 const FIRST_WORDS_S: f64 = 2.0;
@@ -206,26 +206,26 @@ impl Runner {
         let (mut pose, mut frames, mut last_n) = (None, 0_u32, DVec3::ZERO);
         loop {
             std::thread::sleep(Duration::from_secs_f64(settings.servo_period_s));
-            for Heard { bench_s, what } in streams.heard() {
-                match what {
-                    What::Wrench(sample) => {
+            for Heard { bench_s, event } in streams.heard() {
+                match event {
+                    StreamEvent::Wrench(sample) => {
                         journal.wrench(&sample)?;
                         last_n = sample.wrench.force_n;
                         sum.force_n += sample.wrench.force_n;
                         sum.torque_n_mm += sample.wrench.torque_n_mm;
                         n += 1;
                     }
-                    What::Robot { in_error: true, .. } => return Ok(Err(Cause::RobotInError)),
-                    What::Robot { pose: now, .. } => {
+                    StreamEvent::Robot { in_error: true, .. } => return Ok(Err(Cause::RobotInError)),
+                    StreamEvent::Robot { pose: now, .. } => {
                         journal.pose(bench_s, &now)?;
                         pose = Some(now);
                     }
-                    What::Frame(frame) => {
+                    StreamEvent::Frame(frame) => {
                         journal.frame(bench_s, frame)?;
                         frames += 1;
                     }
-                    What::NoFrame { problem } => journal.no_frame(problem),
-                    What::Failed { source, problem } => {
+                    StreamEvent::NoFrame { problem } => journal.no_frame(problem),
+                    StreamEvent::Failed { source, problem } => {
                         let stream = source.to_string();
                         return Ok(Err(Cause::DeviceError { stream, problem }));
                     }

@@ -47,12 +47,12 @@ pub struct Heard {
     /// Time on the bench's clock, s; of a tactile frame: when its taxels were triggered.
     pub bench_s: f64,
     /// What.
-    pub what: What,
+    pub event: StreamEvent,
 }
 
 /// What a device said.
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum StreamEvent {
     /// All taxels were read.
     Frame(TactileFrame),
     /// A frame failed.
@@ -123,7 +123,7 @@ impl Streams {
         self.start("the force sensor", move |ear| {
             while ear.goes_on() {
                 match source.next_sample(WAIT) {
-                    Ok(Some(sample)) => ear.say(sample.stamp.bench_s, What::Wrench(sample)),
+                    Ok(Some(sample)) => ear.say(sample.stamp.bench_s, StreamEvent::Wrench(sample)),
                     Ok(None) => {}
                     Err(error) => return ear.fail(Source::Force, &error.to_string()),
                 }
@@ -151,7 +151,7 @@ impl Streams {
                         // It was ready once and is no more, or somebody else changed its mode.
                         let in_error = was_ready && !is_ready || has_followed && !follows;
                         let pose = report.pose;
-                        ear.say(ear.clock.now_s(), What::Robot { pose, in_error });
+                        ear.say(ear.clock.now_s(), StreamEvent::Robot { pose, in_error });
                     }
                     Ok(None) => {}
                     Err(error) => return ear.fail(Source::Robot, &error.to_string()),
@@ -183,11 +183,11 @@ impl Streams {
                         // The barometers convert while the frame is handed on. An error is found again by the next frame.
                         let _ = sensor.trigger();
                         let frame_s = frame.triggered_us as f64 * 1e-6;
-                        ear.say(frame_s, What::Frame(screening.frame(frame)));
+                        ear.say(frame_s, StreamEvent::Frame(screening.frame(frame)));
                     }
                     Err(error) => {
                         let problem = error.to_string();
-                        ear.say(ear.clock.now_s(), What::NoFrame { problem });
+                        ear.say(ear.clock.now_s(), StreamEvent::NoFrame { problem });
                         if matches!(error, Error::BusHung { .. }) {
                             sensor.recover(&mut free);
                         }
@@ -207,9 +207,9 @@ impl Streams {
     pub(crate) fn trouble(&self) -> Option<Cause> {
         let mut trouble = None;
         for heard in self.heard() {
-            let cause = match heard.what {
-                What::Robot { in_error: true, .. } => Cause::RobotInError,
-                What::Failed { source, problem } => Cause::DeviceError {
+            let cause = match heard.event {
+                StreamEvent::Robot { in_error: true, .. } => Cause::RobotInError,
+                StreamEvent::Failed { source, problem } => Cause::DeviceError {
                     stream: source.to_string(),
                     problem,
                 },
@@ -253,14 +253,14 @@ impl Ear {
         !self.is_over.load(Ordering::Relaxed)
     }
 
-    fn say(&self, bench_s: f64, what: What) {
+    fn say(&self, bench_s: f64, event: StreamEvent) {
         // Nobody hears it any more when the bench is gone.
-        let _ = self.sender.send(Heard { bench_s, what });
+        let _ = self.sender.send(Heard { bench_s, event });
     }
 
     fn fail(&self, source: Source, problem: &str) {
         let problem = problem.to_owned();
-        self.say(self.clock.now_s(), What::Failed { source, problem });
+        self.say(self.clock.now_s(), StreamEvent::Failed { source, problem });
     }
 }
 

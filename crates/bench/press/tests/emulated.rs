@@ -11,7 +11,9 @@ use glam::{DQuat, DVec3};
 use phystac::recovery::{free_bus, reset_switch};
 use phystac::{PhysTac, Thresholds, Transfer};
 use tempfile::TempDir;
-use twintac_emulate::{Fault, Hertz, LabClock, Moment, Settings, What};
+use twintac_emulate::{
+    EmulatedBench, EmulatedBenchSettings, FaultKind, Hertz, LabClock, Moment, ScheduledFault,
+};
 use twintac_log::{
     Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Screening, Stream, TaxelState,
     read_presses,
@@ -67,12 +69,12 @@ fn held_plans(count: usize, hold_s: f64) -> Vec<PressPlan> {
 }
 
 /// The emulated devices and their clients.
-fn bench() -> (twintac_emulate::Bench, Bench<Client<TcpStream>>) {
+fn bench() -> (EmulatedBench, Bench<Client<TcpStream>>) {
     let clock = LabClock::real();
-    let mut settings = Settings::default();
+    let mut settings = EmulatedBenchSettings::default();
     settings.robot.first_pose.position_mm = DVec3::new(199.0, 0.0, 103.0);
     settings.force.zero = [0.1, -0.1, 0.3, 0.0, 0.0, 0.0];
-    let devices = twintac_emulate::Bench::start(clock.clone(), Hertz::default(), &settings).unwrap();
+    let devices = EmulatedBench::start(clock.clone(), Hertz::default(), &settings).unwrap();
     let bench_clock = BenchClock::start();
     let mut streams = Streams::new(bench_clock);
     let configuration = netft::Client::read_configuration(&devices.force.page().to_string()).unwrap();
@@ -179,7 +181,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
     assert_eq!((first.lost_unmarked, second.lost_unmarked), (0, 0));
     assert!(second.frames > 30, "{second:?}");
     assert!(
-        devices.scene().now().tool.position_mm.z > 102.0,
+        devices.workcell().now().tool.position_mm.z > 102.0,
         "it ends above the gel"
     );
 
@@ -207,7 +209,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
 #[test]
 fn a_dry_run_ends_where_the_presses_do() {
     let settings = runner().settings;
-    let start = Settings::default().robot.first_pose;
+    let start = EmulatedBenchSettings::default().robot.first_pose;
     let dry = dry_run(&settings, &plans(3), &start).unwrap();
     let lowest = |press: &twintac_press::PlannedPress| {
         press
@@ -246,15 +248,15 @@ enum End {
 fn each_fault_is_marked_or_stops_the_run() {
     let some_time = Some(Moment::TimeS(0.1));
     let some_datagrams = Some(Moment::Count(10));
-    let whole_bus = What::NoAcknowledge { channel: None };
-    let one_taxel = What::NoAcknowledge { channel: Some(2) };
-    let stuck_bus = What::StuckBus { channel: None };
-    let stuck_taxel = What::StuckBus { channel: Some(4) };
-    let late = What::LateDatagrams { by_s: 0.02 };
-    let short = What::Short { channel: 3 };
-    let slow_bus = What::ClockStretch { by_s: 0.002 };
-    let restarted = What::BarometerBrownOut { channel: 5 };
-    let endless = What::EndlessConversion { channel: 1 };
+    let whole_bus = FaultKind::NoAcknowledge { channel: None };
+    let one_taxel = FaultKind::NoAcknowledge { channel: Some(2) };
+    let stuck_bus = FaultKind::StuckBus { channel: None };
+    let stuck_taxel = FaultKind::StuckBus { channel: Some(4) };
+    let late = FaultKind::LateDatagrams { by_s: 0.02 };
+    let short = FaultKind::Short { channel: 3 };
+    let slow_bus = FaultKind::ClockStretch { by_s: 0.002 };
+    let restarted = FaultKind::BarometerBrownOut { channel: 5 };
+    let endless = FaultKind::EndlessConversion { channel: 1 };
     let table = [
         (one_taxel, None, End::Note("taxel 2 is missing")),
         (whole_bus, some_time, End::Gap(Stream::Tactile)),
@@ -264,18 +266,26 @@ fn each_fault_is_marked_or_stops_the_run() {
         (short, None, End::Note("taxel 3 is isolated")),
         (slow_bus, None, End::Gap(Stream::Tactile)),
         // Where in a frame it happens decides what it costs; the mask is written again before each use.
-        (What::SwitchBrownOut, None, End::Done),
+        (FaultKind::SwitchBrownOut, None, End::Done),
         (restarted, None, End::Done),
         (endless, None, End::Note("taxel 1 is stuck")),
-        (What::LostDatagrams, some_datagrams, End::Gap(Stream::Wrench)),
-        (What::LostDatagrams, None, End::Stop("the force sensor")),
+        (FaultKind::LostDatagrams, some_datagrams, End::Gap(Stream::Wrench)),
+        (FaultKind::LostDatagrams, None, End::Stop("the force sensor")),
         (late, some_datagrams, End::Gap(Stream::Wrench)),
-        (What::DoubledDatagrams, None, End::Done),
-        (What::ReorderedDatagrams, some_datagrams, End::Gap(Stream::Wrench)),
-        (What::ConnectionReset, None, End::Stop("robot")),
-        (What::RobotError { code: 31 }, None, End::Stop("robot")),
-        (What::UnansweredRequests, None, End::Stop("the robot's answers")),
-        (What::SaturatedForce, None, End::Stop("saturation")),
+        (FaultKind::DoubledDatagrams, None, End::Done),
+        (
+            FaultKind::ReorderedDatagrams,
+            some_datagrams,
+            End::Gap(Stream::Wrench),
+        ),
+        (FaultKind::ConnectionReset, None, End::Stop("robot")),
+        (FaultKind::RobotError { code: 31 }, None, End::Stop("robot")),
+        (
+            FaultKind::UnansweredRequests,
+            None,
+            End::Stop("the robot's answers"),
+        ),
+        (FaultKind::SaturatedForce, None, End::Stop("saturation")),
     ];
     // Few at a time: each bench runs in real time.
     for few in table.chunks(3) {
@@ -292,12 +302,12 @@ const FAULT_AFTER_S: f64 = 0.8;
 /// How long its gel is held, s.
 const HOLD_S: f64 = 2.2;
 
-fn check(what: What, lasts: Option<Moment>, end: &End) {
+fn check(what: FaultKind, lasts: Option<Moment>, end: &End) {
     let folder = TempDir::new().unwrap();
     let (devices, mut bench) = bench();
     let mut inject = |_: usize, _: &PressPlan| {
-        let begins = Moment::TimeS(devices.scene().clock().now_s() + FAULT_AFTER_S);
-        devices.inject(Fault { what, begins, lasts }).unwrap();
+        let begins = Moment::TimeS(devices.workcell().clock().now_s() + FAULT_AFTER_S);
+        devices.inject(ScheduledFault { what, begins, lasts }).unwrap();
     };
     let interrupt = AtomicBool::new(false);
     let summary = runner()
@@ -361,7 +371,7 @@ impl Operator for Nobody {
 fn without_an_indenter_nothing_moves() {
     let folder = TempDir::new().unwrap();
     let (devices, mut bench) = bench();
-    let height_mm = devices.scene().now().tool.position_mm.z;
+    let height_mm = devices.workcell().now().tool.position_mm.z;
     let mut run = |answer, interrupt: bool| {
         let mut nobody = Nobody { answer, asked: 0 };
         let interrupt = AtomicBool::new(interrupt);
@@ -375,8 +385,8 @@ fn without_an_indenter_nothing_moves() {
     assert_eq!(interrupted.stopped, Some(Cause::Operator));
     // What happens meanwhile is heard.
     devices
-        .inject(Fault {
-            what: What::RobotError { code: 31 },
+        .inject(ScheduledFault {
+            what: FaultKind::RobotError { code: 31 },
             begins: Moment::Count(0),
             lasts: None,
         })
@@ -387,7 +397,7 @@ fn without_an_indenter_nothing_moves() {
         asked >= 1 && failed.remarks.join(" ").contains("31"),
         "{failed:?}"
     );
-    assert!((devices.scene().now().tool.position_mm.z - height_mm).abs() < 0.01);
+    assert!((devices.workcell().now().tool.position_mm.z - height_mm).abs() < 0.01);
     assert!(!folder.path().join("press-0001.mcap").exists());
 }
 

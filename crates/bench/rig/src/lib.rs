@@ -21,7 +21,8 @@ pub use clock::{BenchClock, Stamp};
 pub use error::{Device, RigError};
 pub use pose::TcpPose;
 pub use safety::{
-    Cause, Decision, Event, Limits, Retreat, SensorLimits, Setup, Start, StreamId, Supervisor, Workspace,
+    Cause, Decision, Limits, Observation, Retreat, SensorLimits, Setup, Start, StreamId, Supervisor,
+    Workspace,
 };
 pub use splitter::Splitter;
 pub use wrench::{

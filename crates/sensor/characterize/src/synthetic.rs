@@ -46,7 +46,7 @@ pub(crate) fn press(shape: &Shape) -> Press {
     let n = (total_s * shape.rate_hz).round() as usize + 1;
     let mut made = Press {
         name: "ball#0".into(),
-        file: "synthetic".into(),
+        mounting: "synthetic".into(),
         indenter: "ball".into(),
         control: shape.control,
         time_s: Vec::new(),

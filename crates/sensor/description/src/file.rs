@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use twintac_shape::Solid;
 
-use crate::{Inclusion, Indenter, Limits, Readout, Shell, Taxel};
+use crate::{Inclusion, Indenter, LoadLimits, Readout, Shell, Taxel};
 
 /// The file as it is written, before anything is checked.
 #[derive(Clone, Debug, Deserialize)]
@@ -22,7 +22,7 @@ pub(crate) struct SensorFile {
     pub(crate) readout: Readout,
     #[serde(default)]
     pub(crate) indenters: Vec<Indenter>,
-    pub(crate) limits: Option<Limits>,
+    pub(crate) limits: Option<LoadLimits>,
     pub(crate) import: Option<String>,
 }
 

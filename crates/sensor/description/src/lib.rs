@@ -13,8 +13,8 @@ mod material;
 mod material_table;
 mod sensor;
 
-pub use material::Material;
-pub use sensor::{Gel, Inclusion, Indenter, Limits, Readout, Sensor, Shell, Taxel, Transfer};
+pub use material::GelMaterial;
+pub use sensor::{ConfirmedTransfer, Gel, Inclusion, Indenter, LoadLimits, Readout, Sensor, Shell, Taxel};
 pub use twintac_material::{Model, PronyTerm};
 
 /// Why a description cannot be used: what is wrong with which field, in which file and line.

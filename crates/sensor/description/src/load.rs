@@ -9,7 +9,7 @@ use twintac_shape::{Shape, Solid, Surfaces, TriangleSurface};
 
 use crate::file::SensorFile;
 use crate::material_table::material;
-use crate::{Gel, Material, Sensor, SensorError};
+use crate::{Gel, GelMaterial, Sensor, SensorError};
 
 impl Sensor {
     /// Reads a description. `file` names it in errors; `load` gives the bytes of an STL file, or of a material's, by the path that
@@ -99,7 +99,7 @@ const MATERIAL: &str = "gel.material";
 fn load_material(
     document: &Document<SensorFile>,
     load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
-) -> Result<(Table, Material), SensorError> {
+) -> Result<(Table, GelMaterial), SensorError> {
     match &document.value.gel.material {
         Value::Table(table) => Ok((table.clone(), material(table, document, MATERIAL)?)),
         Value::String(path) => {

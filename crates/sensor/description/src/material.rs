@@ -4,7 +4,7 @@ use twintac_material::{Model, PronyTerm};
 
 /// A nearly incompressible rubber, at once elastic and slowly relaxing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Material {
+pub struct GelMaterial {
     /// Answer to a change of shape; its constants are instantaneous, before anything relaxes.
     pub model: Model,
     /// Resistance to a change of volume, kPa.
@@ -15,7 +15,7 @@ pub struct Material {
     pub source: String,
 }
 
-impl Material {
+impl GelMaterial {
     /// Instantaneous shear modulus at small strain, kPa.
     #[must_use]
     pub fn shear_modulus_kpa(&self) -> f64 {

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use twintac_config::{ConfigError, Document};
 use twintac_material::{Model, NeoHookean};
 
-use crate::Material;
+use crate::GelMaterial;
 
 /// A table that is read piece by piece; what is left at last are the constants of the model.
 struct Reader<'a, T> {
@@ -23,7 +23,11 @@ enum Compressibility {
 }
 
 /// The material that a table means.
-pub(crate) fn material<T>(table: &Table, document: &Document<T>, at: &str) -> Result<Material, ConfigError> {
+pub(crate) fn material<T>(
+    table: &Table,
+    document: &Document<T>,
+    at: &str,
+) -> Result<GelMaterial, ConfigError> {
     let mut reader = Reader {
         rest: table.clone(),
         document,
@@ -48,7 +52,7 @@ pub(crate) fn material<T>(table: &Table, document: &Document<T>, at: &str) -> Re
     material
         .check()
         .map_err(|found| reader.error(&found.field, found.problem, found.hint))?;
-    Ok(Material {
+    Ok(GelMaterial {
         model: material.model,
         bulk_modulus_kpa,
         prony: material.prony,

@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use twintac_shape::{Shape, Solid, Surfaces};
 
-use crate::Material;
+use crate::GelMaterial;
 
 /// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub struct Sensor {
     /// What the sensor is pressed with.
     pub indenters: Vec<Indenter>,
     /// What it stands, if that is known. A bench that presses it has to know.
-    pub limits: Option<Limits>,
+    pub limits: Option<LoadLimits>,
     /// Path, relative to the description, of the import description that reads recordings of this sensor.
     pub import: Option<String>,
     /// The triangle surfaces that the gel and the indenters name.
@@ -43,7 +43,7 @@ pub struct Gel {
     /// Its undeformed shape.
     pub solid: Solid,
     /// What it is made of.
-    pub material: Material,
+    pub material: GelMaterial,
 }
 
 /// A rigid box that stands on the board inside the gel, such as a barometer's housing.
@@ -107,13 +107,13 @@ pub struct Readout {
     pub counts_per_pa: Option<u16>,
     /// What counts stand for, confirmed, where that is not a whole number of counts per pascal from a vacuum on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub transfer: Option<Transfer>,
+    pub transfer: Option<ConfirmedTransfer>,
 }
 
 /// What the counts of a barometer stand for: `pressure_pa = pa_per_count · counts + offset_pa`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Transfer {
+pub struct ConfirmedTransfer {
     /// Pascal per count.
     pub pa_per_count: f64,
     /// Pressure at 0 counts, Pa.
@@ -126,7 +126,7 @@ pub struct Transfer {
 /// What a sensor stands. Whoever presses it may set lower limits, never higher ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Limits {
+pub struct LoadLimits {
     /// Largest force, N.
     pub force_n: f64,
     /// Largest depth below the surface at rest, mm.

@@ -45,7 +45,7 @@ pub struct Sample {
 
 /// What pressure counts stand for: `pressure = pa_per_count · counts + offset_pa`.
 ///
-/// Not the same for all parts that look alike on the bus; [`propose`](crate::propose) finds it in free air.
+/// Not the same for all parts that look alike on the bus; [`scale_hint`](crate::scale_hint) finds it in free air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transfer {
     /// Pascal per count.

@@ -30,5 +30,5 @@ pub use fault::Fault;
 pub use frame::Frame;
 pub use health::{Drift, Health, Thresholds};
 pub use register::Oversampling;
-pub use scale::{FreeAir, Proposal, SCALES_PER_PA, ScaleError, propose};
+pub use scale::{FreeAir, SCALES_PER_PA, ScaleError, ScaleHint, scale_hint};
 pub use settings::{Patience, Settings};

@@ -53,10 +53,10 @@ impl Default for FreeAir {
     }
 }
 
-/// A scale that makes free air of what all taxels read: a proposal, until somebody confirms it.
+/// A scale that makes free air of what all taxels read: a hint, until somebody confirms it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use = "a proposal is no transfer until it is confirmed"]
-pub struct Proposal {
+#[must_use = "a scale hint is no transfer until it is confirmed"]
+pub struct ScaleHint {
     /// Counts per Pa.
     pub counts_per_pa: u16,
     /// The lowest pressure that a taxel then reads, Pa.
@@ -65,7 +65,7 @@ pub struct Proposal {
     pub highest_pa: f32,
 }
 
-impl Proposal {
+impl ScaleHint {
     /// The transfer, now that somebody who knows the part has agreed.
     ///
     /// The atmosphere does not tell whether counts are `signed`. The range does: if the part's is beyond the signed transfer's
@@ -79,19 +79,19 @@ impl Proposal {
     }
 }
 
-/// Proposes the scale with which all taxels of a frame, taken with nothing touching the sensor, read free air.
+/// The scale with which all taxels of a frame, taken with nothing touching the sensor, read free air.
 ///
 /// Taxels that gave nothing do not vote.
 ///
 /// # Errors
 /// If that is not exactly one scale.
-pub fn propose<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<Proposal, ScaleError> {
-    let mut proposal = None;
+pub fn scale_hint<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<ScaleHint, ScaleError> {
+    let mut hint = None;
     for (taxel, sample) in frame.taxels.iter().enumerate() {
         let Ok(sample) = sample else { continue };
         let counts_per_pa = scale_of(taxel, sample.counts, air)?;
         let pressure_pa = pressure_pa(sample.counts, counts_per_pa);
-        let so_far = *proposal.get_or_insert(Proposal {
+        let so_far = *hint.get_or_insert(ScaleHint {
             counts_per_pa,
             lowest_pa: pressure_pa,
             highest_pa: pressure_pa,
@@ -100,13 +100,13 @@ pub fn propose<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<Proposa
             let scales_per_pa = [so_far.counts_per_pa, counts_per_pa];
             return Err(ScaleError::Disagreement { taxel, scales_per_pa });
         }
-        proposal = Some(Proposal {
+        hint = Some(ScaleHint {
             counts_per_pa,
             lowest_pa: so_far.lowest_pa.min(pressure_pa),
             highest_pa: so_far.highest_pa.max(pressure_pa),
         });
     }
-    proposal.ok_or(ScaleError::NoSample)
+    hint.ok_or(ScaleError::NoSample)
 }
 
 /// The one scale, counts per Pa, with which a taxel reads free air.
@@ -129,7 +129,7 @@ fn pressure_pa(counts: Counts, counts_per_pa: u16) -> f32 {
     counts.signed() as f32 / f32::from(counts_per_pa)
 }
 
-/// Why no scale is proposed.
+/// Why there is no scale hint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScaleError {
     /// No taxel gave a value.
@@ -229,28 +229,28 @@ mod tests {
             (6_484_800, 64),
         ];
         for (number, counts_per_pa) in counts {
-            let proposal = propose(&frame([Some(number), None]), FreeAir::default());
-            let expected = Proposal {
+            let hint = scale_hint(&frame([Some(number), None]), FreeAir::default());
+            let expected = ScaleHint {
                 counts_per_pa,
                 lowest_pa: 101_325.0,
                 highest_pa: 101_325.0,
             };
-            assert_eq!(proposal, Ok(expected));
+            assert_eq!(hint, Ok(expected));
         }
     }
 
     #[test]
     fn what_is_not_clear_is_not_guessed() {
         let air = FreeAir::default();
-        assert_eq!(propose(&frame([None, None]), air), Err(ScaleError::NoSample));
+        assert_eq!(scale_hint(&frame([None, None]), air), Err(ScaleError::NoSample));
         for number in [0, -3_242_400, 0x7F_FFFF, -0x80_0000, 2_300_000] {
             let counts = frame([Some(number)]).taxels[0].unwrap().counts;
             assert_eq!(
-                propose(&frame([None, Some(number)]), air),
+                scale_hint(&frame([None, Some(number)]), air),
                 Err(ScaleError::NoScale { taxel: 1, counts })
             );
         }
-        let mixed = propose(&frame([Some(3_242_400), Some(3_242_401), Some(405_300)]), air);
+        let mixed = scale_hint(&frame([Some(3_242_400), Some(3_242_401), Some(405_300)]), air);
         assert_eq!(
             mixed,
             Err(ScaleError::Disagreement {
@@ -262,7 +262,7 @@ mod tests {
             lowest_pa: 30_000.0,
             ..air
         };
-        let unclear = propose(&frame([Some(3_242_400)]), anywhere);
+        let unclear = scale_hint(&frame([Some(3_242_400)]), anywhere);
         assert!(matches!(
             unclear,
             Err(ScaleError::Ambiguous {
@@ -292,27 +292,27 @@ mod tests {
         }
         let in_la_paz = FreeAir::at_altitude_m(3640.0);
         assert_eq!(
-            propose(&frame([Some(65_000 * 16)]), in_la_paz).map(|found| found.counts_per_pa),
+            scale_hint(&frame([Some(65_000 * 16)]), in_la_paz).map(|found| found.counts_per_pa),
             Ok(16)
         );
     }
 
     #[test]
     fn the_range_decides_whether_counts_are_signed() {
-        let proposal = propose(&frame([Some(810_600)]), FreeAir::default()).unwrap();
-        assert!(proposal.confirm(true).full_scale_pa() < 1_500_000.0);
-        assert!(proposal.confirm(false).full_scale_pa() > 1_500_000.0);
+        let hint = scale_hint(&frame([Some(810_600)]), FreeAir::default()).unwrap();
+        assert!(hint.confirm(true).full_scale_pa() < 1_500_000.0);
+        assert!(hint.confirm(false).full_scale_pa() > 1_500_000.0);
     }
 
     proptest! {
         #[test]
-        fn any_weather_below_2000_m_proposes_the_true_scale(
+        fn any_weather_below_2000_m_hints_at_the_true_scale(
             pressure_pa in 80_001_f32..107_999.0,
             scale in 0_usize..SCALES_PER_PA.len(),
         ) {
             let per_pa = SCALES_PER_PA[scale];
             let number = (pressure_pa * f32::from(per_pa)) as i32;
-            let found = propose(&frame([Some(number)]), FreeAir::default()).unwrap();
+            let found = scale_hint(&frame([Some(number)]), FreeAir::default()).unwrap();
             prop_assert_eq!(found.counts_per_pa, per_pa);
         }
     }

@@ -53,7 +53,7 @@ mod tests {
     fn recording(names: &[&str]) -> Recording {
         let press = |name: &&str| Press {
             name: (*name).to_owned(),
-            file: "press.mcap".to_owned(),
+            mounting: "press.mcap".to_owned(),
             indenter: "ball".to_owned(),
             control: Control::Pose,
             time_s: Vec::new(),

@@ -42,9 +42,9 @@ impl std::fmt::Display for Control {
 pub struct Press {
     /// Unique in its recording: `<file stem>#<number>`, the number from 1.
     pub name: String,
-    /// Name of the file that it was read from, without folders; of presses that a bench recorded, what was mounted. All presses of a file
-    /// were made with the gel at one height.
-    pub file: String,
+    /// How gel and indenter were mounted on the bench. Presses of one mounting were made with the gel at one height. For presses of a CSV
+    /// file: the file's name without folders. For presses that a bench recorded: the name of the indenter that was mounted.
+    pub mounting: String,
     /// Name of the indenter in the sensor description.
     pub indenter: String,
     /// What drove the indenter.

@@ -98,7 +98,7 @@ fn presses_come_with_poses_zeros_and_lags() {
     );
     for (press, x_mm) in recording.presses.iter().zip([-1.0, -0.5]) {
         assert_eq!(
-            (press.file.as_str(), press.indenter.as_str(), press.control),
+            (press.mounting.as_str(), press.indenter.as_str(), press.control),
             ("run.csv", "ball", Control::Pose)
         );
         assert_eq!(press.force_n, None);

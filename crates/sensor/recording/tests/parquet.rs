@@ -30,7 +30,7 @@ fn press(taxels: usize) -> impl Strategy<Value = Press> {
     );
     let frames = proptest::collection::vec(frame, 1..30);
     ("\\PC{0,12}", "\\PC{1,8}", any::<bool>(), any::<bool>(), frames).prop_map(
-        |(file, indenter, is_force, has_force, frames)| {
+        |(mounting, indenter, is_force, has_force, frames)| {
             let mut time_s = 0.0;
             let times = frames.iter().map(|frame| {
                 time_s += frame.0;
@@ -42,7 +42,7 @@ fn press(taxels: usize) -> impl Strategy<Value = Press> {
             };
             Press {
                 name: String::new(),
-                file,
+                mounting,
                 indenter,
                 control: if is_force { Control::Force } else { Control::Pose },
                 time_s: times.collect(),
@@ -95,7 +95,7 @@ fn recording() -> impl Strategy<Value = Recording> {
 fn example() -> Recording {
     let press = |name: &str, force_n: Option<Vec<f64>>| Press {
         name: name.to_owned(),
-        file: "bench.csv".to_owned(),
+        mounting: "bench.csv".to_owned(),
         indenter: "tip".to_owned(),
         control: Control::Pose,
         time_s: vec![0.0, 0.1, 0.2],

@@ -85,7 +85,7 @@ fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usi
     for &index in train {
         let press = &recording.presses[index];
         let place = places.of_press[index];
-        by_file.entry(&press.file).or_default().insert(place);
+        by_file.entry(&press.mounting).or_default().insert(place);
         let most = most.entry(place).or_insert((0, 0.0));
         for (row, valid) in press.taxels_kpa.iter().zip(&press.valid) {
             for taxel in (0..row.len()).filter(|&taxel| valid[taxel]) {
@@ -136,7 +136,7 @@ impl Problem<'_> {
             .presses
             .iter()
             .filter(|p| p.press.control == Control::Pose)
-            .map(|p| p.press.file.clone());
+            .map(|p| p.press.mounting.clone());
         let ln_radius = match (self.ln_radii.first(), self.ln_radii.last()) {
             (Some(low), Some(high)) => [*low, *high],
             _ => [0.0, 0.0],

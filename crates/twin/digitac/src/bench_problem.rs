@@ -203,7 +203,7 @@ impl<'a> Problem<'a> {
             let mut failure = None;
             let mut bench = Bench::nominal();
             let at = |extra_mm: f64| {
-                bench.contact_offset_elsewhere_mm = best.offsets_mm[&p.press.file] + extra_mm;
+                bench.contact_offset_elsewhere_mm = best.offsets_mm[&p.press.mounting] + extra_mm;
                 match Features::along(&tables[p.place], &p.press, p.touch_z_mm, &bench) {
                     Ok(features) => self.own_deviation(&p.press, &gains.readings_kpa(&features)),
                     Err(error) => {

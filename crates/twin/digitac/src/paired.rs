@@ -81,7 +81,7 @@ impl Features {
             Control::Force => bench.stiffness(),
         };
         let depth_mm = match press.control {
-            Control::Pose => depths_mm(press, touch_z_mm, bench.contact_offset_mm(&press.file)),
+            Control::Pose => depths_mm(press, touch_z_mm, bench.contact_offset_mm(&press.mounting)),
             Control::Force => {
                 let force_n = press.force_n.as_ref();
                 let force_n = force_n
@@ -233,7 +233,7 @@ fn pair_press(
     });
     Ok(PairedPress {
         name: press.name.clone(),
-        file: press.file.clone(),
+        file: press.mounting.clone(),
         indenter: press.indenter.clone(),
         place_mm: deepest_pose(press)?.position_mm.truncate().to_array(),
         features,

@@ -209,7 +209,9 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
     let known_mm = made.bench.contact_offset_mm("file0");
     truth.offsets_mm = vec![truth.offsets_mm[0] + 0.07];
     let mut new = truth.recording(21);
-    new.presses.iter_mut().for_each(|press| press.file = "new".into());
+    new.presses
+        .iter_mut()
+        .for_each(|press| press.mounting = "new".into());
     let places = Places::of(&new, &Formula, &PlaceSettings::default()).unwrap();
     let places = places.at_bench(&made.bench);
     let sweeps = Formula.sweeps(&places.requests).unwrap();

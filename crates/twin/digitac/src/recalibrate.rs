@@ -51,7 +51,7 @@ pub fn recalibrate(
         .presses
         .iter()
         .enumerate()
-        .filter(|(_, p)| p.file == file && p.control == Control::Pose);
+        .filter(|(_, p)| p.mounting == file && p.control == Control::Pose);
     let of_file: Vec<usize> = of_file.map(|(index, _)| index).collect();
     if of_file.len() <= N_PRESSES {
         return Ok(None);

@@ -77,7 +77,7 @@ impl Split {
             test: Vec::new(),
         };
         for (index, press) in presses.iter().enumerate() {
-            if settings.test_files.contains(&press.file) {
+            if settings.test_files.contains(&press.mounting) {
                 split.test.push(index);
             } else {
                 groups
@@ -90,7 +90,7 @@ impl Split {
         let mut in_file: BTreeMap<&str, Vec<Place<'_>>> = BTreeMap::new();
         for press in presses {
             in_file
-                .entry(&press.file)
+                .entry(&press.mounting)
                 .or_default()
                 .push(place(press, settings.block_mm)?);
         }
@@ -205,7 +205,7 @@ mod tests {
         recording
             .presses
             .iter_mut()
-            .for_each(|press| press.file = "file".into());
+            .for_each(|press| press.mounting = "file".into());
         recording
     }
 
@@ -231,7 +231,7 @@ mod tests {
         let mut recording = line(12, 2);
         recording.presses[12..]
             .iter_mut()
-            .for_each(|press| press.file = "other".into());
+            .for_each(|press| press.mounting = "other".into());
         let test_files = BTreeSet::from(["other".to_owned()]);
         let split = Split::new(
             &recording,

@@ -166,7 +166,7 @@ impl Truth {
         let n_frames = time_s.len();
         Press {
             name: format!("{file}#{number}"),
-            file: file.into(),
+            mounting: file.into(),
             indenter: "tip".into(),
             control: Control::Pose,
             time_s,

@@ -423,7 +423,7 @@ pub struct Fields<'a> {
     pub von_mises_kpa: Vec<f64>,
 }
 
-fn soft_material(material: &twintac_sensor::Material) -> Material {
+fn soft_material(material: &twintac_sensor::GelMaterial) -> Material {
     Material {
         model: material.model.clone(),
         bulk_modulus_kpa: material.bulk_modulus_kpa,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use twintac_live::{Format, Known, Limits, Live, Tally, dashboard, stream_rows};
+use twintac_live::{Format, Known, Live, StopAfter, Tally, dashboard, stream_rows};
 
 use crate::arguments::{RowFormat, Stream};
 use crate::progress::say;
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
         Some(RowFormat::Csv) => Format::Csv,
         Some(RowFormat::Jsonl) => Format::JsonLines,
     };
-    let limits = Limits {
+    let limits = StopAfter {
         frames: arguments.frames,
         seconds: arguments.seconds,
     };

@@ -208,7 +208,7 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
 }
 
 fn new_files(recording: &Recording, known: &BTreeMap<String, Estimate>) -> BTreeSet<String> {
-    let files = recording.presses.iter().map(|press| press.file.clone());
+    let files = recording.presses.iter().map(|press| press.mounting.clone());
     files.filter(|file| !known.contains_key(file)).collect()
 }
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use twintac_lab::{Bench, LabError, LiveTable, Reality};
+use twintac_lab::{Lab, LabError, LiveTable, Reality};
 use twintac_log::ReadOptions;
 use twintac_protocol::{LoadPlan, PressPlan, Protocol, Target};
 use twintac_recording::{Import, ImportSummary, Recording};
@@ -40,23 +40,23 @@ impl Run {
             .settings("loads", &loads)?
             .file(&self.folder.join("sensor.toml"))?;
         self.run_stage("recordings", inputs, |folder| {
-            let bench = Bench::new(Arc::clone(&self.sensor.sensor), reality.clone());
+            let lab = Lab::new(Arc::clone(&self.sensor.sensor), reality.clone());
             let keep = folder.join("presses");
             let mut presses = kept(
                 "recording",
                 plans,
                 |plan| &plan.name,
                 &keep,
-                |plan| bench.press(plan),
+                |plan| lab.press(plan),
             )?;
             presses.extend(kept(
                 "weighing",
                 loads,
                 |load| &load.name,
                 &keep,
-                |load| bench.load(load),
+                |load| lab.load(load),
             )?);
-            let recording = bench.recording(presses);
+            let recording = lab.recording(presses);
             recording.write_parquet(&folder.join("presses.parquet"))?;
             write_json(&folder.join("plans.json"), &plans)?;
             if loads.is_empty() {
@@ -69,7 +69,7 @@ impl Run {
     /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
     pub(crate) fn live_tables(
         &self,
-        lab: &Bench,
+        lab: &Lab,
         reality: &Reality,
         plans: &[PressPlan],
     ) -> Result<Vec<LiveTable>> {
@@ -106,7 +106,7 @@ impl Run {
                 let mut read = twintac_log::read_presses(file, &ReadOptions::default())?;
                 for press in &mut read.recording.presses {
                     // Every press has a log of its own; what they share is how the indenter was mounted.
-                    press.file.clone_from(&press.indenter);
+                    press.mounting.clone_from(&press.indenter);
                 }
                 remarks.extend(read.remarks.into_iter().map(|remark| (file.clone(), remark)));
                 match &mut recording {

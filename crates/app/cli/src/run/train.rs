@@ -135,7 +135,11 @@ impl Run {
 }
 
 fn files(recording: &twintac_recording::Recording) -> Vec<String> {
-    let mut files: Vec<String> = recording.presses.iter().map(|press| press.file.clone()).collect();
+    let mut files: Vec<String> = recording
+        .presses
+        .iter()
+        .map(|press| press.mounting.clone())
+        .collect();
     files.sort_unstable();
     files.dedup();
     files

@@ -7,17 +7,17 @@ use super::ForceSettings;
 use crate::chance::Chance;
 use crate::clock::{nanoseconds, seconds};
 use crate::schedule::Schedule;
-use crate::{EmulateError, Fault, Scene, What, Wire};
+use crate::{EmulateError, FaultKind, FaultWire, ScheduledFault, Workcell};
 
 const SATURATED: u32 = 0x8002_0000;
 const MONITOR_LATCHED: u32 = 0x8001_0000;
 
-/// The sensor: requests in, datagrams out. It has no sockets, and no time but its scene's.
+/// The sensor: requests in, datagrams out. It has no sockets, and no time but its workcell's.
 #[derive(Debug)]
 pub struct ForceSensor {
     settings: ForceSettings,
     configuration: Configuration,
-    scene: Scene,
+    workcell: Workcell,
     schedule: Schedule,
     chance: Chance,
     bias: [f64; 6],
@@ -48,28 +48,32 @@ struct Stream {
 }
 
 impl ForceSensor {
-    /// The sensor in a scene, with the faults that are its own.
+    /// The sensor in a workcell, with the faults that are its own.
     ///
     /// # Errors
     /// A setting or a fault that makes no sense.
-    pub fn new(scene: Scene, settings: ForceSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+    pub fn new(
+        workcell: Workcell,
+        settings: ForceSettings,
+        faults: &[ScheduledFault],
+    ) -> Result<Self, EmulateError> {
         settings.check()?;
         crate::fault::check_faults(faults)?;
         Ok(Self {
             configuration: settings.configuration(),
-            schedule: Schedule::new(faults, Wire::Force),
+            schedule: Schedule::new(faults, FaultWire::Force),
             chance: Chance::new(settings.seed, "force"),
             bias: [0.0; 6],
             is_latched: false,
             stream: None,
             under_way: Vec::new(),
             overtaken: None,
-            scene,
+            workcell,
             settings,
         })
     }
 
-    pub(crate) fn inject(&mut self, fault: Fault) {
+    pub(crate) fn inject(&mut self, fault: ScheduledFault) {
         self.schedule.add(fault);
     }
 
@@ -84,7 +88,7 @@ impl ForceSensor {
         let Ok(request) = Request::decode(datagram) else {
             return false;
         };
-        let now_ns = self.scene.clock().now_ns();
+        let now_ns = self.workcell.clock().now_ns();
         let records_per_datagram = match request.command {
             Command::Stop => {
                 self.stream = None;
@@ -114,7 +118,7 @@ impl ForceSensor {
 
     /// The datagrams that go out until now, in their order.
     pub fn due(&mut self) -> Vec<Outgoing> {
-        let now_ns = self.scene.clock().now_ns();
+        let now_ns = self.workcell.clock().now_ns();
         while let Some(at_ns) = self.next_record_ns().filter(|at_ns| *at_ns <= now_ns) {
             let record = self.record(at_ns);
             let Some(stream) = &mut self.stream else { break };
@@ -158,7 +162,7 @@ impl ForceSensor {
         let mut axes = self.measure(at_ns);
         let mut is_saturated = false;
         for (axis, most) in axes.iter_mut().zip(self.settings.range) {
-            if self.schedule.has(What::SaturatedForce) {
+            if self.schedule.has(FaultKind::SaturatedForce) {
                 *axis = most;
             }
             is_saturated |= axis.abs() >= most;
@@ -187,7 +191,7 @@ impl ForceSensor {
 
     /// What the gauges say, before any bias.
     fn measure(&mut self, at_ns: u64) -> [f64; 6] {
-        let Wrench { force_n, torque_n_mm } = self.scene.at_ns(at_ns).sensed.wrench;
+        let Wrench { force_n, torque_n_mm } = self.workcell.at_ns(at_ns).sensed.wrench;
         let mut axes = [
             force_n.x,
             force_n.y,
@@ -210,21 +214,21 @@ impl ForceSensor {
     /// Puts a datagram on its way, as far as faults let it.
     fn send(&mut self, at_ns: u64, datagram: Vec<u8>) {
         self.schedule.next_event(seconds(at_ns));
-        if self.schedule.has(What::LostDatagrams) {
+        if self.schedule.has(FaultKind::LostDatagrams) {
             return;
         }
         let delays = self.schedule.active().map(|what| match what {
-            What::LateDatagrams { by_s } => by_s,
+            FaultKind::LateDatagrams { by_s } => by_s,
             _ => 0.0,
         });
         let late_s: f64 = delays.sum();
         let at_ns = at_ns + nanoseconds(late_s);
-        let times = if self.schedule.has(What::DoubledDatagrams) {
+        let times = if self.schedule.has(FaultKind::DoubledDatagrams) {
             2
         } else {
             1
         };
-        if self.schedule.has(What::ReorderedDatagrams) && self.overtaken.is_none() {
+        if self.schedule.has(FaultKind::ReorderedDatagrams) && self.overtaken.is_none() {
             self.overtaken = Some(datagram);
             return;
         }

@@ -10,7 +10,7 @@ use twintac_rig::netft::PAGE;
 use super::{ForceSensor, ForceSettings};
 use crate::robot::listen;
 use crate::worker::{Over, Worker, locked};
-use crate::{EmulateError, Fault, Scene};
+use crate::{EmulateError, ScheduledFault, Workcell};
 
 /// How long a thread looks away from its socket.
 const GLANCE: Duration = Duration::from_millis(1);
@@ -31,9 +31,13 @@ impl ForceServer {
     ///
     /// # Errors
     /// A setting or a fault that makes no sense, a port that is taken, no thread.
-    pub fn start(scene: Scene, settings: ForceSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+    pub fn start(
+        workcell: Workcell,
+        settings: ForceSettings,
+        faults: &[ScheduledFault],
+    ) -> Result<Self, EmulateError> {
         let [udp_port, tcp_port] = settings.ports;
-        let sensor = ForceSensor::new(scene.clone(), settings, faults)?;
+        let sensor = ForceSensor::new(workcell.clone(), settings, faults)?;
         let page_text = sensor.configuration().to_xml();
         let sensor = Arc::new(Mutex::new(sensor));
         let opened = UdpSocket::bind((Ipv4Addr::LOCALHOST, udp_port)).and_then(|socket| {
@@ -48,7 +52,7 @@ impl ForceServer {
         let (listener, page) = listen(tcp_port, "the force sensor's page")?;
         let streams = Worker::start("force records", {
             let sensor = Arc::clone(&sensor);
-            move |over| stream(&socket, &scene, &sensor, over)
+            move |over| stream(&socket, &workcell, &sensor, over)
         })?;
         let pages = Worker::start("force page", move |over| show(&listener, &page_text, over))?;
         Ok(Self {
@@ -78,7 +82,7 @@ impl ForceServer {
 }
 
 /// Hears requests, and sends what is due to whoever asked last.
-fn stream(socket: &UdpSocket, scene: &Scene, sensor: &Mutex<ForceSensor>, over: &Over) {
+fn stream(socket: &UdpSocket, workcell: &Workcell, sensor: &Mutex<ForceSensor>, over: &Over) {
     let mut client = None;
     let mut bytes = [0; 64];
     while !over.is_over() {
@@ -97,7 +101,7 @@ fn stream(socket: &UdpSocket, scene: &Scene, sensor: &Mutex<ForceSensor>, over: 
             }
             sensor.next_due_ns().unwrap_or(u64::MAX)
         };
-        scene.clock().rest_until_ns(next_due_ns, GLANCE);
+        workcell.clock().rest_until_ns(next_due_ns, GLANCE);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::BarometerSettings;
 use crate::chance::Chance;
 use crate::clock::nanoseconds;
-use crate::{Scene, Sensed};
+use crate::{Sensed, Workcell};
 
 const STATUS: u8 = 0x02;
 const DATA: u8 = 0x06;
@@ -123,14 +123,14 @@ impl Barometer {
     }
 
     /// Ends the conversions that have ended by now, unless none does.
-    pub(super) fn settle(&mut self, now_ns: u64, scene: &Scene, is_endless: bool) {
+    pub(super) fn settle(&mut self, now_ns: u64, workcell: &Workcell, is_endless: bool) {
         while let Some(conversion) = self.conversion
             && conversion.ends_ns <= now_ns
             && !is_endless
         {
             // A conversion averages: what it finds is closest to what was half-way.
             let half_ns = conversion.begun_ns.midpoint(conversion.ends_ns);
-            self.store(&scene.at_ns(half_ns).sensed, conversion.code);
+            self.store(&workcell.at_ns(half_ns).sensed, conversion.code);
             self.conversion = None;
             if conversion.code == PERIODIC {
                 let sleeps_ns = SLEEP_NS * u64::from(self.command >> 4);

@@ -12,7 +12,7 @@ use super::{BoardSettings, ClockLine, DataLine, ResetLine};
 use crate::clock::{nanoseconds, seconds};
 use crate::schedule::Schedule;
 use crate::worker::locked;
-use crate::{CHANNELS, EmulateError, Fault, Scene, What, Wire};
+use crate::{CHANNELS, EmulateError, FaultKind, FaultWire, ScheduledFault, Workcell};
 
 /// Clocks after which whoever holds the data line has sent its byte.
 const HELD_CLOCKS: u8 = 9;
@@ -24,7 +24,7 @@ const MOST_LATE_NS: u64 = 5_000_000;
 #[derive(Clone)]
 pub struct Board {
     parts: Arc<Mutex<Parts>>,
-    scene: Scene,
+    workcell: Workcell,
     period_ns: f64,
     timeout_ns: u64,
 }
@@ -49,11 +49,15 @@ pub(super) struct Parts {
 }
 
 impl Board {
-    /// A board in a scene, with the faults that show on its bus.
+    /// A board in a workcell, with the faults that show on its bus.
     ///
     /// # Errors
     /// A setting or a fault that makes no sense.
-    pub fn new(scene: Scene, settings: &BoardSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+    pub fn new(
+        workcell: Workcell,
+        settings: &BoardSettings,
+        faults: &[ScheduledFault],
+    ) -> Result<Self, EmulateError> {
         settings.check()?;
         crate::fault::check_faults(faults)?;
         let barometer = |channel: usize| {
@@ -65,17 +69,17 @@ impl Board {
                 switch_address: settings.switch_address,
                 switch: Switch::default(),
                 barometers: std::array::from_fn(barometer),
-                schedule: Schedule::new(faults, Wire::I2c),
+                schedule: Schedule::new(faults, FaultWire::I2c),
                 held_clocks: [0; CHANNELS + 1],
                 late_ns: 0,
             })),
-            scene,
+            workcell,
             period_ns: 1e9 / settings.bus_hz,
             timeout_ns: nanoseconds(settings.timeout_s),
         })
     }
 
-    pub(crate) fn inject(&self, fault: Fault) {
+    pub(crate) fn inject(&self, fault: ScheduledFault) {
         locked(&self.parts).schedule.add(fault);
     }
 
@@ -118,20 +122,21 @@ impl Board {
     }
 
     fn transaction(&self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
-        let clock = self.scene.clock();
+        let clock = self.workcell.clock();
         let begun_ns = clock.now_ns();
         let (result, ends_ns) = {
             let mut parts = locked(&self.parts);
             parts.misbehave(begun_ns);
             let stretches = parts.schedule.active().map(|what| match what {
-                What::ClockStretch { by_s } => by_s,
+                FaultKind::ClockStretch { by_s } => by_s,
                 _ => 0.0,
             });
             let stretched_s: f64 = stretches.sum();
             if parts.is_held() {
                 (Err(ErrorKind::Bus), begun_ns + self.timeout_ns)
             } else {
-                let mut transaction = Transaction::begin(&mut parts, &self.scene, begun_ns, self.period_ns);
+                let mut transaction =
+                    Transaction::begin(&mut parts, &self.workcell, begun_ns, self.period_ns);
                 let result = transaction.carry_out(address, operations);
                 (result, transaction.stop() + nanoseconds(stretched_s))
             }
@@ -143,7 +148,7 @@ impl Board {
     /// Waits for the end of a transaction. The operating system wakes late, by about the time of a transaction: what one took too long, the
     /// next ones are shorter.
     fn pace(&self, ends_ns: u64) {
-        let clock = self.scene.clock();
+        let clock = self.workcell.clock();
         let due_ns = ends_ns.saturating_sub(locked(&self.parts).late_ns);
         clock.wait_until_ns(due_ns);
         locked(&self.parts).late_ns = (clock.now_ns() - due_ns).min(MOST_LATE_NS);
@@ -154,10 +159,9 @@ impl Parts {
     /// Whether somebody holds the data line on the controller's side of the switch.
     pub(super) fn is_held(&self) -> bool {
         self.holders().next().is_some()
-            || self
-                .schedule
-                .active()
-                .any(|what| matches!(what, What::Short { channel } if self.switch.mask() >> channel & 1 == 1))
+            || self.schedule.active().any(
+                |what| matches!(what, FaultKind::Short { channel } if self.switch.mask() >> channel & 1 == 1),
+            )
     }
 
     /// Those who hold the data line until they get their clocks, and whom clocks reach.
@@ -185,11 +189,11 @@ impl Parts {
         let happened = self.schedule.next_event(seconds(now_ns));
         for what in happened {
             match what {
-                What::StuckBus { channel } => {
+                FaultKind::StuckBus { channel } => {
                     self.held_clocks[channel.map_or(CHANNELS, usize::from)] = HELD_CLOCKS;
                 }
-                What::SwitchBrownOut => self.switch.reset(),
-                What::BarometerBrownOut { channel } => {
+                FaultKind::SwitchBrownOut => self.switch.reset(),
+                FaultKind::BarometerBrownOut { channel } => {
                     self.barometers[usize::from(channel)]
                         .iter_mut()
                         .for_each(Barometer::wake_up);

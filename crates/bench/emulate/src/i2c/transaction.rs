@@ -4,7 +4,7 @@ use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 
 use super::barometer::Barometer;
 use super::board::Parts;
-use crate::{Scene, What};
+use crate::{FaultKind, Workcell};
 
 /// Every barometer's 7-bit address.
 const BAROMETER: u8 = 0x6D;
@@ -12,17 +12,17 @@ const BAROMETER: u8 = 0x6D;
 /// A transaction, byte by byte.
 pub(super) struct Transaction<'a> {
     parts: &'a mut Parts,
-    scene: &'a Scene,
+    workcell: &'a Workcell,
     begun_ns: u64,
     period_ns: f64,
     clocks: u32,
 }
 
 impl<'a> Transaction<'a> {
-    pub(super) fn begin(parts: &'a mut Parts, scene: &'a Scene, begun_ns: u64, period_ns: f64) -> Self {
+    pub(super) fn begin(parts: &'a mut Parts, workcell: &'a Workcell, begun_ns: u64, period_ns: f64) -> Self {
         Self {
             parts,
-            scene,
+            workcell,
             begun_ns,
             period_ns,
             clocks: 0,
@@ -99,7 +99,10 @@ impl<'a> Transaction<'a> {
 
     fn is_switch(&self, address: u8) -> bool {
         address == self.parts.switch_address
-            && !self.parts.schedule.has(What::NoAcknowledge { channel: None })
+            && !self
+                .parts
+                .schedule
+                .has(FaultKind::NoAcknowledge { channel: None })
     }
 
     /// All barometers at the address that are there and on open channels.
@@ -115,14 +118,14 @@ impl<'a> Transaction<'a> {
             ..
         } = &mut *self.parts;
         for (channel, barometer) in (0..).zip(barometers) {
-            let is_away = schedule.has(What::NoAcknowledge {
+            let is_away = schedule.has(FaultKind::NoAcknowledge {
                 channel: Some(channel),
             });
             let Some(barometer) = barometer else { continue };
             barometer.settle(
                 now_ns,
-                self.scene,
-                schedule.has(What::EndlessConversion { channel }),
+                self.workcell,
+                schedule.has(FaultKind::EndlessConversion { channel }),
             );
             if switch.mask() >> channel & 1 == 1 && !is_away && barometer.acknowledges() {
                 tell(barometer, now_ns);

@@ -9,7 +9,7 @@ use twintac_rig::xarm::{
 
 use super::{Arm, RobotSettings};
 use crate::schedule::Schedule;
-use crate::{EmulateError, Fault, Scene, What, Wire};
+use crate::{EmulateError, FaultKind, FaultWire, ScheduledFault, Workcell};
 
 /// A bit for each joint of six.
 const ALL_JOINTS: u8 = 0x3f;
@@ -26,11 +26,11 @@ const OUT_OF_REACH: u8 = 40;
 const QUEUE_FULL: u8 = 11;
 const BAD_PARAMETER: u8 = 12;
 
-/// The controller: requests in, responses out. It has no sockets, and no time but its scene's.
+/// The controller: requests in, responses out. It has no sockets, and no time but its workcell's.
 #[derive(Debug)]
 pub struct Controller {
     settings: RobotSettings,
-    scene: Scene,
+    workcell: Workcell,
     schedule: Schedule,
     mode: Mode,
     /// Ready stands for ready or moving, whichever the arm is.
@@ -48,17 +48,21 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// The controller of the arm in a scene, as it is after power-up: stopped, its motors off; with the faults that are its own.
+    /// The controller of the arm in a workcell, as it is after power-up: stopped, its motors off; with the faults that are its own.
     ///
     /// # Errors
     /// A setting or a fault that makes no sense.
-    pub fn new(scene: Scene, settings: RobotSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+    pub fn new(
+        workcell: Workcell,
+        settings: RobotSettings,
+        faults: &[ScheduledFault],
+    ) -> Result<Self, EmulateError> {
         settings.check()?;
         crate::fault::check_faults(faults)?;
         Ok(Self {
             settings,
-            scene,
-            schedule: Schedule::new(faults, Wire::Robot),
+            workcell,
+            schedule: Schedule::new(faults, FaultWire::Robot),
             mode: Mode::Position,
             state: MotionState::Stopped,
             enabled: 0,
@@ -75,13 +79,13 @@ impl Controller {
         })
     }
 
-    pub(crate) fn inject(&mut self, fault: Fault) {
+    pub(crate) fn inject(&mut self, fault: ScheduledFault) {
         self.schedule.add(fault);
     }
 
     /// The answer to a frame of the command socket; none to what is no request, or while a fault keeps it silent.
     pub fn respond(&mut self, frame: &[u8]) -> Option<Vec<u8>> {
-        let happened = self.schedule.next_event(self.scene.clock().now_s());
+        let happened = self.schedule.next_event(self.workcell.clock().now_s());
         self.suffer(happened);
         let request = match Request::decode(frame) {
             Ok(request) => request,
@@ -111,13 +115,13 @@ impl Controller {
             state: self.response_state() | bits,
             payload,
         };
-        let is_silent = self.schedule.has(What::UnansweredRequests);
+        let is_silent = self.schedule.has(FaultKind::UnansweredRequests);
         (!is_silent).then(|| response.encode())
     }
 
     /// Lets faults happen that are due by now.
     pub fn look(&mut self) {
-        let happened = self.schedule.look(self.scene.clock().now_s());
+        let happened = self.schedule.look(self.workcell.clock().now_s());
         self.suffer(happened);
     }
 
@@ -139,7 +143,7 @@ impl Controller {
     /// Where its tool is.
     #[must_use]
     pub fn pose(&self) -> TcpPose {
-        self.scene.now().tool
+        self.workcell.now().tool
     }
 
     /// Angles of its joints, radians; they stay as they are.
@@ -158,8 +162,8 @@ impl Controller {
         &self.settings
     }
 
-    pub(super) fn scene(&self) -> &Scene {
-        &self.scene
+    pub(super) fn workcell(&self) -> &Workcell {
+        &self.workcell
     }
 
     pub(super) fn command_count(&self) -> u16 {
@@ -170,18 +174,18 @@ impl Controller {
         self.n_resets
     }
 
-    fn suffer(&mut self, happened: Vec<What>) {
+    fn suffer(&mut self, happened: Vec<FaultKind>) {
         for what in happened {
             match what {
-                What::RobotError { code } => self.fail(code),
-                What::ConnectionReset => self.n_resets += 1,
+                FaultKind::RobotError { code } => self.fail(code),
+                FaultKind::ConnectionReset => self.n_resets += 1,
                 _ => {}
             }
         }
     }
 
     fn steer<T>(&self, tell: impl FnOnce(&mut Arm) -> T) -> T {
-        self.scene.steer(self.scene.clock().now_ns(), tell)
+        self.workcell.steer(self.workcell.clock().now_ns(), tell)
     }
 
     /// Stops with an error, which stays until it is cleaned. Emergency stops and errors of motors switch the motors off.

@@ -10,7 +10,7 @@ use twintac_rig::xarm::{ReportPort, splitter};
 use super::{Controller, RobotSettings};
 use crate::clock::nanoseconds;
 use crate::worker::{Over, Worker, locked};
-use crate::{EmulateError, Fault, Scene};
+use crate::{EmulateError, ScheduledFault, Workcell};
 
 /// How long a thread looks away from whether it should end.
 const GLANCE: Duration = Duration::from_millis(10);
@@ -30,9 +30,13 @@ impl RobotServer {
     ///
     /// # Errors
     /// A setting or a fault that makes no sense, a port that is taken, no thread.
-    pub fn start(scene: Scene, settings: RobotSettings, faults: &[Fault]) -> Result<Self, EmulateError> {
+    pub fn start(
+        workcell: Workcell,
+        settings: RobotSettings,
+        faults: &[ScheduledFault],
+    ) -> Result<Self, EmulateError> {
         let (ports, rates) = (settings.ports, settings.rates);
-        let controller = Arc::new(Mutex::new(Controller::new(scene, settings, faults)?));
+        let controller = Arc::new(Mutex::new(Controller::new(workcell, settings, faults)?));
         let [commands, normal, rich, development] = [
             listen(ports[0], "the robot's commands")?,
             listen(ports[1], "the robot's normal reports")?,
@@ -158,7 +162,7 @@ fn report(
     rate_hz: f64,
     over: &Over,
 ) {
-    let clock = locked(controller).scene().clock().clone();
+    let clock = locked(controller).workcell().clock().clone();
     let period_ns = nanoseconds(1.0 / rate_hz).max(1);
     let mut due_ns = clock.now_ns() + period_ns;
     let mut streams: Vec<TcpStream> = Vec::new();

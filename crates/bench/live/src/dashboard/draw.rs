@@ -9,7 +9,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Sparkline};
 use twintac_report::PALETTE;
 
-use super::State;
+use super::DashboardState;
 use super::map::Map;
 
 /// Levels of a trace: eight to a line.
@@ -18,7 +18,7 @@ const LEVELS: f64 = 800.0;
 const LABEL: u16 = 20;
 
 /// Draws a state. What it shows depends on nothing else.
-pub fn draw(frame: &mut Frame<'_>, state: &State) {
+pub fn draw(frame: &mut Frame<'_>, state: &DashboardState) {
     let [head, body, foot] =
         Layout::vertical([Constraint::Length(2), Constraint::Fill(1), Constraint::Length(1)])
             .areas(frame.area());
@@ -34,7 +34,7 @@ pub fn draw(frame: &mut Frame<'_>, state: &State) {
     frame.render_widget(foot_line, foot);
 }
 
-fn header(frame: &mut Frame<'_>, area: Rect, state: &State) {
+fn header(frame: &mut Frame<'_>, area: Rect, state: &DashboardState) {
     let about = &state.about;
     let number = |value: Option<f64>, decimals: usize| {
         value.map_or("–".to_owned(), |value| format!("{value:.decimals$}"))
@@ -84,7 +84,7 @@ fn count(what: &str, count: u64) -> Span<'static> {
     if count == 0 { span } else { span.fg(Color::Yellow) }
 }
 
-fn traces(frame: &mut Frame<'_>, area: Rect, state: &State) {
+fn traces(frame: &mut Frame<'_>, area: Rect, state: &DashboardState) {
     let block = Block::bordered().title(" traces, kPa ");
     let inside = block.inner(area);
     frame.render_widget(block, area);

@@ -6,10 +6,10 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget;
 use twintac_report::viridis;
 
-use super::State;
+use super::DashboardState;
 
 /// The map of a state, as large as its proportions let it be.
-pub(super) struct Map<'a>(pub(super) &'a State);
+pub(super) struct Map<'a>(pub(super) &'a DashboardState);
 
 impl Widget for Map<'_> {
     fn render(self, area: Rect, buffer: &mut Buffer) {

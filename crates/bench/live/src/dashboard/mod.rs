@@ -1,14 +1,14 @@
 //! The dashboard: a live pressure map, traces, and how the reading goes.
 //!
-//! [`State`] is all there is to see, [`draw`] a pure function of it, [`run`] the loop between source, keys and terminal.
+//! [`DashboardState`] is all there is to see, [`draw`] a pure function of it, [`run`] the loop between source, keys and terminal.
 
 mod draw;
 mod map;
-mod recording;
 mod state;
 mod terminal;
+mod touch_recording;
 
 pub use draw::draw;
-pub use recording::Recording;
-pub use state::{Recorded, State};
+pub use state::{DashboardState, RecordingStatus};
 pub use terminal::run;
+pub use touch_recording::TouchRecording;

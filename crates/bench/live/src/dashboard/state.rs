@@ -17,7 +17,7 @@ const WEAK_KPA: f64 = 0.5;
 
 /// All that the dashboard shows.
 #[derive(Clone, Debug)]
-pub struct State {
+pub struct DashboardState {
     /// What is looked at.
     pub about: About,
     /// The newest frame.
@@ -27,7 +27,7 @@ pub struct State {
     /// What became of the frames.
     pub tally: Tally,
     /// What is being recorded, if anything is.
-    pub recording: Option<Recorded>,
+    pub recording: Option<RecordingStatus>,
     /// What there is to say.
     pub message: String,
     /// The map of [`refresh`](Self::refresh), kPa, over [`prepared`](Self::prepared)'s grid.
@@ -43,14 +43,14 @@ pub struct State {
 
 /// A recording, as it is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Recorded {
+pub struct RecordingStatus {
     /// Its file.
     pub file: String,
     /// Frames so far.
     pub frames: u64,
 }
 
-impl State {
+impl DashboardState {
     /// Nothing was read yet. The first frames make a tare.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 
-use super::{Recorded, Recording, State, draw};
+use super::{DashboardState, RecordingStatus, TouchRecording, draw};
 use crate::{About, FrameSource, LiveError, Tally};
 
 /// Time between two pictures: 15 a second.
@@ -26,7 +26,7 @@ pub fn run(source: &mut FrameSource, about: About, folder: &Path) -> Result<Tall
             "standard output is no terminal",
         )));
     }
-    let state = State::new(about)?;
+    let state = DashboardState::new(about)?;
     let mut terminal = ratatui::try_init().map_err(LiveError::Terminal)?;
     let mut recording = None;
     let result = show(&mut terminal, source, state, folder, &mut recording);
@@ -40,9 +40,9 @@ pub fn run(source: &mut FrameSource, about: About, folder: &Path) -> Result<Tall
 fn show(
     terminal: &mut DefaultTerminal,
     source: &mut FrameSource,
-    mut state: State,
+    mut state: DashboardState,
     folder: &Path,
-    recording: &mut Option<Recording>,
+    recording: &mut Option<TouchRecording>,
 ) -> Result<(), LiveError> {
     let mut next_picture = Instant::now();
     loop {
@@ -75,7 +75,7 @@ fn show(
         }
         if Instant::now() >= next_picture {
             state.tally = source.tally();
-            state.recording = recording.as_ref().map(|log| Recorded {
+            state.recording = recording.as_ref().map(|log| RecordingStatus {
                 file: log.path().display().to_string(),
                 frames: log.frames(),
             });
@@ -89,13 +89,13 @@ fn show(
 }
 
 /// Begins a recording or ends it, and says how that went: what goes wrong with a file does not end the picture.
-fn toggle(recording: &mut Option<Recording>, folder: &Path, about: &About) -> String {
+fn toggle(recording: &mut Option<TouchRecording>, folder: &Path, about: &About) -> String {
     let result = match recording.take() {
         Some(log) => {
             let file = log.path().display().to_string();
             log.finish().map(|frames| format!("{file} has {frames} frames"))
         }
-        None => Recording::begin(folder, about).map(|log| {
+        None => TouchRecording::begin(folder, about).map(|log| {
             let message = format!("recording {}", log.path().display());
             *recording = Some(log);
             message

@@ -4,7 +4,7 @@
 
 use phystac::{Thresholds, Transfer};
 use twintac_emulate::i2c::Bus;
-use twintac_emulate::{Fault, LabClock, Moment, What};
+use twintac_emulate::{FaultKind, LabClock, Moment, ScheduledFault};
 use twintac_live::{
     About, BoxedClock, EmulatedPhysTac, FrameReader, Known, PowerOn, TAXELS, emulated_phystac, power_on,
 };
@@ -17,11 +17,11 @@ pub fn sensor() -> Sensor {
     Sensor::read("../../../sensors/phystac.toml").unwrap()
 }
 
-pub fn phystac(faults: &[Fault]) -> EmulatedPhysTac {
+pub fn phystac(faults: &[ScheduledFault]) -> EmulatedPhysTac {
     emulated_phystac(&sensor(), LabClock::virtual_time(), faults).unwrap()
 }
 
-pub fn reader(faults: &[Fault]) -> (LabReader, About) {
+pub fn reader(faults: &[ScheduledFault]) -> (LabReader, About) {
     let mut phystac = phystac(faults);
     let checked = power_on(&mut phystac, &sensor(), &scale(8)).unwrap();
     let about = About::new(
@@ -52,9 +52,9 @@ pub fn checked(transfer: Transfer) -> PowerOn {
 }
 
 /// A barometer that is gone from a time on, s.
-pub fn gone(channel: u8, from_s: f64) -> Fault {
-    Fault {
-        what: What::NoAcknowledge {
+pub fn gone(channel: u8, from_s: f64) -> ScheduledFault {
+    ScheduledFault {
+        what: FaultKind::NoAcknowledge {
             channel: Some(channel),
         },
         begins: Moment::TimeS(from_s),

@@ -1,7 +1,7 @@
 //! What taxels read while nothing touches the gel.
 
 use super::collect::{Collected, Span};
-use crate::{Taxel, TaxelState};
+use crate::{TaxelReading, TaxelState};
 
 /// Pressure of each taxel, Pa: the mean over `window_ns` before a press, as far as no press was on; `None` for a taxel without
 /// a value then.
@@ -39,7 +39,7 @@ pub(super) fn baseline_pa(
 }
 
 /// A pressure that can be used, Pa.
-pub(super) fn pressure_pa(taxel: &Taxel) -> Option<f64> {
+pub(super) fn pressure_pa(taxel: &TaxelReading) -> Option<f64> {
     let is_good = taxel.state == TaxelState::Good;
     taxel
         .pressure_pa

@@ -6,7 +6,7 @@ use twintac_shape::Pose;
 use super::ReadOptions;
 use super::baseline::{baseline_pa, pressure_pa};
 use super::collect::Collected;
-use crate::{Description, Taxel};
+use crate::{Description, TaxelReading};
 
 /// The press at a place of the log's spans; none if no frame is in it.
 pub(super) fn press(
@@ -47,7 +47,7 @@ pub(super) fn press(
     let has_force = !collected.force_n.is_empty();
     let mut press = Press {
         name: span.name.clone(),
-        file: file.to_owned(),
+        mounting: file.to_owned(),
         indenter: span.indenter.clone(),
         control: span.control,
         time_s: frames.iter().map(|(time_ns, _)| *time_ns as f64 * 1e-9).collect(),
@@ -68,7 +68,7 @@ pub(super) fn press(
             forces_n.push(force_n.unwrap_or_default());
         }
         let taxels = || frame.taxels.iter().zip(&baselines_pa);
-        let above = |(taxel, baseline_pa): (&Taxel, &Option<f64>)| {
+        let above = |(taxel, baseline_pa): (&TaxelReading, &Option<f64>)| {
             Some((pressure_pa(taxel)? - (*baseline_pa)?) / 1000.0)
         };
         let readings_kpa: Vec<Option<f64>> = taxels().map(above).collect();
@@ -87,7 +87,7 @@ pub(super) fn press(
 }
 
 /// What the taxel gave, in its own unit.
-fn raw(taxel: &Taxel) -> f64 {
+fn raw(taxel: &TaxelReading) -> f64 {
     let raw = taxel.counts.map(f64::from).or(taxel.pressure_pa);
     raw.filter(|raw| raw.is_finite()).unwrap_or_default()
 }

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 
 use super::{put_header, take_header};
 use crate::cdr::{Decoder, Encoder};
-use crate::{PoseReading, TactileFrame, Taxel, TaxelState, WrenchReading};
+use crate::{PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 
 const NO_COUNTS: i32 = i32::MIN;
 const NO_SEQUENCE: i64 = -1;
@@ -40,7 +40,7 @@ pub(super) fn take_tactile(d: &mut Decoder<'_>) -> Option<TactileFrame> {
         return None;
     }
     let taxel = |index: usize| {
-        Some(Taxel {
+        Some(TaxelReading {
             state: TaxelState::from_code(states[index])?,
             read_us: read_us[index],
             counts: Some(counts[index]).filter(|counts| *counts != NO_COUNTS),

@@ -1,7 +1,7 @@
 use glam::{DQuat, DVec3};
 
 use super::*;
-use crate::{PoseReading, TactileFrame, Taxel, TaxelState, WrenchReading};
+use crate::{PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 
 /// What a message becomes, channel by channel.
 fn written(body: &Body) -> Vec<(usize, Vec<u8>)> {
@@ -16,7 +16,7 @@ fn written(body: &Body) -> Vec<(usize, Vec<u8>)> {
 
 #[test]
 fn a_fluid_pressure_has_golden_bytes() {
-    let taxel = Taxel {
+    let taxel = TaxelReading {
         state: TaxelState::Good,
         read_us: 1,
         counts: Some(64),
@@ -71,14 +71,14 @@ fn samples_come_back_and_pieces_of_them_do_not() {
         force_n: DVec3::new(0.1, 0.2, 0.3),
         torque_n_mm: DVec3::ZERO,
     };
-    let taxel = Taxel {
+    let taxel = TaxelReading {
         state: TaxelState::Saturated,
         read_us: u64::MAX,
         counts: Some(-5),
         pressure_pa: None,
         temperature_c: Some(-1.5),
     };
-    let missing = Taxel {
+    let missing = TaxelReading {
         state: TaxelState::Missing,
         counts: None,
         temperature_c: None,

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use glam::{DQuat, DVec3};
 use twintac_log::{
-    Body, CountTransfer, Description, Event, LogReader, LogWriter, Message, PoseReading, TactileFrame, Taxel,
-    TaxelState, WrenchReading,
+    Body, CountTransfer, Description, Event, LogReader, LogWriter, Message, PoseReading, TactileFrame,
+    TaxelReading, TaxelState, WrenchReading,
 };
 use twintac_recording::{Control, Provenance};
 use twintac_shape::Pose;
@@ -41,8 +41,8 @@ pub(crate) fn description(taxels: usize) -> Description {
     }
 }
 
-pub(crate) fn taxel(counts: i32) -> Taxel {
-    Taxel {
+pub(crate) fn taxel(counts: i32) -> TaxelReading {
+    TaxelReading {
         state: TaxelState::Good,
         read_us: 7,
         counts: Some(counts),
@@ -54,7 +54,7 @@ pub(crate) fn taxel(counts: i32) -> Taxel {
 pub(crate) fn frame(time_ns: u64, taxels: usize) -> Message {
     let step = (time_ns / 1_000_000) as i32;
     let counts = |taxel: usize| 3_242_400 + step % 1000 + 10 * taxel as i32;
-    let mut taxels: Vec<Taxel> = (0..taxels).map(|index| taxel(counts(index))).collect();
+    let mut taxels: Vec<TaxelReading> = (0..taxels).map(|index| taxel(counts(index))).collect();
     if step % 7 == 0 {
         taxels[0].state = TaxelState::Saturated;
         taxels[0].pressure_pa = None;

@@ -10,5 +10,5 @@ mod watchdog;
 pub use cause::Cause;
 pub use limits::{Limits, SensorLimits, Setup, Workspace};
 pub use retreat::Retreat;
-pub use supervisor::{Decision, Event, Start, Supervisor};
+pub use supervisor::{Decision, Observation, Start, Supervisor};
 pub use watchdog::StreamId;

@@ -13,7 +13,7 @@ const TRACKING_TOLERANCE_MM: f64 = 0.1;
 
 /// What the supervisor is told between servo periods.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Event {
+pub enum Observation {
     /// The force sensor's reading, N, in any frame.
     Force(DVec3),
     /// The robot's report.
@@ -73,7 +73,7 @@ pub struct Start {
 ///
 /// ```
 /// use glam::DVec3;
-/// use twintac_rig::{Decision, Event, Limits, Retreat, SensorLimits, Setup, Start, Supervisor, TcpPose, Workspace};
+/// use twintac_rig::{Decision, Limits, Observation, Retreat, SensorLimits, Setup, Start, Supervisor, TcpPose, Workspace};
 ///
 /// let setup = Setup {
 ///     limits: Limits {
@@ -100,7 +100,7 @@ pub struct Start {
 /// let mut supervisor = Supervisor::new(setup, &sensor, start)?;
 ///
 /// assert_eq!(supervisor.decide(0.004, &above), Decision::Go(above));
-/// supervisor.observe(0.006, Event::Force(DVec3::new(0.0, 0.0, 10.5)));
+/// supervisor.observe(0.006, Observation::Force(DVec3::new(0.0, 0.0, 10.5)));
 /// assert_eq!(supervisor.decide(0.008, &above), Decision::Stop);
 /// assert_eq!(supervisor.cause().unwrap().to_string(), "force is 10.5 N, the limit is 10 N");
 /// # Ok::<(), twintac_rig::RigError>(())
@@ -140,7 +140,7 @@ impl Supervisor {
             retreat: Progress::Waiting { force_before_n: None },
             setup,
         };
-        supervisor.observe(start.now_s, Event::Force(start.force_n));
+        supervisor.observe(start.now_s, Observation::Force(start.force_n));
         Ok(supervisor)
     }
 
@@ -156,16 +156,16 @@ impl Supervisor {
     }
 
     /// Takes note of an event; the cause to stop, if there is one by now, so that nobody has to wait for the next period.
-    pub fn observe(&mut self, now_s: f64, event: Event) -> Option<&Cause> {
+    pub fn observe(&mut self, now_s: f64, event: Observation) -> Option<&Cause> {
         // First the silence that this event ends.
         self.latch(self.watchdog.silent(now_s));
         let cause = match event {
-            Event::Force(force_n) => {
+            Observation::Force(force_n) => {
                 self.force_n = force_n.length();
                 self.watchdog.heard(StreamId::FORCE, now_s);
                 limit("force", self.force_n, self.setup.limits.force_n, "N")
             }
-            Event::Robot { pose, in_error } => {
+            Observation::Robot { pose, in_error } => {
                 self.measured = pose;
                 self.robot_in_error = in_error;
                 self.watchdog.heard(StreamId::ROBOT, now_s);
@@ -179,22 +179,22 @@ impl Supervisor {
                     )
                 }
             }
-            Event::Heard(stream) => {
+            Observation::Heard(stream) => {
                 self.watchdog.heard(stream, now_s);
                 None
             }
-            Event::DeviceError { stream, problem } => {
+            Observation::DeviceError { stream, problem } => {
                 self.watchdog.fail(stream);
                 Some(Cause::DeviceError {
                     stream: self.watchdog.name(stream),
                     problem,
                 })
             }
-            Event::DataLost { stream, records } => Some(Cause::DataLost {
+            Observation::DataLost { stream, records } => Some(Cause::DataLost {
                 stream: self.watchdog.name(stream),
                 records,
             }),
-            Event::OperatorStop => Some(Cause::Operator),
+            Observation::OperatorStop => Some(Cause::Operator),
         };
         self.latch(cause);
         self.cause()

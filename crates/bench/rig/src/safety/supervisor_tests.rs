@@ -73,12 +73,12 @@ impl Bench {
 
     fn period(&mut self, force_n: f64, goal_height_mm: f64) -> Decision {
         self.now_s += PERIOD_S;
-        let robot = Event::Robot {
+        let robot = Observation::Robot {
             pose: at(self.height_mm),
             in_error: false,
         };
         self.supervisor
-            .observe(self.now_s, Event::Force(DVec3::Z * force_n));
+            .observe(self.now_s, Observation::Force(DVec3::Z * force_n));
         self.supervisor.observe(self.now_s, robot);
         let decision = self.supervisor.decide(self.now_s, &at(goal_height_mm));
         if let Decision::Go(pose) | Decision::Retreat(pose) = decision {
@@ -126,17 +126,19 @@ fn too_much_force_stops_in_the_same_call_and_then_goes_straight_up() {
 fn a_retreat_does_not_fall_back_to_an_old_report() {
     let mut bench = Bench::new();
     for step in 1..=9 {
-        let robot = Event::Robot {
+        let robot = Observation::Robot {
             pose: at(1.0), // an old report: the robot has gone up since
             in_error: false,
         };
         bench.now_s += PERIOD_S;
-        bench.supervisor.observe(bench.now_s, Event::Force(DVec3::ZERO));
+        bench
+            .supervisor
+            .observe(bench.now_s, Observation::Force(DVec3::ZERO));
         bench.supervisor.observe(bench.now_s, robot);
         let goal = at(1.0 + 0.1 * f64::from(step));
         assert_eq!(bench.supervisor.decide(bench.now_s, &goal), Decision::Go(goal));
     }
-    bench.supervisor.observe(bench.now_s, Event::OperatorStop);
+    bench.supervisor.observe(bench.now_s, Observation::OperatorStop);
     assert_eq!(bench.supervisor.decide(bench.now_s, &at(1.9)), Decision::Stop);
     let Decision::Retreat(pose) = bench.supervisor.decide(bench.now_s, &at(1.9)) else {
         panic!("nothing is in its way");
@@ -204,14 +206,14 @@ fn each_stream_has_a_watchdog() {
         let mut supervisor = supervisor();
         let taxels = supervisor.watch("the taxels", 0.05, 0.0);
         let stopped_s = (1..100).map(|period| f64::from(period) * 0.004).find(|&now_s| {
-            let robot = Event::Robot {
+            let robot = Observation::Robot {
                 pose: at(1.0),
                 in_error: false,
             };
             for (stream, event) in [
-                ("the force sensor", Event::Force(DVec3::ZERO)),
+                ("the force sensor", Observation::Force(DVec3::ZERO)),
                 ("the robot", robot),
-                ("the taxels", Event::Heard(taxels)),
+                ("the taxels", Observation::Heard(taxels)),
             ] {
                 if stream != silent {
                     supervisor.observe(now_s, event);
@@ -234,11 +236,11 @@ fn each_stream_has_a_watchdog() {
 
 #[test]
 fn without_force_sensor_or_with_an_error_there_is_no_retreat() {
-    let dead = Event::DeviceError {
+    let dead = Observation::DeviceError {
         stream: StreamId::FORCE,
         problem: "gauge broken".into(),
     };
-    let in_error = Event::Robot {
+    let in_error = Observation::Robot {
         pose: at(1.0),
         in_error: true,
     };
@@ -250,7 +252,7 @@ fn without_force_sensor_or_with_an_error_there_is_no_retreat() {
         assert_eq!(supervisor.observe(0.001, event).unwrap().to_string(), words);
         for period in 1..20 {
             let now_s = f64::from(period) * PERIOD_S;
-            supervisor.observe(now_s, Event::Force(DVec3::ZERO));
+            supervisor.observe(now_s, Observation::Force(DVec3::ZERO));
             assert_eq!(supervisor.decide(now_s, &at(1.0)), Decision::Stop);
         }
     }
@@ -259,20 +261,20 @@ fn without_force_sensor_or_with_an_error_there_is_no_retreat() {
 #[test]
 fn lost_data_and_the_operator_stop() {
     let mut bench = Bench::new();
-    let lost = Event::DataLost {
+    let lost = Observation::DataLost {
         stream: StreamId::FORCE,
         records: 3,
     };
     let cause = bench.supervisor.observe(0.001, lost).cloned();
     assert_eq!(cause.unwrap().to_string(), "the force sensor: 3 records lost");
-    bench.supervisor.observe(0.001, Event::OperatorStop);
+    bench.supervisor.observe(0.001, Observation::OperatorStop);
     assert!(
         matches!(bench.supervisor.cause(), Some(Cause::DataLost { .. })),
         "the first cause stays"
     );
     let mut bench = Bench::new();
     assert_eq!(
-        bench.supervisor.observe(0.001, Event::OperatorStop),
+        bench.supervisor.observe(0.001, Observation::OperatorStop),
         Some(&Cause::Operator)
     );
     assert_eq!(bench.period(0.0, 1.0), Decision::Stop);
@@ -303,7 +305,7 @@ fn limits_cannot_be_raised_above_the_sensors() {
 }
 
 /// Any event, most of them harmless.
-fn event() -> impl Strategy<Value = Event> {
+fn event() -> impl Strategy<Value = Observation> {
     let number = || {
         prop_oneof![
             8 => -1.0..1.0_f64,
@@ -318,17 +320,17 @@ fn event() -> impl Strategy<Value = Event> {
     });
     let stream = prop_oneof![Just(StreamId::FORCE), Just(StreamId::ROBOT)];
     prop_oneof![
-        20 => number().prop_map(|force_n| Event::Force(DVec3::X * force_n)),
-        20 => (pose, prop::bool::weighted(0.05)).prop_map(|(pose, in_error)| Event::Robot { pose, in_error }),
-        5 => stream.clone().prop_map(Event::Heard),
-        1 => stream.clone().prop_map(|stream| Event::DeviceError { stream, problem: "broken".into() }),
-        1 => (stream, 1..9_u64).prop_map(|(stream, records)| Event::DataLost { stream, records }),
-        1 => Just(Event::OperatorStop),
+        20 => number().prop_map(|force_n| Observation::Force(DVec3::X * force_n)),
+        20 => (pose, prop::bool::weighted(0.05)).prop_map(|(pose, in_error)| Observation::Robot { pose, in_error }),
+        5 => stream.clone().prop_map(Observation::Heard),
+        1 => stream.clone().prop_map(|stream| Observation::DeviceError { stream, problem: "broken".into() }),
+        1 => (stream, 1..9_u64).prop_map(|(stream, records)| Observation::DataLost { stream, records }),
+        1 => Just(Observation::OperatorStop),
     ]
 }
 
 /// What comes next on a bench: events and decisions, at times that do not always go on.
-fn step() -> impl Strategy<Value = (f64, Result<Event, f64>)> {
+fn step() -> impl Strategy<Value = (f64, Result<Observation, f64>)> {
     let elapsed_s =
         prop_oneof![20 => 0.0..0.005_f64, 1 => 0.0..0.2_f64, 1 => Just(f64::NAN), 1 => Just(-1.0)];
     let goal = prop_oneof![8 => -0.2..0.2_f64, 1 => -5.0..5.0_f64, 1 => Just(f64::NAN)];
@@ -353,7 +355,7 @@ proptest! {
             let before = supervisor.cause().cloned();
             match what {
                 Ok(event) => {
-                    if let Event::Robot { pose, .. } = &event {
+                    if let Observation::Robot { pose, .. } = &event {
                         measured = *pose;
                     }
                     supervisor.observe(time_s, event);

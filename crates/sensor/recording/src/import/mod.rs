@@ -157,7 +157,7 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
         };
         let mut press = Press {
             name: format!("{stem}#{number}"),
-            file: file_name(path),
+            mounting: file_name(path),
             indenter: description.indenter.clone(),
             control: if description.weight_n.is_some() {
                 Control::Force

@@ -12,7 +12,8 @@ use crate::{Control, Press, Provenance, Recording, RecordingError};
 
 impl Recording {
     /// Reads a Parquet file with the columns that [`write_parquet`](Self::write_parquet) gives; `press_index` may be missing,
-    /// further columns are left alone. Rows with the same `press` belong together and must follow each other.
+    /// further columns are left alone, and `mounting` may have its old name `file`. Rows with the same `press` belong together and must
+    /// follow each other.
     ///
     /// # Errors
     ///
@@ -72,7 +73,7 @@ fn decode(bytes: Vec<u8>) -> Result<Recording, String> {
 struct Frames {
     taxels: Vec<String>,
     press: Vec<String>,
-    file: Vec<String>,
+    mounting: Vec<String>,
     indenter: Vec<String>,
     control: Vec<String>,
     provenance: Vec<String>,
@@ -100,7 +101,7 @@ impl Frames {
         };
         let frames = Self {
             press: columns.texts(schema::PRESS)?,
-            file: columns.texts(schema::FILE)?,
+            mounting: columns.texts(mounting_column(columns))?,
             indenter: columns.texts(schema::INDENTER)?,
             control: columns.texts(schema::CONTROL)?,
             provenance: columns.texts(schema::PROVENANCE)?,
@@ -124,7 +125,7 @@ impl Frames {
 
     fn check_lengths(&self) -> Result<(), String> {
         let rows = self.press.len();
-        let texts = [&self.file, &self.indenter, &self.control, &self.provenance].map(Vec::len);
+        let texts = [&self.mounting, &self.indenter, &self.control, &self.provenance].map(Vec::len);
         let numbers = self.pose.iter().chain(&self.kpa).chain(&self.raw).map(Vec::len);
         let others = self
             .valid
@@ -147,7 +148,7 @@ impl Frames {
         let first = rows.start;
         let name = &self.press[first];
         for (column, values) in [
-            (schema::FILE, &self.file),
+            (schema::MOUNTING, &self.mounting),
             (schema::INDENTER, &self.indenter),
             (schema::CONTROL, &self.control),
         ] {
@@ -176,7 +177,7 @@ impl Frames {
         };
         Ok(Press {
             name: name.clone(),
-            file: self.file[first].clone(),
+            mounting: self.mounting[first].clone(),
             indenter: self.indenter[first].clone(),
             control: parse_control(&self.control[first])?,
             time_s: self.time_s[rows.clone()].to_vec(),
@@ -189,6 +190,15 @@ impl Frames {
                 .map(|row| self.valid.iter().map(|column| column[row]).collect())
                 .collect(),
         })
+    }
+}
+
+/// The column that says how the gel and the indenter were mounted.
+fn mounting_column(columns: &Columns) -> &'static str {
+    let has = |name: &str| columns.names.iter().any(|other| other == name);
+    match !has(schema::MOUNTING) && has(schema::OLD_MOUNTING) {
+        true => schema::OLD_MOUNTING,
+        false => schema::MOUNTING,
     }
 }
 

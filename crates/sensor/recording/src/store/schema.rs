@@ -17,11 +17,13 @@ pub(super) const PROVENANCE_KEY: &str = "twintac.provenance";
 pub(super) const PRESS_INDEX: &str = "press_index";
 /// Text columns, the same in all rows of a press.
 pub(super) const PRESS: &str = "press";
-pub(super) const FILE: &str = "file";
+pub(super) const MOUNTING: &str = "mounting";
+/// What the column `mounting` was called in older files.
+pub(super) const OLD_MOUNTING: &str = "file";
 pub(super) const INDENTER: &str = "indenter";
 pub(super) const CONTROL: &str = "control";
 pub(super) const PROVENANCE: &str = "provenance";
-pub(super) const TEXTS: [&str; 5] = [PRESS, FILE, INDENTER, CONTROL, PROVENANCE];
+pub(super) const TEXTS: [&str; 5] = [PRESS, MOUNTING, INDENTER, CONTROL, PROVENANCE];
 /// Time and pose.
 pub(super) const TIME: &str = "time_s";
 pub(super) const POSE: [&str; 7] = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];

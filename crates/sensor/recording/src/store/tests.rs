@@ -8,7 +8,7 @@ use crate::{Control, Press, Provenance, Recording};
 fn recording() -> Recording {
     let press = |name: &str| Press {
         name: name.to_owned(),
-        file: "bench.csv".to_owned(),
+        mounting: "bench.csv".to_owned(),
         indenter: "tip".to_owned(),
         control: Control::Force,
         time_s: vec![0.125, 0.25],

@@ -18,7 +18,7 @@ use crate::{Press, Recording, RecordingError};
 impl Recording {
     /// Writes a Parquet file with one row per frame, through a temporary name. The same recording gives the same bytes.
     ///
-    /// Columns: `press_index` (from 0), `press`, `file`, `indenter`, `control` and `provenance`; `time_s`; the pose
+    /// Columns: `press_index` (from 0), `press`, `mounting`, `indenter`, `control` and `provenance`; `time_s`; the pose
     /// `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`; `force_n` (null where unknown); then `<taxel>_kpa` of all taxels,
     /// `<taxel>_raw` and `<taxel>_valid`. The metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
     ///
@@ -73,7 +73,7 @@ impl Recording {
         )?;
         let provenance = self.provenance.to_string();
         rows.text(|press| press.name.clone())?;
-        rows.text(|press| press.file.clone())?;
+        rows.text(|press| press.mounting.clone())?;
         rows.text(|press| press.indenter.clone())?;
         rows.text(|press| press.control.to_string())?;
         rows.text(|_| provenance.clone())?;

@@ -35,7 +35,7 @@ pub(super) struct OpenBench {
     /// Puts indenters on, where nobody has to.
     pub(super) selector: Option<Selector>,
     /// What keeps emulated devices running.
-    pub(super) _emulated: Option<twintac_emulate::Bench>,
+    pub(super) _emulated: Option<twintac_emulate::EmulatedBench>,
 }
 
 /// Where robot and force sensor listen.

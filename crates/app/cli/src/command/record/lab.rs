@@ -8,8 +8,8 @@ use glam::DVec3;
 use phystac::PhysTac;
 use phystac::recovery::{free_bus, reset_switch};
 use serde::Deserialize;
-use twintac_emulate::{Fault, LabClock, Settings, check_faults};
-use twintac_lab::{Bench, Reality};
+use twintac_emulate::{EmulatedBench, EmulatedBenchSettings, LabClock, ScheduledFault, check_faults};
+use twintac_lab::{Lab, Reality};
 use twintac_live::{Known, emulated_board};
 use twintac_press::PressSettings;
 use twintac_protocol::PressPlan;
@@ -25,11 +25,11 @@ use crate::run::Run;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FaultsFile {
-    faults: Vec<Fault>,
+    faults: Vec<ScheduledFault>,
 }
 
 /// Reads what is to go wrong, from a file.
-pub(super) fn read_faults(file: &Path) -> Result<Vec<Fault>> {
+pub(super) fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>> {
     let faults = twintac_config::read::<FaultsFile>(file)?.value.faults;
     check_faults(&faults).with_context(|| file.display().to_string())?;
     Ok(faults)
@@ -41,19 +41,19 @@ pub(super) fn open(
     reality: &Reality,
     plans: &[PressPlan],
     settings: &PressSettings,
-    faults: Vec<Fault>,
+    faults: Vec<ScheduledFault>,
 ) -> Result<OpenBench> {
     let sensor = &run.sensor.sensor;
-    let lab = Bench::new(Arc::clone(sensor), reality.clone());
+    let lab = Lab::new(Arc::clone(sensor), reality.clone());
     let tables = run.live_tables(&lab, reality, plans)?;
     let placement = &settings.placement;
     let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);
 
     let board = emulated_board(sensor);
-    let mut devices = Settings {
+    let mut devices = EmulatedBenchSettings {
         board,
         faults,
-        ..Settings::default()
+        ..EmulatedBenchSettings::default()
     };
     devices.board.barometer.noise_pa = 1e3 * reality.readout.noise_kpa;
     devices.board.seed = reality.seed;
@@ -61,7 +61,7 @@ pub(super) fn open(
     devices.force.seed = reality.seed;
     devices.robot.first_pose = placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
     let lab_clock = LabClock::real();
-    let devices = twintac_emulate::Bench::start(lab_clock.clone(), gel, &devices)?;
+    let devices = EmulatedBench::start(lab_clock.clone(), gel, &devices)?;
 
     let configuration = netft::Client::read_configuration(&devices.force.page().to_string())?;
     let addresses = Addresses {

@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use crate::force::{ForceServer, ForceSettings};
 use crate::i2c::{Board, BoardSettings};
 use crate::robot::{RobotServer, RobotSettings};
-use crate::{EmulateError, Fault, LabClock, Physics, Scene, Wire};
+use crate::{EmulateError, FaultWire, LabClock, Physics, ScheduledFault, Workcell};
 
 /// What the devices are like and what goes wrong with them; as TOML, everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
+pub struct EmulatedBenchSettings {
     /// The sensor's board.
     pub board: BoardSettings,
     /// The robot.
@@ -18,22 +18,22 @@ pub struct Settings {
     /// The force sensor.
     pub force: ForceSettings,
     /// What goes wrong.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<ScheduledFault>,
 }
 
-/// A sensor, a robot and a force sensor in one scene. Dropped, its sockets close and its threads end.
+/// A sensor, a robot and a force sensor in one workcell. Dropped, its sockets close and its threads end.
 #[derive(Debug)]
-pub struct Bench {
+pub struct EmulatedBench {
     /// The sensor's board.
     pub board: Board,
     /// The robot, on the loopback.
     pub robot: RobotServer,
     /// The force sensor, on the loopback.
     pub force: ForceServer,
-    scene: Scene,
+    workcell: Workcell,
 }
 
-impl Bench {
+impl EmulatedBench {
     /// Switches the bench on, at the clock's present time.
     ///
     /// # Errors
@@ -41,16 +41,16 @@ impl Bench {
     pub fn start(
         clock: LabClock,
         physics: impl Physics + 'static,
-        settings: &Settings,
+        settings: &EmulatedBenchSettings,
     ) -> Result<Self, EmulateError> {
         let (robot, faults) = (&settings.robot, &settings.faults);
         robot.check()?;
-        let scene = Scene::new(clock, physics, robot.first_pose, robot.arm);
+        let workcell = Workcell::new(clock, physics, robot.first_pose, robot.arm);
         Ok(Self {
-            board: Board::new(scene.clone(), &settings.board, faults)?,
-            robot: RobotServer::start(scene.clone(), robot.clone(), faults)?,
-            force: ForceServer::start(scene.clone(), settings.force.clone(), faults)?,
-            scene,
+            board: Board::new(workcell.clone(), &settings.board, faults)?,
+            robot: RobotServer::start(workcell.clone(), robot.clone(), faults)?,
+            force: ForceServer::start(workcell.clone(), settings.force.clone(), faults)?,
+            workcell,
         })
     }
 
@@ -58,19 +58,19 @@ impl Bench {
     ///
     /// # Errors
     /// A fault that makes no sense.
-    pub fn inject(&self, fault: Fault) -> Result<(), EmulateError> {
+    pub fn inject(&self, fault: ScheduledFault) -> Result<(), EmulateError> {
         fault.check("fault")?;
         match fault.what.wire() {
-            Wire::I2c => self.board.inject(fault),
-            Wire::Robot => self.robot.with_controller(|controller| controller.inject(fault)),
-            Wire::Force => self.force.with_sensor(|sensor| sensor.inject(fault)),
+            FaultWire::I2c => self.board.inject(fault),
+            FaultWire::Robot => self.robot.with_controller(|controller| controller.inject(fault)),
+            FaultWire::Force => self.force.with_sensor(|sensor| sensor.inject(fault)),
         }
         Ok(())
     }
 
     /// Where the robot is and what is felt there: what no device says without its imperfections.
     #[must_use]
-    pub fn scene(&self) -> &Scene {
-        &self.scene
+    pub fn workcell(&self) -> &Workcell {
+        &self.workcell
     }
 }

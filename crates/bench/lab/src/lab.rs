@@ -55,7 +55,7 @@ pub enum LabError {
 }
 
 /// One cast of a sensor on one bench.
-pub struct Bench {
+pub struct Lab {
     pub(crate) drawing: Arc<Sensor>,
     gel: Gel,
     /// Of each taxel.
@@ -85,7 +85,7 @@ impl Port {
     }
 }
 
-impl Bench {
+impl Lab {
     /// Casts a sensor: draws the gains, offsets and places of its taxels.
     #[must_use]
     pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Self {
@@ -405,7 +405,7 @@ impl Frames {
         let range = sensor.readout.min_kpa..=sensor.readout.max_kpa;
         Press {
             name: name.to_owned(),
-            file: "lab".into(),
+            mounting: "lab".into(),
             indenter: indenter.to_owned(),
             control,
             time_s: self.0.iter().map(|m| m.time_s).collect(),

@@ -11,7 +11,7 @@ const MOST_FILES: u32 = 10_000;
 
 /// A log of frames, while it is written.
 #[derive(Debug)]
-pub struct Recording {
+pub struct TouchRecording {
     recorder: Recorder,
     sender: LogSender,
     path: PathBuf,
@@ -20,7 +20,7 @@ pub struct Recording {
     last: Option<(u64, f64)>,
 }
 
-impl Recording {
+impl TouchRecording {
     /// Begins `touch-0001.mcap` in a folder, or the first after it that is not there.
     ///
     /// # Errors

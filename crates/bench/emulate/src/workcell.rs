@@ -25,12 +25,12 @@ pub struct Situation {
     pub sensed: Sensed,
 }
 
-/// The robot's arm and the physics around its tool; clones are of the same scene.
+/// The robot's arm and the physics around its tool; clones are of the same workcell.
 ///
 /// It goes on in equal steps, on a grid of times of its own, and is read between them linearly. So what a device reads does not depend on
 /// who else has read, or when.
 #[derive(Clone)]
-pub struct Scene {
+pub struct Workcell {
     clock: LabClock,
     world: Arc<Mutex<World>>,
 }
@@ -43,11 +43,11 @@ struct World {
     n_steps: u64,
 }
 
-impl Scene {
+impl Workcell {
     /// Time between two steps, s.
     pub const STEP_S: f64 = STEP_NS as f64 * 1e-9;
 
-    /// A scene whose arm is at rest at a pose. Its time is that of the clock, from zero.
+    /// A workcell whose arm is at rest at a pose. Its time is that of the clock, from zero.
     #[must_use]
     pub fn new(clock: LabClock, physics: impl Physics + 'static, tool: TcpPose, arm: ArmSettings) -> Self {
         let mut world = World {
@@ -102,7 +102,7 @@ impl World {
     fn advance(&mut self, step: u64) {
         while self.n_steps < step {
             self.n_steps += 1;
-            self.arm.advance(Scene::STEP_S);
+            self.arm.advance(Workcell::STEP_S);
             self.look();
         }
     }
@@ -139,10 +139,10 @@ pub(crate) fn mix_poses(one: &TcpPose, other: &TcpPose, fraction: f64) -> TcpPos
     TcpPose::new(position_mm, turn)
 }
 
-impl fmt::Debug for Scene {
+impl fmt::Debug for Workcell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let world = locked(&self.world);
-        f.debug_struct("Scene")
+        f.debug_struct("Workcell")
             .field("time_s", &seconds(world.n_steps * STEP_NS))
             .field("arm", &world.arm)
             .finish_non_exhaustive()
