@@ -1,13 +1,13 @@
 //! What is looked at.
 
 use phystac::{Settings, Transfer, Wiring};
-use twintac_log::{CountTransfer, Description};
+use twintac_log::Description;
 use twintac_recording::Provenance;
 use twintac_report::{Rectangle, pitch_mm};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
-use crate::{LiveError, TAXELS};
+use crate::{LiveError, TAXELS, confirmed_transfer};
 
 /// A sensor, and where its numbers come from.
 #[derive(Clone, Debug)]
@@ -69,7 +69,7 @@ impl About {
             sensor_toml: self.sensor_toml.clone(),
             provenance: self.provenance,
             taxels: self.taxels.clone(),
-            transfer: Some(CountTransfer::from_driver(&self.transfer, true)),
+            transfer: Some(confirmed_transfer(&self.transfer)),
             base_from_gel: Pose::IDENTITY,
             tool_from_indenter: Pose::IDENTITY,
             force_axis: glam::DVec3::NEG_Z,

@@ -3,9 +3,9 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use phystac::{Clock, PhysTac};
-use twintac_log::{Screening, TactileFrame};
+use twintac_log::TactileFrame;
 
-use crate::{LiveError, PowerOn};
+use crate::{LiveError, PowerOn, Screening};
 
 /// A frame as it is handed out.
 #[derive(Clone, Debug, PartialEq)]

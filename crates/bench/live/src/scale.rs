@@ -3,11 +3,10 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, scale_hint};
-use twintac_log::Screening;
 use twintac_sensor::Sensor;
 
 use crate::reader::bus_error;
-use crate::{LiveError, emulated_scale};
+use crate::{LiveError, Screening, emulated_scale};
 
 /// The largest pressure that counts of a scale can say, kPa.
 pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {

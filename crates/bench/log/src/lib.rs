@@ -28,7 +28,6 @@
 mod accepts;
 mod cdr;
 mod description;
-mod devices;
 mod error;
 mod event;
 mod mcap;
@@ -43,7 +42,6 @@ mod table;
 mod writer;
 
 pub use description::{CountTransfer, Description};
-pub use devices::Screening;
 pub use error::LogError;
 pub use event::Event;
 pub use message::{

@@ -58,8 +58,7 @@ impl std::fmt::Display for Stream {
 }
 
 impl Message {
-    /// A message at a time of the bench's clock, s since its start, as [`BenchClock`](twintac_rig::BenchClock) has it; to the
-    /// nearest ns.
+    /// A message at a time of the bench's clock, s since its start; to the nearest ns.
     #[must_use]
     pub fn at_s(bench_s: f64, body: Body) -> Self {
         Self {

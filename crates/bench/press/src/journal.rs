@@ -3,7 +3,7 @@
 use twintac_log::{
     Body, Event, LogError, LogSender, Message, PoseReading, Stream, TactileFrame, WrenchReading,
 };
-use twintac_rig::{Stamp, TcpPose, WrenchSample};
+use twintac_rig::{TcpPose, WrenchSample};
 
 /// Hands messages to a log, and marks what is missing between them.
 #[derive(Debug)]
@@ -94,18 +94,19 @@ impl Journal {
             self.event(now_s, gap)?;
         }
         self.wrench_s = Some(now_s);
-        self.send(now_s, Body::Wrench(WrenchReading::from(sample)))
+        self.send(now_s, Body::Wrench(wrench_reading(sample)))
     }
 
     pub(crate) fn pose(&mut self, bench_s: f64, pose: &TcpPose) -> Result<(), LogError> {
         if let Some(gap) = self.reports.go_on(bench_s) {
             self.event(bench_s, gap)?;
         }
-        let stamp = Stamp {
-            bench_s,
+        let reading = PoseReading {
             source_s: None,
+            position_mm: pose.position_mm,
+            base_from_tool: pose.base_from_tool(),
         };
-        self.send(bench_s, Body::Pose(PoseReading::new(pose, stamp)))
+        self.send(bench_s, Body::Pose(reading))
     }
 
     /// The log ends: streams that fell silent before have a gap up to here.
@@ -154,6 +155,17 @@ impl Continuity {
             to_ns: ns(now_s),
             lost: (self.n_whole > 0).then(|| lost.max(1.0) as u64),
         })
+    }
+}
+
+fn wrench_reading(sample: &WrenchSample) -> WrenchReading {
+    WrenchReading {
+        source_s: sample.stamp.source_s,
+        sequence: sample.sequence,
+        status: sample.status,
+        lost_before: sample.lost_before,
+        force_n: sample.wrench.force_n,
+        torque_n_mm: sample.wrench.torque_n_mm,
     }
 }
 

@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use phystac::{Clock, Error, PhysTac};
-use twintac_log::{Screening, TactileFrame};
+use phystac::{Clock, Error, Frame, PhysTac};
+use twintac_log::TactileFrame;
 use twintac_rig::xarm::{Mode, MotionState, Report, ReportReader, Wire};
 use twintac_rig::{BenchClock, Cause, TcpPose, WrenchSample, WrenchSource};
 
@@ -161,14 +161,15 @@ impl Streams {
     }
 
     /// Hears a tactile sensor, which is read as fast as its bus lets it; its frames must be stamped on this bench's clock
-    /// ([`BenchClock::now_us`]). `free` frees a bus that hangs; its channels are looked into anew.
+    /// ([`BenchClock::now_us`]). `message` makes of each frame what is recorded. `free` frees a bus that hangs; its channels are looked into
+    /// anew.
     ///
     /// # Errors
     /// No thread.
     pub fn hear_taxels<I, D, C, const N: usize>(
         &mut self,
         mut sensor: PhysTac<I, D, C, N>,
-        mut screening: Screening<N>,
+        mut message: impl FnMut(Frame<N>) -> TactileFrame + Send + 'static,
         mut free: impl FnMut(&mut I, &mut D) + Send + 'static,
     ) -> Result<(), PressError>
     where
@@ -183,7 +184,7 @@ impl Streams {
                         // The barometers convert while the frame is handed on. An error is found again by the next frame.
                         let _ = sensor.trigger();
                         let frame_s = frame.triggered_us as f64 * 1e-6;
-                        ear.say(frame_s, StreamEvent::Frame(screening.frame(frame)));
+                        ear.say(frame_s, StreamEvent::Frame(message(frame)));
                     }
                     Err(error) => {
                         let problem = error.to_string();

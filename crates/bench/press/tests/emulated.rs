@@ -14,9 +14,9 @@ use tempfile::TempDir;
 use twintac_emulate::{
     EmulatedBench, EmulatedBenchSettings, FaultKind, Hertz, LabClock, Moment, ScheduledFault,
 };
+use twintac_live::{Screening, confirmed_transfer};
 use twintac_log::{
-    Body, CountTransfer, Description, Ending, Event, LogReader, ReadOptions, Screening, Stream, TaxelState,
-    read_presses,
+    Body, Description, Ending, Event, LogReader, ReadOptions, Stream, TaxelState, read_presses,
 };
 use twintac_press::{
     Bench, Mounting, Operator, PressError, PressSettings, RunSummary, Runner, Streams, dry_run,
@@ -34,7 +34,7 @@ fn runner() -> Runner {
             sensor_toml: String::new(),
             provenance: Provenance::Emulated,
             taxels: (0..8).map(|taxel| format!("S{taxel}")).collect(),
-            transfer: Some(CountTransfer::from_driver(&Transfer::per_pa(32), true)),
+            transfer: Some(confirmed_transfer(&Transfer::per_pa(32))),
             base_from_gel: settings.placement.base_from_gel,
             tool_from_indenter: settings.placement.tool_from_indenter,
             force_axis: settings.placement.force_axis,
@@ -95,8 +95,10 @@ fn bench() -> (EmulatedBench, Bench<Client<TcpStream>>) {
         ..phystac::Settings::default()
     };
     let sensor = PhysTac::new(devices.board.bus(), clock, move || bench_clock.now_us(), driver);
-    let screening = Screening::new(Transfer::per_pa(32), Thresholds::default());
-    streams.hear_taxels(sensor, screening, free).unwrap();
+    let mut screening = Screening::new(Transfer::per_pa(32), Thresholds::default());
+    streams
+        .hear_taxels(sensor, move |frame| screening.frame(frame), free)
+        .unwrap();
     let mut arm = Client::connect(devices.robot.commands()).unwrap();
     arm.enable().unwrap();
     arm.begin_servo().unwrap();

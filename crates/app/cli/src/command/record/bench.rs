@@ -168,7 +168,8 @@ where
     let checked = power_on(&mut taxels, sensor, known)?;
     let mut notes = checked.notes.clone();
     let mut streams = Streams::new(clock);
-    streams.hear_taxels(taxels, checked.screening(), free)?;
+    let mut screening = checked.screening();
+    streams.hear_taxels(taxels, move |frame| screening.frame(frame), free)?;
     let (requests, configuration) = addresses.force.clone();
     let mut force = netft::Client::connect(requests, configuration)?;
     force.start(false)?;

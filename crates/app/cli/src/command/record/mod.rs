@@ -15,7 +15,7 @@ use indicatif::ProgressBar;
 use serde::Serialize;
 use twintac_lab::{Reality, Selector};
 use twintac_live::Known;
-use twintac_log::{CountTransfer, Description};
+use twintac_log::Description;
 use twintac_press::{Mounting, Operator, PressSettings, RunSummary, Runner};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
@@ -240,7 +240,7 @@ fn description(sensor: &SensorFile, bench: &OpenBench) -> Description {
             .iter()
             .map(|taxel| taxel.name.clone())
             .collect(),
-        transfer: Some(CountTransfer::from_driver(&bench.transfer, true)),
+        transfer: Some(twintac_live::confirmed_transfer(&bench.transfer)),
         // Set by the run.
         base_from_gel: twintac_shape::Pose::IDENTITY,
         tool_from_indenter: twintac_shape::Pose::IDENTITY,

@@ -1,0 +1,139 @@
+//! Frames of the driver as messages of a log.
+
+use phystac::{Fault, Frame, Health, Thresholds, Transfer};
+use twintac_log::{CountTransfer, TactileFrame, TaxelReading, TaxelState};
+
+/// Makes messages of the driver's frames, one after the other.
+#[derive(Clone, Debug)]
+pub struct Screening<const N: usize> {
+    transfer: Transfer,
+    health: Health<N>,
+}
+
+impl<const N: usize> Screening<N> {
+    /// Of a sensor whose counts stand for this, of which no frame has been seen.
+    #[must_use]
+    pub const fn new(transfer: Transfer, thresholds: Thresholds) -> Self {
+        Self {
+            transfer,
+            health: Health::new(transfer, thresholds),
+        }
+    }
+
+    /// The next frame as a message. A taxel that is saturated or frozen keeps its counts and has no pressure.
+    pub fn frame(&mut self, mut frame: Frame<N>) -> TactileFrame {
+        let mut message = tactile_frame(&frame, &self.transfer);
+        self.health.screen(&mut frame);
+        for (index, fault) in frame.faults() {
+            message.taxels[index].state = taxel_state(fault);
+            message.taxels[index].pressure_pa = None;
+        }
+        message
+    }
+}
+
+/// What a log says of the driver's transfer, which somebody who knows the parts has confirmed.
+#[must_use]
+pub fn confirmed_transfer(transfer: &Transfer) -> CountTransfer {
+    CountTransfer {
+        pa_per_count: f64::from(transfer.pa_per_count),
+        offset_pa: f64::from(transfer.offset_pa),
+        signed: transfer.signed,
+        is_confirmed: true,
+    }
+}
+
+/// A frame as a message, before it is compared with the frames before it.
+fn tactile_frame<const N: usize>(frame: &Frame<N>, transfer: &Transfer) -> TactileFrame {
+    let taxels = frame.taxels.iter().zip(frame.read_us);
+    TactileFrame {
+        triggered_us: frame.triggered_us,
+        taxels: taxels
+            .map(|(taxel, read_us)| taxel_reading(*taxel, read_us, transfer))
+            .collect(),
+    }
+}
+
+fn taxel_reading(taxel: Result<phystac::Sample, Fault>, read_us: u64, transfer: &Transfer) -> TaxelReading {
+    let pressure_pa = taxel.and_then(|sample| transfer.pressure_pa(sample.counts));
+    let count = |sample: phystac::Sample| match transfer.signed {
+        true => sample.counts.signed(),
+        false => sample.counts.unsigned().cast_signed(),
+    };
+    TaxelReading {
+        state: pressure_pa.map_or_else(taxel_state, |_| TaxelState::Good),
+        read_us,
+        counts: taxel.ok().map(count),
+        pressure_pa: pressure_pa.ok().map(f64::from),
+        temperature_c: taxel.ok().map(|sample| f64::from(sample.temperature_c)),
+    }
+}
+
+fn taxel_state(fault: Fault) -> TaxelState {
+    match fault {
+        Fault::Missing => TaxelState::Missing,
+        Fault::Stuck => TaxelState::Stuck,
+        Fault::Bus(_) => TaxelState::BusError,
+        Fault::Isolated => TaxelState::Isolated,
+        Fault::Refused => TaxelState::Refused,
+        Fault::Saturated => TaxelState::Saturated,
+        Fault::Frozen => TaxelState::Frozen,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use phystac::{Counts, Sample};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn sample(bytes: [u8; 3]) -> Sample {
+        Sample {
+            counts: Counts::from_be_bytes(bytes),
+            temperature_c: 21.5,
+        }
+    }
+
+    #[test]
+    fn a_saturated_taxel_keeps_its_counts_and_a_missing_one_has_none() {
+        let frame = Frame {
+            triggered_us: 5,
+            read_us: [11, 12, 13],
+            taxels: [
+                Ok(sample([0, 0, 64])),
+                Ok(sample([0x7F, 0xFF, 0xFF])),
+                Err(Fault::Missing),
+            ],
+        };
+        let taxels = tactile_frame(&frame, &Transfer::per_pa(32)).taxels;
+        let good = TaxelReading {
+            state: TaxelState::Good,
+            read_us: 11,
+            counts: Some(64),
+            pressure_pa: Some(2.0),
+            temperature_c: Some(21.5),
+        };
+        assert_eq!(taxels[0], good);
+        assert_eq!(taxels[1].state, TaxelState::Saturated);
+        assert_eq!((taxels[1].counts, taxels[1].pressure_pa), (Some(0x7F_FFFF), None));
+        assert_eq!((taxels[2].state, taxels[2].counts), (TaxelState::Missing, None));
+    }
+
+    proptest! {
+        #[test]
+        fn a_taxel_has_counts_if_it_was_read_and_is_good_if_it_has_a_pressure(
+            bytes in prop::option::of(any::<[u8; 3]>()),
+            signed in any::<bool>(),
+        ) {
+            let transfer = Transfer { signed, ..Transfer::per_pa(8) };
+            let taxel = bytes.map(sample).ok_or(Fault::Stuck);
+            let frame = Frame { triggered_us: 0, read_us: [1], taxels: [taxel] };
+            let said = tactile_frame(&frame, &transfer).taxels[0];
+            let pressure_pa = frame.pressures_pa(&transfer)[0];
+            prop_assert_eq!(said.counts.is_some(), taxel.is_ok());
+            prop_assert_eq!(said.state == TaxelState::Good, pressure_pa.is_ok());
+            prop_assert_eq!(said.pressure_pa, pressure_pa.ok().map(f64::from));
+        }
+    }
+}
