@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use twintac_config::ConfigError;
 use twintac_log::LogError;
 use twintac_rig::RigError;
@@ -13,6 +14,39 @@ pub enum PressError {
     /// The bench settings are wrong.
     #[error(transparent)]
     Settings(#[from] ConfigError),
+    /// Settings that a program made or changed are wrong, or the bench is not watched closely enough.
+    #[error("the bench's settings: `{field}` {problem}; {hint}")]
+    Setting {
+        /// The field, as a dotted path.
+        field: &'static str,
+        /// What is wrong with it, read after its name.
+        problem: String,
+        /// What to do about it.
+        hint: &'static str,
+    },
+    /// The settings do not say where the devices of a real bench are.
+    #[error(
+        "the bench's settings have no [devices]: say where robot, force and tactile are, or press on the emulated bench"
+    )]
+    NoDevices,
+    /// The sensor's description gives no limits.
+    #[error(
+        "the description of sensor `{sensor}` does not say what it stands; add a table [limits] with force_n and depth_mm"
+    )]
+    NoLimits {
+        /// Name of the description.
+        sensor: String,
+    },
+    /// The controller has another tool than the settings.
+    #[error(
+        "the robot's controller has a TCP offset of {found_mm} mm, and `devices.tcp_offset_mm` is {expected_mm}: poses would end elsewhere; make them equal and measure [placement] again"
+    )]
+    OtherTool {
+        /// The controller's tool centre point in the flange's frame, mm.
+        found_mm: DVec3,
+        /// The one of the settings, mm.
+        expected_mm: DVec3,
+    },
     /// The supervisor refuses the settings.
     #[error(transparent)]
     Rig(#[from] RigError),

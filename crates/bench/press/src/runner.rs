@@ -30,15 +30,12 @@ pub struct Bench<A> {
     pub streams: Streams,
 }
 
-/// Carries out presses.
+/// Carries out presses, within limits that were checked.
 #[derive(Clone, Debug)]
 pub struct Runner {
-    /// How.
-    pub settings: PressSettings,
-    /// What the sensor stands.
-    pub sensor: SensorLimits,
-    /// What the logs are about. Placement and start of the clock are set by the run.
-    pub description: Description,
+    settings: PressSettings,
+    sensor: SensorLimits,
+    description: Description,
 }
 
 /// What came of a run.
@@ -69,6 +66,25 @@ struct Rest {
 }
 
 impl Runner {
+    /// What carries out presses with these settings, on a sensor that has these limits ([`sensor_limits`](crate::sensor_limits)).
+    /// `description` says what the logs are about; the run sets its placement and the start of its clock. Where its provenance is
+    /// [`Real`](twintac_recording::Provenance::Real), the devices may be silent for 0.1 s (force sensor) and 0.5 s (others) at most.
+    ///
+    /// # Errors
+    /// [`PressError::Setting`].
+    pub fn new(
+        settings: PressSettings,
+        sensor: SensorLimits,
+        description: Description,
+    ) -> Result<Self, PressError> {
+        settings.check_for(description.provenance)?;
+        Ok(Self {
+            settings,
+            sensor,
+            description,
+        })
+    }
+
     /// Carries out the presses that the folder does not hold yet, one log each, until all are done, something is wrong, or `interrupt` is
     /// set.
     ///

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use twintac_config::{ConfigError, Document};
+use twintac_config::ConfigError;
 use twintac_rig::{Limits, Retreat, Setup};
 
 use crate::Placement;
@@ -80,11 +80,14 @@ impl PressSettings {
     /// The first field that is wrong, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         let document = twintac_config::parse::<Self>(file, text)?;
-        document.value.check(&document)?;
-        Ok(document.value)
+        match document.value.problem() {
+            Some((field, problem, hint)) => Err(document.error(field, problem, hint)),
+            None => Ok(document.value),
+        }
     }
 
-    fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
+    /// The first field that makes no sense: its name, what is wrong, and what to do.
+    pub(crate) fn problem(&self) -> Option<(&'static str, String, &'static str)> {
         for (field, value) in [
             ("travel_height_mm", self.travel_height_mm),
             ("travel_speed_mm_per_s", self.travel_speed_mm_per_s),
@@ -100,30 +103,33 @@ impl PressSettings {
             ("frame_gap_s", self.frame_gap_s),
             ("report_gap_s", self.report_gap_s),
         ] {
-            if value <= 0.0 {
-                return Err(document.error(field, format!("is {value}"), "give a number above zero"));
+            if value <= 0.0 || !value.is_finite() {
+                return Some((field, format!("is {value}"), "give a number above zero"));
             }
         }
         if !(0.004..=0.02).contains(&self.servo_period_s) {
             let problem = format!("is {}", self.servo_period_s);
-            return Err(document.error("servo_period_s", problem, "give 0.004 to 0.02"));
+            return Some(("servo_period_s", problem, "give 0.004 to 0.02"));
         }
+        let is_unit = |length: f64| (length - 1.0).abs() <= 1e-6;
+        let placement = &self.placement;
         for (field, rotation) in [
-            ("placement.base_from_gel", self.placement.base_from_gel.rotation),
+            ("placement.base_from_gel", placement.base_from_gel.rotation),
             (
                 "placement.tool_from_indenter",
-                self.placement.tool_from_indenter.rotation,
+                placement.tool_from_indenter.rotation,
             ),
         ] {
-            if (rotation.length() - 1.0).abs() > 1e-6 {
-                return Err(document.error(field, "has no unit quaternion", "normalise its rotation"));
+            if !is_unit(rotation.length()) {
+                let problem = "has no unit quaternion".to_owned();
+                return Some((field, problem, "normalise its rotation"));
             }
         }
-        if (self.placement.force_axis.length() - 1.0).abs() > 1e-6 {
-            let problem = format!("is {}", self.placement.force_axis);
-            return Err(document.error("placement.force_axis", problem, "give a unit vector"));
+        if !is_unit(placement.force_axis.length()) {
+            let problem = format!("is {}", placement.force_axis);
+            return Some(("placement.force_axis", problem, "give a unit vector"));
         }
-        Ok(())
+        None
     }
 
     /// What the supervisor is set up with for a press whose indenter touches the gel with the tool at `surface_mm`, in the base's frame.

@@ -26,27 +26,42 @@ use twintac_recording::Provenance;
 use twintac_rig::xarm::{Client, ReportPort, ReportReader};
 use twintac_rig::{BenchClock, Cause, NetFtSource, SensorLimits, netft};
 
-fn runner() -> Runner {
-    let settings = PressSettings::parse("bench.toml", include_str!("bench.toml")).unwrap();
-    Runner {
-        description: Description {
-            sensor: "test".to_owned(),
-            sensor_toml: String::new(),
-            provenance: Provenance::Emulated,
-            taxels: (0..8).map(|taxel| format!("S{taxel}")).collect(),
-            transfer: Some(confirmed_transfer(&Transfer::per_pa(32))),
-            base_from_gel: settings.placement.base_from_gel,
-            tool_from_indenter: settings.placement.tool_from_indenter,
-            force_axis: settings.placement.force_axis,
-            start_unix_ns: 0,
-            versions: BTreeMap::new(),
-        },
-        settings,
-        sensor: SensorLimits {
-            force_n: 20.0,
-            depth_mm: 4.0,
-        },
+const LIMITS: SensorLimits = SensorLimits {
+    force_n: 20.0,
+    depth_mm: 4.0,
+};
+
+fn settings() -> PressSettings {
+    PressSettings::parse("bench.toml", include_str!("bench.toml")).unwrap()
+}
+
+fn description(provenance: Provenance) -> Description {
+    let placement = settings().placement;
+    Description {
+        sensor: "test".to_owned(),
+        sensor_toml: String::new(),
+        provenance,
+        taxels: (0..8).map(|taxel| format!("S{taxel}")).collect(),
+        transfer: Some(confirmed_transfer(&Transfer::per_pa(32))),
+        base_from_gel: placement.base_from_gel,
+        tool_from_indenter: placement.tool_from_indenter,
+        force_axis: placement.force_axis,
+        start_unix_ns: 0,
+        versions: BTreeMap::new(),
     }
+}
+
+fn runner() -> Runner {
+    Runner::new(settings(), LIMITS, description(Provenance::Emulated)).unwrap()
+}
+
+#[test]
+fn a_real_bench_that_is_not_watched_closely_presses_nothing() {
+    let refused = Runner::new(settings(), LIMITS, description(Provenance::Real)).unwrap_err();
+    assert!(
+        refused.to_string().contains("`force_silence_s` is 0.8"),
+        "{refused}"
+    );
 }
 
 fn plans(count: usize) -> Vec<PressPlan> {
@@ -91,7 +106,7 @@ fn bench() -> (EmulatedBench, Bench<Client<TcpStream>>) {
         let _ = free_bus(&mut scl, &mut sda, delay);
     };
     let driver = phystac::Settings::<8> {
-        conversion_us: runner().settings.conversion_us,
+        conversion_us: settings().conversion_us,
         ..phystac::Settings::default()
     };
     let sensor = PhysTac::new(devices.board.bus(), clock, move || bench_clock.now_us(), driver);
@@ -210,7 +225,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
 
 #[test]
 fn a_dry_run_ends_where_the_presses_do() {
-    let settings = runner().settings;
+    let settings = settings();
     let start = EmulatedBenchSettings::default().robot.first_pose;
     let dry = dry_run(&settings, &plans(3), &start).unwrap();
     let lowest = |press: &twintac_press::PlannedPress| {

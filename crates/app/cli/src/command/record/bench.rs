@@ -4,21 +4,17 @@ use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
-use glam::DVec3;
 use phystac::{Clock, PhysTac, Transfer};
 use twintac_lab::Selector;
 use twintac_live::{Known, TAXELS, power_on};
-use twintac_press::{Bench, Devices, PressSettings, Streams};
+use twintac_press::{Bench, PressSettings, Streams};
 use twintac_recording::Provenance;
-use twintac_rig::xarm::{Client, PORT, ReportPort, ReportReader, RobotStatus};
+use twintac_rig::xarm::{Client, PORT, ReportPort, ReportReader};
 use twintac_rig::{BenchClock, NetFtSource, netft};
 use twintac_sensor::Sensor;
-
-/// How far a controller's tool centre point may be from the expected one, mm.
-const SAME_TOOL_MM: f64 = 0.01;
 
 /// How long a device may take to accept a connection.
 const CONNECT_WITHIN: Duration = Duration::from_secs(3);
@@ -46,35 +42,9 @@ pub(super) struct Addresses {
     pub(super) force: (SocketAddr, netft::Configuration),
 }
 
-/// Longest silences of devices that move something real, s.
-const LONGEST_FORCE_SILENCE_S: f64 = 0.1;
-const LONGEST_SILENCE_S: f64 = 0.5;
-
-/// The devices of a bench that moves something real, and that it is watched closely.
-pub(super) fn real_devices(settings: &PressSettings) -> Result<&Devices> {
-    let devices = settings.devices.as_ref().context(
-        "the bench's settings have no [devices]: say where robot, force and tactile are, or press on the emulated bench with --lab",
-    )?;
-    for (field, silence_s, longest_s) in [
-        (
-            "force_silence_s",
-            settings.force_silence_s,
-            LONGEST_FORCE_SILENCE_S,
-        ),
-        ("robot_silence_s", settings.robot_silence_s, LONGEST_SILENCE_S),
-        ("tactile_silence_s", settings.tactile_silence_s, LONGEST_SILENCE_S),
-    ] {
-        ensure!(
-            silence_s <= longest_s,
-            "the bench's settings: `{field}` is {silence_s}, and a real bench must not go on for longer than {longest_s} s without hearing that device"
-        );
-    }
-    Ok(devices)
-}
-
 /// Connects the devices of the settings. The robot is enabled, and stands.
 pub(super) fn open_real(sensor: &Sensor, settings: &PressSettings, known: &Known) -> Result<OpenBench> {
-    let devices = real_devices(settings)?;
+    let devices = settings.real_devices()?;
     let clock = BenchClock::start();
     let configuration = netft::Client::read_configuration(&devices.force)?;
     let addresses = Addresses {
@@ -88,7 +58,7 @@ pub(super) fn open_real(sensor: &Sensor, settings: &PressSettings, known: &Known
     let tool = report
         .and_then(|report| report.status)
         .context("the robot does not report its settings")?;
-    check_tool(&tool, devices.tcp_offset_mm)?;
+    devices.check_tool(&tool)?;
     let mut driver = twintac_live::driver_settings(sensor)?;
     driver.conversion_us = settings.conversion_us;
     let taxels = open_bus(Path::new(&devices.tactile), driver, clock)?;
@@ -117,16 +87,6 @@ fn address(host: &str, port: u16) -> Result<SocketAddr> {
 fn connect_to(reports: SocketAddr) -> Result<TcpStream> {
     TcpStream::connect_timeout(&reports, CONNECT_WITHIN)
         .with_context(|| format!("connecting to the robot's reports at {reports}"))
-}
-
-/// That the controller's tool is the one that placement and limits count from.
-fn check_tool(found: &RobotStatus, expected_mm: DVec3) -> Result<()> {
-    let found_mm = found.tcp_offset.position_mm;
-    ensure!(
-        found_mm.distance(expected_mm) <= SAME_TOOL_MM,
-        "the robot's controller has a TCP offset of {found_mm} mm, and `devices.tcp_offset_mm` is {expected_mm}: poses would end elsewhere; make them equal and measure [placement] again"
-    );
-    Ok(())
 }
 
 #[cfg(target_os = "linux")]
@@ -183,31 +143,4 @@ where
     arm.enable()?;
     arm.begin_servo()?;
     Ok((Bench { arm, streams }, checked.transfer, notes))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const REAL: &str = include_str!("../../../../../../rigs/xarm.toml");
-
-    fn refused(text: &str) -> String {
-        let settings = PressSettings::parse("bench.toml", text).unwrap();
-        real_devices(&settings).unwrap_err().to_string()
-    }
-
-    #[test]
-    fn the_shipped_bench_is_watched_closely_enough() {
-        let settings = PressSettings::parse("xarm.toml", REAL).unwrap();
-        assert_eq!(real_devices(&settings).unwrap().tactile, "/dev/i2c-1");
-    }
-
-    #[test]
-    fn a_real_bench_with_the_labs_patience_or_without_devices_is_refused() {
-        let patient = REAL.replace("force_silence_s = 0.05", "force_silence_s = 0.5");
-        assert!(refused(&patient).contains("`force_silence_s` is 0.5"));
-        let (before, _) = REAL.split_once("\n[devices]").unwrap();
-        let (_, after) = REAL.split_once("\n[placement]").unwrap();
-        assert!(refused(&format!("{before}\n[placement]{after}")).contains("[devices]"));
-    }
 }

@@ -10,16 +10,15 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use serde::Serialize;
 use twintac_lab::{Reality, Selector};
 use twintac_live::Known;
 use twintac_log::Description;
-use twintac_press::{Mounting, Operator, PressSettings, RunSummary, Runner};
+use twintac_press::{Mounting, Operator, PressSettings, RunSummary, Runner, sensor_limits};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
-use twintac_rig::SensorLimits;
 use twintac_rig::xarm::Client;
 
 use crate::arguments::Record;
@@ -76,13 +75,13 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     if arguments.dry_run {
         return preview::run(&settings, &plans, &sensor.sensor, &out, arguments.json);
     }
-    let limits = limits(&sensor)?;
+    let limits = sensor_limits(&sensor.sensor)?;
     let faults = match &arguments.faults {
         Some(file) => lab::read_faults(file)?,
         None => Vec::new(),
     };
     if reality.is_none() {
-        bench::real_devices(&settings)?;
+        settings.real_devices()?;
     }
     twintac_press::check_folder(&out.join("logs"), &plans)?;
     let whose = if reality.is_some() {
@@ -105,11 +104,7 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     for note in &bench.notes {
         say(note);
     }
-    let runner = Runner {
-        description: description(&run.sensor, &bench),
-        settings,
-        sensor: limits,
-    };
+    let runner = Runner::new(settings, limits, description(&run.sensor, &bench))?;
     let summary = press_all(&runner, &mut bench, &plans, &run.folder.join("logs"))?;
     if summary.presses_done > 0 {
         run.collect(&run.folder.join("logs"), &plans)?;
@@ -248,20 +243,6 @@ fn description(sensor: &SensorFile, bench: &OpenBench) -> Description {
         start_unix_ns: 0,
         versions: BTreeMap::from([("twintac".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
     }
-}
-
-/// What the sensor stands: a bench without such limits presses nothing.
-fn limits(sensor: &SensorFile) -> Result<SensorLimits> {
-    let Some(limits) = sensor.sensor.limits else {
-        bail!(
-            "the description of sensor `{}` does not say what it stands; add a table [limits] with force_n and depth_mm",
-            sensor.sensor.name
-        );
-    };
-    Ok(SensorLimits {
-        force_n: limits.force_n,
-        depth_mm: limits.depth_mm,
-    })
 }
 
 fn press_settings(file: Option<&Path>) -> Result<PressSettings> {
