@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::fault::FaultWire;
 use crate::force::{ForceServer, ForceSettings};
 use crate::i2c::{Board, BoardSettings};
 use crate::robot::{RobotServer, RobotSettings};
-use crate::{EmulateError, FaultWire, LabClock, Physics, ScheduledFault, Workcell};
+use crate::{EmulateError, LabClock, Physics, ScheduledFault, Workcell};
 
 /// What the devices are like and what goes wrong with them; as TOML, everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -31,12 +31,12 @@ const LIMITS: SensorLimits = SensorLimits {
     depth_mm: 4.0,
 };
 
-fn settings() -> PressSettings {
+fn press_settings() -> PressSettings {
     PressSettings::parse("bench.toml", include_str!("bench.toml")).unwrap()
 }
 
 fn description(provenance: Provenance) -> Description {
-    let placement = settings().placement;
+    let placement = press_settings().placement;
     Description {
         sensor: "test".to_owned(),
         sensor_toml: String::new(),
@@ -52,12 +52,12 @@ fn description(provenance: Provenance) -> Description {
 }
 
 fn runner() -> Runner {
-    Runner::new(settings(), LIMITS, description(Provenance::Emulated)).unwrap()
+    Runner::new(press_settings(), LIMITS, description(Provenance::Emulated)).unwrap()
 }
 
 #[test]
 fn a_real_bench_that_is_not_watched_closely_presses_nothing() {
-    let refused = Runner::new(settings(), LIMITS, description(Provenance::Real)).unwrap_err();
+    let refused = Runner::new(press_settings(), LIMITS, description(Provenance::Real)).unwrap_err();
     assert!(
         refused.to_string().contains("`force_silence_s` is 0.8"),
         "{refused}"
@@ -106,7 +106,7 @@ fn bench() -> (EmulatedBench, Bench<Client<TcpStream>>) {
         let _ = free_bus(&mut scl, &mut sda, delay);
     };
     let driver = phystac::Settings::<8> {
-        conversion_us: settings().conversion_us,
+        conversion_us: press_settings().conversion_us,
         ..phystac::Settings::default()
     };
     let sensor = PhysTac::new(devices.board.bus(), clock, move || bench_clock.now_us(), driver);
@@ -225,7 +225,7 @@ fn presses_are_recorded_whole_and_a_second_run_goes_on_where_the_first_ended() {
 
 #[test]
 fn a_dry_run_ends_where_the_presses_do() {
-    let settings = settings();
+    let settings = press_settings();
     let start = EmulatedBenchSettings::default().robot.first_pose;
     let dry = dry_run(&settings, &plans(3), &start).unwrap();
     let lowest = |press: &twintac_press::PlannedPress| {

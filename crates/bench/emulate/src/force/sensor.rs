@@ -6,8 +6,9 @@ use twintac_rig::netft::{Command, Configuration, Record, Request, Status, TICKS_
 use super::ForceSettings;
 use crate::chance::Chance;
 use crate::clock::{nanoseconds, seconds};
+use crate::fault::FaultWire;
 use crate::schedule::Schedule;
-use crate::{EmulateError, FaultKind, FaultWire, ScheduledFault, Workcell};
+use crate::{EmulateError, FaultKind, ScheduledFault, Workcell};
 
 const SATURATED: u32 = 0x8002_0000;
 const MONITOR_LATCHED: u32 = 0x8001_0000;

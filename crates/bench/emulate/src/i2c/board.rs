@@ -10,9 +10,10 @@ use super::switch::Switch;
 use super::transaction::Transaction;
 use super::{BoardSettings, ClockLine, DataLine, ResetLine};
 use crate::clock::{nanoseconds, seconds};
+use crate::fault::FaultWire;
 use crate::schedule::Schedule;
 use crate::worker::locked;
-use crate::{CHANNELS, EmulateError, FaultKind, FaultWire, ScheduledFault, Workcell};
+use crate::{CHANNELS, EmulateError, FaultKind, ScheduledFault, Workcell};
 
 /// Clocks after which whoever holds the data line has sent its byte.
 const HELD_CLOCKS: u8 = 9;

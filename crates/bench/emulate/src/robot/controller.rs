@@ -8,8 +8,9 @@ use twintac_rig::xarm::{
 };
 
 use super::{Arm, RobotSettings};
+use crate::fault::FaultWire;
 use crate::schedule::Schedule;
-use crate::{EmulateError, FaultKind, FaultWire, ScheduledFault, Workcell};
+use crate::{EmulateError, FaultKind, ScheduledFault, Workcell};
 
 /// A bit for each joint of six.
 const ALL_JOINTS: u8 = 0x3f;
