@@ -91,7 +91,7 @@ struct Outcome {
     /// Periods from that of the cause to that of the command to stop.
     periods_to_stop: usize,
     arm: Fake,
-    events: Vec<LogEvent>,
+    events: Vec<Event>,
     deepest_mm: f64,
 }
 
@@ -256,7 +256,7 @@ fn a_force_beyond_the_limit_stops_in_the_same_period_and_goes_back() {
         outcome
             .events
             .iter()
-            .any(|event| matches!(event, LogEvent::Stopped { .. }))
+            .any(|event| matches!(event, Event::Stopped { .. }))
     );
 }
 
@@ -275,7 +275,7 @@ fn the_press_goes_as_deep_as_planned_below_first_touch() {
     let outcome = Script::new(1.5).run(|_, _, _| false);
     assert_eq!(outcome.cause, None);
     let note = outcome.events.iter().find_map(|event| match event {
-        LogEvent::Note { text } => Some(text.as_str()),
+        Event::Note { text } => Some(text.as_str()),
         _ => None,
     });
     assert!(note.unwrap().starts_with("first touch"), "{:?}", outcome.events);
@@ -286,8 +286,8 @@ fn the_press_goes_as_deep_as_planned_below_first_touch() {
         .events
         .iter()
         .filter_map(|event| match event {
-            LogEvent::PressBegun { .. } => Some(true),
-            LogEvent::PressEnded { .. } => Some(false),
+            Event::PressBegun { .. } => Some(true),
+            Event::PressEnded { .. } => Some(false),
             _ => None,
         })
         .collect();
@@ -347,7 +347,7 @@ fn silence_errors_losses_and_people_stop_a_press() {
         taxels
             .events
             .iter()
-            .any(|event| matches!(event, LogEvent::Gap { .. }))
+            .any(|event| matches!(event, Event::Gap { .. }))
     );
     let robot = Script::new(2.0).run(|_, depth_mm, heard| {
         for heard in heard.iter_mut().filter(|_| late(depth_mm)) {
