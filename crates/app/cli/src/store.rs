@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use digitac::{SourceError, SweepRequest, SweepSource};
 use glam::DVec2;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
+use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, Lattice, SourceError};
 use twintac_shape::{Pose, Shape};
-use twintac_simulate::{Gel, Lattice, PressPlace, Sweep};
+use twintac_simulate::{Gel, PressPlace};
 
 use crate::stage::{read_json, sha256, write_json};
 
@@ -18,15 +18,15 @@ const LATTICE_FROM: usize = 150;
 /// Spacing of that lattice over the gel's height.
 const LATTICE_SPACING: f64 = 1.0 / 3.0;
 
-/// Sweeps of one gel, kept in a folder: what is there is not computed again.
-pub(crate) struct SweepStore<'a> {
+/// Tables over depth of one gel, kept in a folder: what is there is not computed again.
+pub(crate) struct DepthTableStore<'a> {
     gel: &'a Gel,
     folder: PathBuf,
     progress: ProgressBar,
 }
 
-impl<'a> SweepStore<'a> {
-    /// Keeps the gel's sweeps in `folder`, which holds sweeps of no other gel.
+impl<'a> DepthTableStore<'a> {
+    /// Keeps the gel's tables in `folder`, which holds tables of no other gel.
     pub(crate) fn new(gel: &'a Gel, folder: PathBuf, progress: ProgressBar) -> Self {
         Self {
             gel,
@@ -35,7 +35,7 @@ impl<'a> SweepStore<'a> {
         }
     }
 
-    fn place(&self, request: &SweepRequest) -> Result<PressPlace, SourceError> {
+    fn place(&self, request: &DepthTableRequest) -> Result<PressPlace, SourceError> {
         let shape = self.shape(&request.indenter)?.clone();
         let shape = match (shape, request.tip_radius_mm) {
             (Shape::Sphere { .. }, Some(radius_mm)) => Shape::Sphere { radius_mm },
@@ -65,24 +65,24 @@ impl<'a> SweepStore<'a> {
             .shape)
     }
 
-    /// The sweeps at places, from their files or computed now, in order.
-    fn compute(&self, places: &[PressPlace]) -> Result<Vec<Sweep>, SourceError> {
+    /// The tables at places, from their files or computed now, in order.
+    fn compute(&self, places: &[PressPlace]) -> Result<Vec<DepthTable>, SourceError> {
         self.progress.inc_length(places.len() as u64);
         places
             .par_iter()
             .with_max_len(1)
             .map(|place| {
                 let path = self.path(place)?;
-                let sweep = match read_json(&path) {
-                    Ok(sweep) => sweep,
+                let table = match read_json(&path) {
+                    Ok(table) => table,
                     Err(_) => {
-                        let sweep = self.gel.sweep(place)?;
-                        write_json(&path, &sweep)?;
-                        sweep
+                        let table = self.gel.depth_table(place)?;
+                        write_json(&path, &table)?;
+                        table
                     }
                 };
                 self.progress.inc(1);
-                Ok(sweep)
+                Ok(table)
             })
             .collect()
     }
@@ -100,12 +100,12 @@ impl<'a> SweepStore<'a> {
     }
 }
 
-impl SweepSource for SweepStore<'_> {
+impl DepthTableSource for DepthTableStore<'_> {
     fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
         Ok(self.gel.touch(self.shape(indenter)?, above)?)
     }
 
-    fn sweeps(&self, requests: &[SweepRequest]) -> Result<Vec<Sweep>, SourceError> {
+    fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {
         let places = requests
             .iter()
             .map(|request| self.place(request))
@@ -125,12 +125,12 @@ impl SweepSource for SweepStore<'_> {
                 // A gel gives most at its corners: they tell how deep all places have to go.
                 let corners = self.compute(&moved(&place, lattice.corners_mm()))?;
                 place.enough_force_n = None;
-                place.depth_mm = corners.iter().map(Sweep::depth_mm).fold(0.0, f64::max);
+                place.depth_mm = corners.iter().map(DepthTable::depth_mm).fold(0.0, f64::max);
             }
-            let sweeps = self.compute(&moved(&place, lattice.places_mm()))?;
+            let tables = self.compute(&moved(&place, lattice.places_mm()))?;
             return Ok(places
                 .iter()
-                .map(|p| lattice.at(&sweeps, DVec2::new(p.x_mm, p.y_mm)))
+                .map(|p| lattice.at(&tables, DVec2::new(p.x_mm, p.y_mm)))
                 .collect());
         }
         let mut distinct: Vec<PressPlace> = Vec::new();
@@ -143,8 +143,8 @@ impl SweepSource for SweepStore<'_> {
                 distinct.len() - 1
             }));
         }
-        let sweeps = self.compute(&distinct)?;
-        Ok(indices.into_iter().map(|index| sweeps[index].clone()).collect())
+        let tables = self.compute(&distinct)?;
+        Ok(indices.into_iter().map(|index| tables[index].clone()).collect())
     }
 }
 

@@ -13,7 +13,7 @@ const SETTINGS: &str = "
 [simulate]
 edges_per_height = 2.0
 edges_per_contact_radius = 1.0
-sweep_step_mm = 0.5
+depth_step_mm = 0.5
 [bench]
 n_places = 2
 [train]
@@ -33,7 +33,7 @@ clearance_mm = 0.3
 /// The stages one after the other, and a file whose presence tells that the stage is at work.
 const STAGES: [(&[&str], &str); 5] = [
     (&["record", "--at-once"], "recordings.partial/presses"),
-    (&["align", "--run"], "simulation.partial/sweeps"),
+    (&["align", "--run"], "simulation.partial/depth_tables"),
     (&["train", "--run"], "training.partial/stage.json"),
     (&["evaluate", "--run"], "evaluation.partial"),
     (&["report", "--run"], "report.html"),

@@ -53,7 +53,7 @@ pub(crate) fn print_size(edges_per_height: f64) -> Result<()> {
         nodes: followed.n_nodes,
         tets: followed.n_tets,
         mean_ms: 1e3 * mean(&|frame| frames[frame].wall_time_s),
-        newton_iterations_per_frame: mean(&|frame| f64::from(frames[frame].honesty.iterations)),
+        newton_iterations_per_frame: mean(&|frame| f64::from(frames[frame].quality.iterations)),
         factorisations: frames.iter().map(|frame| frame.cost.factorisations).sum(),
         peak_mib: files::peak_memory_mib()?,
     };

@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
+use twintac_depth_table::{MonotoneCubic, PressFrame};
 use twintac_emulate::{CHANNELS, Chance};
 use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
-use twintac_simulate::{
-    Gel, Keyframe, Pchip, PressPlace, SimulateError, SimulateSettings, Sweep, SweepFrame,
-};
+use twintac_simulate::{Gel, Keyframe, PressHistory, PressPlace, SimulateError, SimulateSettings};
 use twintac_softbody::{Material, PronyTerm, SolverSettings};
 
 use crate::Reality;
@@ -138,29 +137,29 @@ impl Lab {
 
         let schedule = plan.trajectory(self.drawing.readout.rate_hz);
         let keyframes = keyframes(&schedule, deeper_mm, self.reality.gel.depth_step_mm);
-        let sweep = self
+        let history = self
             .gel
             .press(&place, &keyframes)
             .map_err(|source| LabError::Simulate {
                 press: plan.name.clone(),
                 source,
             })?;
-        if let Some(why) = &sweep.failure {
+        if let Some(why) = &history.failure {
             return Err(LabError::NotConverged {
                 press: plan.name.clone(),
                 why: why.clone(),
             });
         }
 
-        let history = History::new(&sweep, &keyframes);
+        let course = Course::new(&history, &keyframes);
         let mut chain = Chain::new(self);
         let mut frames = Frames::default();
         for &(scheduled_s, depth_mm) in &schedule {
             let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {
-                history.pressure_kpa(taxel, time_s)
+                course.pressure_kpa(taxel, time_s)
             });
             let commanded = Pose {
-                position_mm: sweep
+                position_mm: history
                     .gel_from_indenter_at_touch
                     .position_mm
                     .with_x(plan.x_mm)
@@ -172,7 +171,7 @@ impl Lab {
                 time_s,
                 commanded,
                 is_touching: depth_mm >= -0.1,
-                force_n: history.force_n(time_s - robot.force_lag_s) + chance.normal(robot.force_noise_n),
+                force_n: course.force_n(time_s - robot.force_lag_s) + chance.normal(robot.force_noise_n),
                 raw_kpa,
             });
         }
@@ -342,18 +341,18 @@ fn is_turn(schedule: &[(f64, f64)], depth_mm: f64) -> bool {
 }
 
 /// The gel's answer over time, between the computed moments.
-struct History {
-    pressure_kpa: Vec<Pchip>,
-    force_n: Option<Pchip>,
+struct Course {
+    pressure_kpa: Vec<MonotoneCubic>,
+    force_n: Option<MonotoneCubic>,
 }
 
-impl History {
-    fn new(sweep: &Sweep, keyframes: &[Keyframe]) -> Self {
+impl Course {
+    fn new(history: &PressHistory, keyframes: &[Keyframe]) -> Self {
         let time_s: Vec<f64> = keyframes.iter().map(|keyframe| keyframe.time_s).collect();
-        let curve = |value: &dyn Fn(&SweepFrame) -> f64| {
-            Pchip::new(time_s.clone(), sweep.frames.iter().map(value).collect())
+        let curve = |value: &dyn Fn(&PressFrame) -> f64| {
+            MonotoneCubic::new(time_s.clone(), history.frames.iter().map(value).collect())
         };
-        let n_taxels = sweep
+        let n_taxels = history
             .frames
             .first()
             .map_or(0, |frame| frame.port_pressure_kpa.len());

@@ -9,11 +9,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use twintac_depth_table::{MonotoneCubic, PressFrame};
 use twintac_emulate::{CHANNELS, Chance, Physics, Sensed};
 use twintac_protocol::PressPlan;
 use twintac_rig::{TcpPose, Wrench};
 use twintac_shape::Pose;
-use twintac_simulate::{Pchip, SweepFrame};
 
 use crate::ClimateReality;
 use crate::lab::{Lab, LabError, Port};
@@ -67,7 +67,7 @@ pub struct LiveTable {
 struct Curves {
     touch_mm: f64,
     deeper_mm: f64,
-    of: [Option<Pchip>; VALUES],
+    of: [Option<MonotoneCubic>; VALUES],
 }
 
 /// What has been felt so far.
@@ -92,16 +92,16 @@ impl Lab {
             depth_mm: plan.depth_mm + deeper_mm.max(0.0) + SPARE_MM,
             ..place
         };
-        let sweep = self
+        let table = self
             .instantaneous()
-            .sweep(&place)
+            .depth_table(&place)
             .map_err(|source| LabError::Simulate {
                 press: plan.name.clone(),
                 source,
             })?;
         // What is spare may be blocked by the shell.
-        let deepest_mm = sweep.frames.last().map_or(0.0, |frame| frame.depth_mm);
-        if let Some(why) = &sweep.failure
+        let deepest_mm = table.frames.last().map_or(0.0, |frame| frame.depth_mm);
+        if let Some(why) = &table.failure
             && deepest_mm < plan.depth_mm + deeper_mm.max(0.0)
         {
             return Err(LabError::NotConverged {
@@ -109,14 +109,14 @@ impl Lab {
                 why: why.clone(),
             });
         }
-        let column = |value: &dyn Fn(&SweepFrame) -> f64| sweep.frames.iter().map(value).collect();
+        let column = |value: &dyn Fn(&PressFrame) -> f64| table.frames.iter().map(value).collect();
         let mut pressures_kpa = [const { Vec::new() }; CHANNELS];
         for (taxel, channel) in self.taxel_channels() {
             pressures_kpa[channel] = column(&|frame| frame.port_pressure_kpa[taxel]);
         }
         Ok(LiveTable {
             name: plan.name.clone(),
-            touch_mm: sweep.gel_from_indenter_at_touch.position_mm.z,
+            touch_mm: table.gel_from_indenter_at_touch.position_mm.z,
             deeper_mm,
             depths_mm: column(&|frame| frame.depth_mm),
             force_n: column(&|frame| frame.force_n),
@@ -164,7 +164,7 @@ impl LiveTable {
         let columns = std::iter::once(&self.force_n).chain(&self.pressures_kpa);
         let mut of = [const { None }; VALUES];
         for (curve, column) in of.iter_mut().zip(columns) {
-            *curve = Pchip::new(self.depths_mm.clone(), column.clone());
+            *curve = MonotoneCubic::new(self.depths_mm.clone(), column.clone());
         }
         Curves {
             touch_mm: self.touch_mm,

@@ -1,10 +1,11 @@
 //! A weight put on the imperfect sensor.
 
 use glam::DQuat;
+use twintac_depth_table::{DepthTable, MonotoneCubic, PressFrame};
 use twintac_emulate::Chance;
 use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::{Control, Press};
-use twintac_simulate::{Pchip, PressPlace, Sweep, SweepFrame};
+use twintac_simulate::PressPlace;
 
 use crate::chain::Chain;
 use crate::lab::{Frames, Lab, LabError, Moment};
@@ -37,19 +38,19 @@ impl Lab {
             hold_s: plan.hold_s,
         };
         let place = self.true_place(&as_press, &mut chance)?;
-        let sweep = self.sweep_to(plan, place)?;
+        let table = self.depth_table_to(plan, place)?;
         let over_force = |taxel: usize| {
-            let frames = sweep.frames.iter();
+            let frames = table.frames.iter();
             let mut force_n: Vec<f64> = frames.clone().map(|frame| frame.force_n).collect();
             force_n[0] = 0.0;
-            Pchip::new(
+            MonotoneCubic::new(
                 force_n,
                 frames.map(|frame| frame.port_pressure_kpa[taxel]).collect(),
             )
         };
-        let curves: Vec<Option<Pchip>> = (0..self.drawing.taxels.len()).map(over_force).collect();
+        let curves: Vec<Option<MonotoneCubic>> = (0..self.drawing.taxels.len()).map(over_force).collect();
         let course = plan.course(self.drawing.readout.rate_hz);
-        let force = Pchip::new(
+        let force = MonotoneCubic::new(
             course.iter().map(|(time_s, _)| *time_s).collect(),
             course.iter().map(|(_, force_n)| *force_n).collect(),
         );
@@ -65,7 +66,7 @@ impl Lab {
             });
             frames.push(Moment {
                 time_s,
-                commanded: sweep.gel_from_indenter_at_touch,
+                commanded: table.gel_from_indenter_at_touch,
                 is_touching: weight_n > 0.0,
                 force_n: weight_n,
                 raw_kpa,
@@ -75,24 +76,24 @@ impl Lab {
     }
 
     /// A table that goes as deep as the weight needs, and not much deeper: its mesh is as fine as the contact is small.
-    fn sweep_to(&self, plan: &LoadPlan, mut place: PressPlace) -> Result<Sweep, LabError> {
+    fn depth_table_to(&self, plan: &LoadPlan, mut place: PressPlace) -> Result<DepthTable, LabError> {
         let gel = self.instantaneous();
         place.enough_force_n = Some(MARGIN * plan.force_n);
         loop {
-            let sweep = gel.sweep(&place).map_err(|source| LabError::Simulate {
+            let table = gel.depth_table(&place).map_err(|source| LabError::Simulate {
                 press: plan.name.clone(),
                 source,
             })?;
-            if sweep
+            if table
                 .frames
                 .last()
-                .map_or(0.0, |frame: &SweepFrame| frame.force_n)
+                .map_or(0.0, |frame: &PressFrame| frame.force_n)
                 >= plan.force_n
             {
-                return Ok(sweep);
+                return Ok(table);
             }
             let press = plan.name.clone();
-            if let Some(why) = sweep.failure {
+            if let Some(why) = table.failure {
                 return Err(LabError::NotConverged { press, why });
             }
             place.depth_mm *= 2.0;

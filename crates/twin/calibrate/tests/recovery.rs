@@ -99,10 +99,14 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
         .zip(&depths)
         .map(|(&time_s, &depth_mm)| Keyframe { time_s, depth_mm })
         .collect();
-    let sweep = gel(material).press(&place, &keyframes).unwrap();
-    assert_eq!(sweep.failure, None);
-    let largest_n = sweep.frames.iter().map(|frame| frame.force_n).fold(0.0, f64::max);
-    let largest_kpa = sweep
+    let history = gel(material).press(&place, &keyframes).unwrap();
+    assert_eq!(history.failure, None);
+    let largest_n = history
+        .frames
+        .iter()
+        .map(|frame| frame.force_n)
+        .fold(0.0, f64::max);
+    let largest_kpa = history
         .frames
         .iter()
         .flat_map(|frame| frame.port_pressure_kpa.iter().copied())
@@ -111,7 +115,7 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
     let gains = [1.4, 0.6];
     let mut signals = vec![Signal {
         quantity: Quantity::Force,
-        values: sweep
+        values: history
             .frames
             .iter()
             .map(|frame| frame.force_n + 0.01 * largest_n * noise(&mut random))
@@ -120,7 +124,7 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
     for (taxel, gain) in gains.into_iter().enumerate() {
         signals.push(Signal {
             quantity: Quantity::Taxel(taxel),
-            values: sweep
+            values: history
                 .frames
                 .iter()
                 .map(|frame| gain * frame.port_pressure_kpa[taxel] + 0.005 * largest_kpa * noise(&mut random))

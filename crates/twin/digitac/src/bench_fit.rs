@@ -3,11 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use twintac_depth_table::DepthTableSource;
 use twintac_recording::{Control, Recording};
 
 use crate::bench_problem::{Guess, Problem, exactly};
 use crate::golden::minimize;
-use crate::{Bench, BenchSettings, DigitacError, Estimate, Places, SweepSource};
+use crate::{Bench, BenchSettings, DigitacError, Estimate, Places};
 
 /// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
 const TOLERANCE: f64 = 2e-3;
@@ -23,7 +24,7 @@ pub fn fit_bench(
     recording: &Recording,
     places: &Places,
     train: &[usize],
-    source: &dyn SweepSource,
+    source: &dyn DepthTableSource,
     settings: &BenchSettings,
 ) -> Result<Bench, DigitacError> {
     check(settings)?;
@@ -201,9 +202,9 @@ impl Problem<'_> {
         bounds: &Bounds,
         without_block: Option<usize>,
     ) -> Result<(Guess, f64), DigitacError> {
-        let tables = self.tables_at(guess.ln_radius)?;
+        let curves = self.curves_at(guess.ln_radius)?;
         let deviation = |guess: &Guess| {
-            self.deviation(&tables, guess, without_block)
+            self.deviation(&curves, guess, without_block)
                 .map_or(f64::INFINITY, |(_, d)| d)
         };
         let [low, high] = bounds.ln_stiffness;
@@ -219,15 +220,15 @@ impl Problem<'_> {
         if bounds.offset_mm > 0.0 && !guess.offsets_mm.is_empty() {
             improve_offsets(&mut guess, bounds.offset_mm, deviation);
         }
-        let (_, value) = self.deviation(&tables, &guess, without_block)?;
+        let (_, value) = self.deviation(&curves, &guess, without_block)?;
         Ok((guess, value))
     }
 
     fn bench(&self, best: &Guess, without: &[Guess]) -> Result<Bench, DigitacError> {
-        let tables = self.tables_at(best.ln_radius)?;
-        let (gains, deviation_kpa) = self.deviation(&tables, best, None)?;
+        let curves = self.curves_at(best.ln_radius)?;
+        let (gains, deviation_kpa) = self.deviation(&curves, best, None)?;
         let mut doubts = doubts(best, &self.start());
-        doubts.extend(self.odd_presses(&tables, best, &gains)?);
+        doubts.extend(self.odd_presses(&curves, best, &gains)?);
         let readings = self
             .presses
             .iter()

@@ -2,18 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use twintac_depth_table::{DepthCurves, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 
 use crate::gains::Sample;
 use crate::golden::minimize;
-use crate::paired::tables;
-use crate::source::request;
-use crate::table::SweepTable;
-use crate::{Bench, BenchSettings, DigitacError, Estimate, Features, Gains, Places, SweepSource};
+use crate::paired::curves;
+use crate::{Bench, BenchSettings, DigitacError, Estimate, Features, Gains, Places};
 
 /// Frames of a press that the fit looks at.
 const MAX_FRAMES: usize = 96;
-/// Knots of tables between two radii.
+/// Knots of curves between two radii.
 const KNOTS: usize = 40;
 /// A press that by itself would put the contact farther than this from its file's is worth a warning, mm.
 const SUSPICIOUS_MM: f64 = 0.08;
@@ -37,7 +36,7 @@ pub(crate) struct Thinned {
 pub(crate) struct Problem<'a> {
     pub(crate) presses: Vec<Thinned>,
     /// `[n_radii][n_places]`; a single row if the indenter is as described.
-    tables: Vec<Vec<SweepTable>>,
+    curves: Vec<Vec<DepthCurves>>,
     pub(crate) ln_radii: Vec<f64>,
     pub(crate) ln_stiffness_limits: [f64; 2],
     pub(crate) settings: &'a BenchSettings,
@@ -48,7 +47,7 @@ impl<'a> Problem<'a> {
         recording: &Recording,
         places: &Places,
         chosen: &[usize],
-        source: &dyn SweepSource,
+        source: &dyn DepthTableSource,
         settings: &'a BenchSettings,
     ) -> Result<Self, DigitacError> {
         let used: Vec<usize> = chosen
@@ -79,10 +78,16 @@ impl<'a> Problem<'a> {
             .iter()
             .flat_map(|&radius| here.clone().with_tip_radius(radius).requests)
             .collect();
-        let sweeps = request(source, &requests)?;
-        let tables = sweeps
+        let tables = source.depth_tables(&requests).map_err(DigitacError::Simulation)?;
+        if tables.len() != requests.len() {
+            return Err(DigitacError::DepthTableCount {
+                expected: requests.len(),
+                found: tables.len(),
+            });
+        }
+        let curves = tables
             .chunks(used.len())
-            .map(|sweeps| tables(&here, sweeps, recording.taxels.len()))
+            .map(|tables| curves(&here, tables, recording.taxels.len()))
             .collect::<Result<_, _>>()?;
         let presses = chosen.iter().map(|&index| {
             let place = places.of_press[index];
@@ -95,7 +100,7 @@ impl<'a> Problem<'a> {
         let ln_radii = settings.tip_radii_mm.iter().map(|radius| radius.ln()).collect();
         Ok(Self {
             presses: presses.collect(),
-            tables,
+            curves,
             ln_radii,
             ln_stiffness_limits,
             settings,
@@ -103,7 +108,7 @@ impl<'a> Problem<'a> {
     }
 
     pub(crate) fn n_places(&self) -> usize {
-        self.tables[0].len()
+        self.curves[0].len()
     }
 
     pub(crate) fn n_blocks(&self) -> usize {
@@ -114,7 +119,7 @@ impl<'a> Problem<'a> {
     /// The gains that fit best, and the mean over taxels of the mean absolute deviation, kPa.
     pub(crate) fn deviation(
         &self,
-        tables: &[SweepTable],
+        curves: &[DepthCurves],
         guess: &Guess,
         without_block: Option<usize>,
     ) -> Result<(Gains, f64), DigitacError> {
@@ -134,7 +139,7 @@ impl<'a> Problem<'a> {
             .collect();
         let features: Vec<Features> = kept
             .iter()
-            .map(|p| Features::along(&tables[p.place], &p.press, p.touch_z_mm, &bench))
+            .map(|p| Features::along(&curves[p.place], &p.press, p.touch_z_mm, &bench))
             .collect::<Result<_, _>>()?;
         let samples: Vec<Sample<'_>> = kept
             .iter()
@@ -161,10 +166,10 @@ impl<'a> Problem<'a> {
         Ok((gains, mean))
     }
 
-    /// Tables of a radius between those simulated, by the polynomial in ln radius through all of them.
-    pub(crate) fn tables_at(&self, ln_radius: f64) -> Result<Vec<SweepTable>, DigitacError> {
+    /// The curves of a radius between those simulated, by the polynomial in ln radius through all of them.
+    pub(crate) fn curves_at(&self, ln_radius: f64) -> Result<Vec<DepthCurves>, DigitacError> {
         if self.ln_radii.len() < 2 {
-            return Ok(self.tables[0].clone());
+            return Ok(self.curves[0].clone());
         }
         let weights: Vec<f64> = (0..self.ln_radii.len())
             .map(|i| {
@@ -176,12 +181,9 @@ impl<'a> Problem<'a> {
             .collect();
         (0..self.n_places())
             .map(|place| {
-                let tables: Vec<&SweepTable> = self.tables.iter().map(|row| &row[place]).collect();
-                SweepTable::blend(&tables, &weights, KNOTS).ok_or_else(|| DigitacError::WrongSweep {
-                    index: place,
-                    expected: "tables that can be interpolated between radii".into(),
-                    found: "a table of no depth".into(),
-                })
+                let curves: Vec<&DepthCurves> = self.curves.iter().map(|row| &row[place]).collect();
+                DepthCurves::blend(&curves, &weights, KNOTS)
+                    .map_err(|source| DigitacError::DepthTable { index: place, source })
             })
             .collect()
     }
@@ -189,7 +191,7 @@ impl<'a> Problem<'a> {
     /// Presses that touch elsewhere than the rest of their file, found with the gains held fast.
     pub(crate) fn odd_presses(
         &self,
-        tables: &[SweepTable],
+        curves: &[DepthCurves],
         best: &Guess,
         gains: &Gains,
     ) -> Result<Vec<String>, DigitacError> {
@@ -204,7 +206,7 @@ impl<'a> Problem<'a> {
             let mut bench = Bench::nominal();
             let at = |extra_mm: f64| {
                 bench.contact_offset_elsewhere_mm = best.offsets_mm[&p.press.mounting] + extra_mm;
-                match Features::along(&tables[p.place], &p.press, p.touch_z_mm, &bench) {
+                match Features::along(&curves[p.place], &p.press, p.touch_z_mm, &bench) {
                     Ok(features) => self.own_deviation(&p.press, &gains.readings_kpa(&features)),
                     Err(error) => {
                         failure = Some(error);

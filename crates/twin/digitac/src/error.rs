@@ -8,16 +8,22 @@ use std::path::Path;
 pub enum DigitacError {
     /// The simulation could not deliver.
     #[error("the simulation failed: {0}")]
-    Sweeps(#[source] Box<dyn std::error::Error + Send + Sync>),
-    /// The simulation delivered something else than was asked for.
-    #[error("sweep {index}: expected {expected}, found {found}")]
-    WrongSweep {
+    Simulation(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// The simulation delivered another number of tables over depth than was asked for.
+    #[error("expected {expected} tables over depth, found {found}")]
+    DepthTableCount {
+        /// Tables that were asked for.
+        expected: usize,
+        /// Tables that came.
+        found: usize,
+    },
+    /// The simulation delivered a table over depth that can't be used.
+    #[error("table over depth {index}: {source}")]
+    DepthTable {
         /// Number of the request, from 0.
         index: usize,
-        /// What was asked for.
-        expected: String,
-        /// What came.
-        found: String,
+        /// What is wrong with it.
+        source: twintac_depth_table::DepthTableError,
     },
     /// A press contradicts itself, or the sensor.
     #[error("press `{press}`: {problem}")]
@@ -45,7 +51,7 @@ pub enum DigitacError {
         /// Its value.
         found: String,
     },
-    /// Training produced numbers that are none.
+    /// The loss became infinite or NaN.
     #[error("training of variant `{variant}` diverged in epoch {epoch}: the loss is {loss}")]
     Diverged {
         /// The variant.

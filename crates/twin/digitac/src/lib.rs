@@ -1,6 +1,7 @@
 //! The digital twin: from a simulated gel to what the barometers would read.
 //!
-//! A recording is cut into [`Places`]; a [`SweepSource`] simulates each; [`fit_bench`] finds what is unknown
+//! A recording is cut into [`Places`]; a [`DepthTableSource`](twintac_depth_table::DepthTableSource)
+//! simulates each; [`fit_bench`] finds what is unknown
 //! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
 //! [`Split`] says which presses teach and which judge; [`train()`] makes a [`Twin`] of each [`Variant`];
 //! [`metric`] says how wrong it is; and a [`Model`] keeps it in a folder.
@@ -30,11 +31,9 @@ mod recalibrate;
 mod repeatability;
 mod robust;
 mod seed;
-mod source;
 mod split;
 #[cfg(test)]
 mod synthetic;
-mod table;
 mod train;
 mod twin;
 mod variant;
@@ -54,7 +53,6 @@ pub use paired::{Features, PairSettings, PairedPress, features, pair};
 pub use places::{PlaceSettings, Places};
 pub use recalibrate::{Recalibration, recalibrate};
 pub use repeatability::{Repeatability, repeatability};
-pub use source::{SourceError, SweepRequest, SweepSource};
 pub use split::{Split, SplitSettings};
 pub use train::{Epoch, Progress, TrainSettings, Trained, choose, train};
 pub use twin::Twin;

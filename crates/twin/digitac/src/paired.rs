@@ -1,11 +1,10 @@
 //! What was measured, beside what the simulation says about the same moment.
 
 use serde::{Deserialize, Serialize};
+use twintac_depth_table::{DepthCurves, DepthTable};
 use twintac_recording::{Control, Press, Recording};
-use twintac_simulate::Sweep;
 
 use crate::places::deepest_pose;
-use crate::table::SweepTable;
 use crate::{Bench, DigitacError, Places, Warp, WarpSettings};
 
 /// How far beyond its end a table is still trusted, mm or N.
@@ -24,7 +23,7 @@ pub struct Features {
     pub pressure_kpa: Vec<Vec<f64>>,
     /// Stress feature of the TwinTac paper (arXiv 2509.10063, equation 6), kPa/mm; `[n_frames][n_taxels]`.
     pub stress_kpa_per_mm: Vec<Vec<f64>>,
-    /// Whether the frame was simulated: not deeper than the place's last frame that converged.
+    /// Whether the frame was simulated: not deeper than the last frame of the place's table.
     pub simulated: Vec<bool>,
 }
 
@@ -62,7 +61,7 @@ pub struct PairSettings {
 impl Features {
     /// Reads a place's table along a press.
     pub(crate) fn along(
-        table: &SweepTable,
+        curves: &DepthCurves,
         press: &Press,
         touch_z_mm: f64,
         bench: &Bench,
@@ -90,7 +89,7 @@ impl Features {
                     .iter()
                     .map(|f| {
                         if *f > 0.0 {
-                            table.depth_mm(f / stiffness)
+                            curves.depth_mm(f / stiffness)
                         } else {
                             0.0
                         }
@@ -101,11 +100,11 @@ impl Features {
         let simulated = match (press.control, &press.force_n) {
             (Control::Force, Some(force_n)) => force_n
                 .iter()
-                .map(|f| f / stiffness <= table.max_force_n() + BEYOND)
+                .map(|f| f / stiffness <= curves.max_force_n() + BEYOND)
                 .collect(),
             _ => depth_mm
                 .iter()
-                .map(|depth| *depth <= table.max_depth_mm() + BEYOND)
+                .map(|depth| *depth <= curves.max_depth_mm() + BEYOND)
                 .collect(),
         };
         let scaled = |mut row: Vec<f64>| {
@@ -116,15 +115,15 @@ impl Features {
             time_s: press.time_s.clone(),
             force_n: depth_mm
                 .iter()
-                .map(|depth| stiffness * table.force_n(*depth))
+                .map(|depth| stiffness * curves.force_n(*depth))
                 .collect(),
             pressure_kpa: depth_mm
                 .iter()
-                .map(|depth| scaled(table.pressure_kpa(*depth)))
+                .map(|depth| scaled(curves.pressure_kpa(*depth)))
                 .collect(),
             stress_kpa_per_mm: depth_mm
                 .iter()
-                .map(|depth| scaled(table.stress_kpa_per_mm(*depth)))
+                .map(|depth| scaled(curves.stress_kpa_per_mm(*depth)))
                 .collect(),
             depth_mm,
             simulated,
@@ -147,22 +146,22 @@ fn depths_mm(press: &Press, touch_z_mm: f64, contact_offset_mm: f64) -> Vec<f64>
         .collect()
 }
 
-/// The simulated side of every press of a recording. `sweeps` answer `places.requests`, whatever their tip
+/// The simulated side of every press of a recording. `tables` answer `places.requests`, whatever their tip
 /// radius.
 pub fn features(
     recording: &Recording,
     places: &Places,
-    sweeps: &[Sweep],
+    tables: &[DepthTable],
     bench: &Bench,
 ) -> Result<Vec<Features>, DigitacError> {
-    let tables = tables(places, sweeps, recording.taxels.len())?;
+    let curves = curves(places, tables, recording.taxels.len())?;
     recording
         .presses
         .iter()
         .zip(&places.of_press)
         .map(|(press, &place)| {
             let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
-            Features::along(&tables[place], press, touch_z_mm, bench)
+            Features::along(&curves[place], press, touch_z_mm, bench)
         })
         .collect()
 }
@@ -171,11 +170,11 @@ pub fn features(
 pub fn pair(
     recording: &Recording,
     places: &Places,
-    sweeps: &[Sweep],
+    tables: &[DepthTable],
     bench: &Bench,
     settings: &PairSettings,
 ) -> Result<Vec<PairedPress>, DigitacError> {
-    let features = features(recording, places, sweeps, bench)?;
+    let features = features(recording, places, tables, bench)?;
     recording
         .presses
         .iter()
@@ -184,22 +183,24 @@ pub fn pair(
         .collect()
 }
 
-pub(crate) fn tables(
+/// Interpolates the table of each place.
+pub(crate) fn curves(
     places: &Places,
-    sweeps: &[Sweep],
+    tables: &[DepthTable],
     n_taxels: usize,
-) -> Result<Vec<SweepTable>, DigitacError> {
-    if sweeps.len() != places.requests.len() {
-        return Err(DigitacError::WrongSweep {
-            index: sweeps.len().min(places.requests.len()),
-            expected: format!("{} sweeps", places.requests.len()),
-            found: format!("{}", sweeps.len()),
+) -> Result<Vec<DepthCurves>, DigitacError> {
+    if tables.len() != places.requests.len() {
+        return Err(DigitacError::DepthTableCount {
+            expected: places.requests.len(),
+            found: tables.len(),
         });
     }
-    sweeps
+    tables
         .iter()
         .enumerate()
-        .map(|(index, sweep)| SweepTable::new(index, sweep, n_taxels))
+        .map(|(index, table)| {
+            DepthCurves::new(table, n_taxels).map_err(|source| DigitacError::DepthTable { index, source })
+        })
         .collect()
 }
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use twintac_depth_table::DepthTableSource;
+
 use crate::synthetic::{Formula, Truth};
 use crate::*;
 
@@ -27,8 +29,8 @@ fn make(truth: &Truth, n_places: usize) -> Made {
     .unwrap();
     let radius_mm = bench.tip_radius_mm.unwrap().value;
     let places = places.with_tip_radius(Some(radius_mm));
-    let sweeps = Formula.sweeps(&places.requests).unwrap();
-    let presses = pair(&recording, &places, &sweeps, &bench, &PairSettings::default()).unwrap();
+    let tables = Formula.depth_tables(&places.requests).unwrap();
+    let presses = pair(&recording, &places, &tables, &bench, &PairSettings::default()).unwrap();
     let scale = Scale::of(&presses, BTreeSet::new());
     Made {
         recording,
@@ -214,10 +216,10 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
         .for_each(|press| press.mounting = "new".into());
     let places = Places::of(&new, &Formula, &PlaceSettings::default()).unwrap();
     let places = places.at_bench(&made.bench);
-    let sweeps = Formula.sweeps(&places.requests).unwrap();
+    let tables = Formula.depth_tables(&places.requests).unwrap();
     let found = recalibrate(
         &new,
-        (&places, &sweeps),
+        (&places, &tables),
         &made.bench,
         &twin,
         "new",
@@ -235,7 +237,7 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
     assert!(
         recalibrate(
             &new,
-            (&places, &sweeps),
+            (&places, &tables),
             &made.bench,
             &twin,
             "none",

@@ -1,10 +1,11 @@
 //! Which places a recording presses, so that each is simulated once.
 
 use glam::{DQuat, DVec2};
+use twintac_depth_table::{DepthTableRequest, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 use twintac_shape::Pose;
 
-use crate::{Bench, DigitacError, SweepRequest, SweepSource};
+use crate::{Bench, DigitacError};
 
 /// Places closer than this are one, mm.
 const SAME_PLACE_MM: f64 = 0.01;
@@ -36,7 +37,7 @@ impl Default for PlaceSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     /// What to simulate, in the order in which the recording comes to it.
-    pub requests: Vec<SweepRequest>,
+    pub requests: Vec<DepthTableRequest>,
     /// For each press of the recording, its place in `requests`; `[n_presses]`.
     pub of_press: Vec<usize>,
 }
@@ -45,7 +46,7 @@ impl Places {
     /// Gathers the places. Presses at one place share a request that reaches the deepest of them.
     pub fn of(
         recording: &Recording,
-        source: &dyn SweepSource,
+        source: &dyn DepthTableSource,
         settings: &PlaceSettings,
     ) -> Result<Self, DigitacError> {
         let mut index_of_key = std::collections::BTreeMap::new();
@@ -60,8 +61,8 @@ impl Places {
             if index == next {
                 let touch = source
                     .touch(&press.indenter, &deepest)
-                    .map_err(DigitacError::Sweeps)?;
-                places.requests.push(SweepRequest {
+                    .map_err(DigitacError::Simulation)?;
+                places.requests.push(DepthTableRequest {
                     indenter: press.indenter.clone(),
                     gel_from_indenter_at_touch: touch,
                     max_depth_mm: 0.0,

@@ -8,11 +8,11 @@
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
+use twintac_depth_table::DepthTable;
 use twintac_recording::{Control, Press, Recording};
-use twintac_simulate::Sweep;
 
 use crate::golden::minimize;
-use crate::paired::tables;
+use crate::paired::curves;
 use crate::{Bench, DigitacError, Estimate, Features, Places, Twin};
 
 /// Presses of a file that are given away.
@@ -40,7 +40,7 @@ pub struct Recalibration {
 /// presses of prescribed pose, or none to spare.
 pub fn recalibrate(
     recording: &Recording,
-    (places, sweeps): (&Places, &[Sweep]),
+    (places, tables): (&Places, &[DepthTable]),
     bench: &Bench,
     twin: &Twin,
     file: &str,
@@ -57,7 +57,7 @@ pub fn recalibrate(
         return Ok(None);
     }
     let used = of_file[..N_PRESSES].to_vec();
-    let tables = tables(places, sweeps, recording.taxels.len())?;
+    let curves = curves(places, tables, recording.taxels.len())?;
     let deviation_kpa = |index: usize, offset_mm: f64| -> Result<f64, DigitacError> {
         let press = &recording.presses[index];
         let place = places.of_press[index];
@@ -70,7 +70,7 @@ pub fn recalibrate(
             },
         );
         let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
-        let features = Features::along(&tables[place], press, touch_z_mm, &bench)?;
+        let features = Features::along(&curves[place], press, touch_z_mm, &bench)?;
         Ok(mean_deviation_kpa(press, &twin.predict(&features), left_out))
     };
     let center = bench.contact_offset_elsewhere_mm;

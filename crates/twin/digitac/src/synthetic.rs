@@ -2,13 +2,15 @@
 //! tested without finite elements.
 
 use glam::DVec3;
+use twintac_depth_table::{
+    DepthTable, DepthTableRequest, DepthTableSource, PressFrame, SolveQuality, SourceError,
+};
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
-use twintac_simulate::{Honesty, Sweep, SweepFrame};
 
 use crate::gains::Gains;
 use crate::paired::Features;
-use crate::{SourceError, SweepRequest, SweepSource, seed};
+use crate::seed;
 
 const TOP_MM: f64 = 6.0;
 const MODULUS_KPA: f64 = 1500.0;
@@ -35,7 +37,7 @@ impl Formula {
     }
 }
 
-impl SweepSource for Formula {
+impl DepthTableSource for Formula {
     fn touch(&self, _indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
         Ok(Pose {
             position_mm: above.position_mm.with_z(TOP_MM),
@@ -43,31 +45,29 @@ impl SweepSource for Formula {
         })
     }
 
-    fn sweeps(&self, requests: &[SweepRequest]) -> Result<Vec<Sweep>, SourceError> {
-        let honesty = Honesty {
-            converged: true,
+    fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {
+        let quality = SolveQuality {
             iterations: 3,
             residual: 0.0,
             penetration_mm: 0.0,
             smallest_volume_ratio: 0.9,
             wall_time_s: 0.0,
         };
-        let sweep = |request: &SweepRequest| {
+        let table = |request: &DepthTableRequest| {
             let touch = request.gel_from_indenter_at_touch;
             let frames = (0..=14).map(|i| {
                 let depth_mm = request.max_depth_mm * (f64::from(i) / 14.0).powf(1.25);
                 let radius_mm = request.tip_radius_mm.unwrap_or(DESCRIBED_RADIUS_MM);
                 let (force_n, pressure, stress) = Formula::at(touch.position_mm, depth_mm, radius_mm);
-                SweepFrame {
-                    time_s: 0.0,
+                PressFrame {
                     depth_mm,
                     force_n,
                     port_pressure_kpa: pressure,
                     stress_feature_kpa_per_mm: stress,
-                    honesty,
+                    quality,
                 }
             });
-            Sweep {
+            DepthTable {
                 indenter: request.indenter.clone(),
                 gel_from_indenter_at_touch: touch,
                 n_nodes: 1,
@@ -75,7 +75,7 @@ impl SweepSource for Formula {
                 failure: None,
             }
         };
-        Ok(requests.iter().map(sweep).collect())
+        Ok(requests.iter().map(table).collect())
     }
 }
 

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use serde::Serialize;
+use twintac_depth_table::SolveQuality;
 use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
 use twintac_softbody::{Cost, Frame, Push, SolveError, State};
 
+use crate::history::solve_quality;
 use crate::readout::PortReadout;
-use crate::{Gel, GelMesh, Honesty, SimulateError};
+use crate::{Gel, GelMesh, SimulateError};
 
 /// Part of the gel's height that a force of unknown effect is first taken to press in.
 const GUESSED_DEPTH: f64 = 0.25;
@@ -29,8 +31,8 @@ pub struct FollowedFrame {
     pub torque_n_mm: DVec3,
     /// Hydrostatic pressure -tr(σ)/3, averaged over the port of each taxel and over each point's disc, kPa.
     pub pressure_kpa: BTreeMap<String, f64>,
-    /// How far to trust it.
-    pub honesty: Honesty,
+    /// How well it is solved.
+    pub quality: SolveQuality,
     /// Wall time of the frame, s. No part of what repeats.
     pub wall_time_s: f64,
     /// What it was spent on.
@@ -161,7 +163,7 @@ impl Gel {
                     .iter()
                     .map(|(name, port)| (name.clone(), port.read(&nodal_kpa)))
                     .collect(),
-                honesty: Honesty::of(&frame),
+                quality: solve_quality(&frame),
                 wall_time_s: frame.wall_time_s,
                 cost: frame.cost,
             });

@@ -4,16 +4,18 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
+use twintac_depth_table::{DepthTable, PressFrame};
 use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
 use twintac_softbody::{Frame, Material, SoftBody};
 
+use crate::history::solve_quality;
 use crate::readout::{PortReadout, StressCluster};
 use crate::rounding::Roundings;
 use crate::shell::Wall;
 use crate::touch::{contact_radius_mm, first_touch};
-use crate::{Honesty, SimulateError, SimulateSettings, Sweep, SweepFrame};
+use crate::{PressHistory, SimulateError, SimulateSettings};
 
 /// Part of the depth at which the indenter is about as wide as its contact: half, exactly so for a sphere by Hertz's theory.
 const CONTACT_DEPTH: f64 = 0.5;
@@ -242,17 +244,19 @@ impl Gel {
         )
     }
 
-    /// Presses a place to increasing depths. A table that ends early says why in [`Sweep::failure`].
-    pub fn sweep(&self, place: &PressPlace) -> Result<Sweep, SimulateError> {
-        self.press(place, &self.depths(place))
+    /// Presses a place to increasing depths. A table that ends early says why in [`DepthTable::failure`].
+    pub fn depth_table(&self, place: &PressPlace) -> Result<DepthTable, SimulateError> {
+        Ok(self
+            .mesh(place)?
+            .depth_table(place, &self.depths(place), &mut |_| ()))
     }
 
     /// The depths of a table: closer together near the surface, where the contact grows fastest.
     #[must_use]
     pub fn depths(&self, place: &PressPlace) -> Vec<Keyframe> {
-        let n_frames = (place.depth_mm / self.settings.sweep_step_mm)
+        let n_frames = (place.depth_mm / self.settings.depth_step_mm)
             .ceil()
-            .max(SimulateSettings::MIN_SWEEP_FRAMES) as u32;
+            .max(SimulateSettings::MIN_DEPTH_STEPS) as u32;
         let fraction = |i: u32| (f64::from(i) / f64::from(n_frames)).powf(1.25);
         (0..=n_frames)
             .map(|i| Keyframe {
@@ -262,9 +266,9 @@ impl Gel {
             .collect()
     }
 
-    /// Follows a trajectory in time; the material remembers what it is made to remember.
-    pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Result<Sweep, SimulateError> {
-        Ok(self.mesh(place)?.press(place, keyframes))
+    /// Follows a trajectory in time; the material relaxes as its history variables say.
+    pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Result<PressHistory, SimulateError> {
+        Ok(self.mesh(place)?.press(place, keyframes, &mut |_| ()))
     }
 }
 
@@ -332,22 +336,33 @@ impl GelMesh {
         &self.body
     }
 
-    /// Presses along the keyframes.
+    /// Presses to the depths of a table, such as [`Gel::depths`], and shows the gel at each.
     #[must_use]
-    pub fn press(&self, place: &PressPlace, keyframes: &[Keyframe]) -> Sweep {
-        self.press_with(place, keyframes, &mut |_| ())
+    pub fn depth_table(
+        &self,
+        place: &PressPlace,
+        depths: &[Keyframe],
+        show: &mut dyn FnMut(&Fields<'_>),
+    ) -> DepthTable {
+        let history = self.press(place, depths, show);
+        DepthTable {
+            indenter: place.indenter.clone(),
+            gel_from_indenter_at_touch: history.gel_from_indenter_at_touch,
+            n_nodes: self.body.mesh().nodes_mm.len(),
+            frames: history.frames,
+            failure: history.failure,
+        }
     }
 
     /// Presses along the keyframes and shows the gel at each.
-    #[must_use]
-    pub fn press_with(
+    fn press(
         &self,
         place: &PressPlace,
         keyframes: &[Keyframe],
         show: &mut dyn FnMut(&Fields<'_>),
-    ) -> Sweep {
+    ) -> PressHistory {
         let mut state = self.body.rest();
-        let mut frames: Vec<SweepFrame> = Vec::with_capacity(keyframes.len());
+        let mut frames: Vec<PressFrame> = Vec::with_capacity(keyframes.len());
         let mut failure = None;
         let mut previous_s = keyframes.first().map_or(0.0, |k| k.time_s);
         for keyframe in keyframes {
@@ -383,20 +398,17 @@ impl GelMesh {
                 }
             }
         }
-        Sweep {
-            indenter: place.indenter.clone(),
+        PressHistory {
             gel_from_indenter_at_touch: self.touch,
-            n_nodes: self.body.mesh().nodes_mm.len(),
             frames,
             failure,
         }
     }
 
-    fn read(&self, fields: &Fields<'_>, frame: &Frame, keyframe: &Keyframe) -> SweepFrame {
+    fn read(&self, fields: &Fields<'_>, frame: &Frame, keyframe: &Keyframe) -> PressFrame {
         let positions = |node: usize| fields.mesh.nodes_mm[node] + fields.displacements_mm[node];
         let feature = |cluster: &StressCluster| cluster.read(&fields.von_mises_kpa, &positions);
-        SweepFrame {
-            time_s: keyframe.time_s,
+        PressFrame {
             depth_mm: keyframe.depth_mm,
             force_n: -frame.indenter_force_n.z,
             port_pressure_kpa: self
@@ -405,7 +417,7 @@ impl GelMesh {
                 .map(|port| port.read(&fields.pressure_kpa))
                 .collect(),
             stress_feature_kpa_per_mm: self.clusters.iter().map(feature).collect(),
-            honesty: Honesty::of(frame),
+            quality: solve_quality(frame),
         }
     }
 }

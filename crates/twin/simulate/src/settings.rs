@@ -19,15 +19,15 @@ pub struct SimulateSettings {
     /// Edges along a path over the radius to which an indenter is rounded, where that makes them shorter than elsewhere: the force of a punch is
     /// made at its rim. The pressure has half as many. Tables go without.
     pub edges_per_rounding: f64,
-    /// Mean distance of a sweep's frames over depth, mm. Shallow sweeps have [`MIN_SWEEP_FRAMES`](Self::MIN_SWEEP_FRAMES).
-    pub sweep_step_mm: f64,
+    /// Mean distance of a table's frames over depth, mm. Shallow tables have [`MIN_DEPTH_STEPS`](Self::MIN_DEPTH_STEPS).
+    pub depth_step_mm: f64,
     /// The solver's own settings.
     pub solver: SolverSettings,
 }
 
 impl SimulateSettings {
-    /// Frames of the shallowest sweep, after the untouched one.
-    pub const MIN_SWEEP_FRAMES: f64 = 5.0;
+    /// Frames of the shallowest table, after the untouched one.
+    pub const MIN_DEPTH_STEPS: f64 = 5.0;
 }
 
 impl Default for SimulateSettings {
@@ -38,7 +38,7 @@ impl Default for SimulateSettings {
             max_nodes: 16_000,
             max_path_nodes: 20_000,
             edges_per_rounding: 2.0,
-            sweep_step_mm: 0.3,
+            depth_step_mm: 0.3,
             solver: SolverSettings {
                 tolerance: 1e-4,
                 // A table that ends a little early costs less than the search for where exactly it has to.

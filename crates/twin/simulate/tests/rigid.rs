@@ -93,9 +93,9 @@ fn follow(gel: &Gel, path: &str) -> Followed {
 fn above_a_wide_chip_the_gel_is_as_stiff_as_a_thinner_one() {
     let force_n = |sensor: Arc<Sensor>| {
         let gel = gel(sensor, 1e-4);
-        let sweep = gel.sweep(&place(&gel, "ball", 0.0, 1.0)).unwrap();
-        assert_eq!(sweep.failure, None);
-        sweep.frames.last().unwrap().force_n
+        let table = gel.depth_table(&place(&gel, "ball", 0.0, 1.0)).unwrap();
+        assert_eq!(table.failure, None);
+        table.frames.last().unwrap().force_n
     };
     let [chip, thin, thick] = [sensor(7.0, CHIP), sensor(4.0, ""), sensor(7.0, "")].map(force_n);
     println!("over a chip {chip:.4} N, 4 mm of gel {thin:.4} N, 7 mm of gel {thick:.4} N");
@@ -146,17 +146,17 @@ fn an_indenter_over_the_shells_edge_is_blocked() {
     // The rim's circle of 0.5 mm has its middle at x = 10.7 mm, z = 7.5 mm: the ball meets it where its own middle is 3.5 mm from there.
     let x_mm = 8.5;
     let place = place(&gel, "ball", x_mm, 2.0);
-    let sweep = gel.sweep(&place).unwrap();
-    let failure = sweep.failure.clone().unwrap();
+    let table = gel.depth_table(&place).unwrap();
+    let failure = table.failure.clone().unwrap();
     println!("{failure}");
     assert!(failure.contains("blocked") && failure.contains("an obstacle"));
     let stop_mm = 8.0 + 3.0 - (7.5 + (3.5_f64.powi(2) - (10.7 - x_mm).powi(2)).sqrt());
-    let next_mm = gel.depths(&place)[sweep.frames.len()].depth_mm;
+    let next_mm = gel.depths(&place)[table.frames.len()].depth_mm;
     println!(
         "stops at {stop_mm:.3} mm, between {:.3} and {next_mm:.3} mm",
-        sweep.depth_mm()
+        table.depth_mm()
     );
-    assert!(sweep.depth_mm() < stop_mm + 0.05 && next_mm > stop_mm);
+    assert!(table.depth_mm() < stop_mm + 0.05 && next_mm > stop_mm);
 }
 
 #[test]
@@ -195,8 +195,8 @@ fn bounded_penetration_hardly_changes_the_force() {
         };
         settings.solver.penetration_mm = penetration_mm;
         let gel = Gel::new(sensor(8.0, SHELL), settings);
-        let sweep = gel.sweep(&place(&gel, "ball", 0.0, 2.0)).unwrap();
-        sweep
+        let table = gel.depth_table(&place(&gel, "ball", 0.0, 2.0)).unwrap();
+        table
             .frames
             .iter()
             .map(|frame| (frame.depth_mm, frame.force_n))

@@ -133,7 +133,7 @@ fn write_profile(out: &mut dyn Write, followed: &Followed) -> Result<()> {
             1e3 * part_s / n_frames
         )?;
     }
-    let iterations = sum(&|frame| f64::from(frame.honesty.iterations));
+    let iterations = sum(&|frame| f64::from(frame.quality.iterations));
     let linear = sum(&|frame| f64::from(frame.cost.linear_iterations));
     writeln!(
         out,

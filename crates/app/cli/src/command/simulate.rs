@@ -6,10 +6,11 @@ use std::sync::Arc;
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
+use twintac_depth_table::DepthTable;
 use twintac_mesh::vtk::{self, Field, Values};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
-use twintac_simulate::{Fields, Gel, PressPlace, SimulateSettings, Sweep};
+use twintac_simulate::{Fields, Gel, PressPlace, SimulateSettings};
 
 use crate::arguments::Simulate;
 use crate::progress;
@@ -23,7 +24,7 @@ struct SimulatedPress<'a> {
     provenance: Provenance,
     plan: &'a PressPlan,
     settings: &'a SimulateSettings,
-    table: &'a Sweep,
+    table: &'a DepthTable,
 }
 
 /// Simulates and writes one table over depth for each press.
@@ -64,7 +65,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
             let name = plan.name.replace('#', "-");
             let press = gel.mesh(&place)?;
             let (mut number, mut written) = (0, Ok(()));
-            let table = press.press_with(&place, &gel.depths(&place), &mut |fields| {
+            let table = press.depth_table(&place, &gel.depths(&place), &mut |fields| {
                 if arguments.vtk && written.is_ok() {
                     written = write_frame(&out.join("vtk").join(format!("{name}_{number:03}.vtu")), fields);
                 }

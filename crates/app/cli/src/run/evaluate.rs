@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use digitac::{
-    Estimate, Evaluation, Model, Places, Recalibration, Repeatability, Scale, StaticPolynomial, SweepSource,
-    evaluate, pair, recalibrate, repeatability,
+    Estimate, Evaluation, Model, Places, Recalibration, Repeatability, Scale, StaticPolynomial, evaluate,
+    pair, recalibrate, repeatability,
 };
 use serde::{Deserialize, Serialize};
+use twintac_depth_table::DepthTableSource;
 use twintac_recording::{Provenance, Recording};
 use twintac_simulate::{Gel, SimulateSettings};
 
@@ -18,7 +19,7 @@ use super::{Run, left_out};
 use crate::progress;
 use crate::sensor_file::parse_sensor;
 use crate::stage::{Inputs, read_json, write_json};
-use crate::store::SweepStore;
+use crate::store::DepthTableStore;
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
@@ -146,10 +147,10 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
     let gel = Gel::new(sensor, settings);
     let folder = tempfile::tempdir().context("making a temporary folder for simulations")?;
     let bar = progress::bar("simulating", 0);
-    let store = SweepStore::new(&gel, folder.path().to_owned(), bar.clone());
+    let store = DepthTableStore::new(&gel, folder.path().to_owned(), bar.clone());
     let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?.at_bench(&record.bench);
-    let sweeps = store
-        .sweeps(&places.requests)
+    let tables = store
+        .depth_tables(&places.requests)
         .map_err(anyhow::Error::from_boxed)?;
     bar.finish_and_clear();
 
@@ -159,7 +160,7 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
     for file in new_files(recording, &bench.contact_offset_mm) {
         let found = recalibrate(
             recording,
-            (&places, &sweeps),
+            (&places, &tables),
             &bench,
             &model.twin,
             &file,
@@ -178,7 +179,7 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
     }
     let settings = digitac::PairSettings::default();
     let judge = |bench: &digitac::Bench| -> Result<(Evaluation, Option<Repeatability>)> {
-        let presses = pair(recording, &places, &sweeps, bench, &settings)?;
+        let presses = pair(recording, &places, &tables, bench, &settings)?;
         let scale = Scale::of(&presses, left_out.clone());
         let scored: Vec<_> = presses
             .iter()

@@ -19,7 +19,7 @@ impl Run {
             let pairs = pair(
                 &recording,
                 &simulation.places,
-                &simulation.sweeps,
+                &simulation.tables,
                 &simulation.bench,
                 &self.record.settings.pair,
             )?;

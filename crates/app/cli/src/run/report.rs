@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use digitac::{Bench, PairedPress};
+use twintac_depth_table::DepthTable;
 use twintac_recording::Provenance;
 use twintac_report::data::{
     BenchFit, Fact, FileError, Gain, Headline, Parameter, Reference, ReferenceKind, SensorSummary,
@@ -9,7 +10,6 @@ use twintac_report::data::{
 };
 use twintac_report::plot::{Panel, Panels, Series};
 use twintac_report::{Ink, Provenance as Badge, ReportData, Scene};
-use twintac_simulate::Sweep;
 
 use super::metrics::{Figures, Metrics};
 use super::train::VariantRecord;
@@ -63,7 +63,7 @@ impl Run {
             training: variants.iter().map(curve).collect(),
             bench: Some(bench(&simulation.bench, &recording.taxels)),
             warps: some_warps(&presses, &simulation.split.test),
-            simulation: Some(quality(&simulation.sweeps)),
+            simulation: Some(quality(&simulation.tables)),
             settings: serde_json::to_string_pretty(&self.record.settings)?,
             stages: self.stages(),
         };
@@ -326,16 +326,15 @@ fn bench(bench: &Bench, taxels: &[String]) -> BenchFit {
     }
 }
 
-fn quality(sweeps: &[Sweep]) -> SimulationQuality {
-    let frames = || sweeps.iter().flat_map(|sweep| &sweep.frames);
+fn quality(tables: &[DepthTable]) -> SimulationQuality {
+    let frames = || tables.iter().flat_map(|table| &table.frames);
     SimulationQuality {
         frames: frames().count(),
-        converged_frames: frames().filter(|frame| frame.honesty.converged).count(),
-        worst_residual: frames().map(|f| f.honesty.residual).fold(0.0, f64::max),
-        largest_penetration_mm: frames().map(|f| f.honesty.penetration_mm).fold(0.0, f64::max),
+        worst_residual: frames().map(|f| f.quality.residual).fold(0.0, f64::max),
+        largest_penetration_mm: frames().map(|f| f.quality.penetration_mm).fold(0.0, f64::max),
         smallest_volume_ratio: frames()
-            .map(|f| f.honesty.smallest_volume_ratio)
+            .map(|f| f.quality.smallest_volume_ratio)
             .fold(f64::INFINITY, f64::min),
-        failures: sweeps.iter().filter_map(|sweep| sweep.failure.clone()).collect(),
+        failures: tables.iter().filter_map(|table| table.failure.clone()).collect(),
     }
 }

@@ -54,7 +54,7 @@ impl RunSettings {
             ("edges_per_height", simulate.edges_per_height),
             ("edges_per_contact_radius", simulate.edges_per_contact_radius),
             ("edges_per_rounding", simulate.edges_per_rounding),
-            ("sweep_step_mm", simulate.sweep_step_mm),
+            ("depth_step_mm", simulate.depth_step_mm),
         ] {
             if value <= 0.0 || !value.is_finite() {
                 let field = format!("simulate.{field}");

@@ -1,16 +1,16 @@
 //! Stages `mesh` and `simulation`: the gel, the bench's unknowns, and a table over depth for each place.
 
 use anyhow::Result;
-use digitac::{Bench, Places, Split, SweepSource, fit_bench};
+use digitac::{Bench, Places, Split, fit_bench};
+use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_mesh::MeshSettings;
 use twintac_recording::Recording;
-use twintac_simulate::Sweep;
 
 use super::Run;
 use super::settings::is_static;
 use crate::progress;
 use crate::stage::{Inputs, read_json, write_json};
-use crate::store::SweepStore;
+use crate::store::DepthTableStore;
 
 /// What the simulation stage left.
 pub(crate) struct Simulation {
@@ -21,7 +21,7 @@ pub(crate) struct Simulation {
     /// The distinct places.
     pub(crate) places: Places,
     /// A table over depth for each place.
-    pub(crate) sweeps: Vec<Sweep>,
+    pub(crate) tables: Vec<DepthTable>,
 }
 
 impl Run {
@@ -57,19 +57,19 @@ impl Run {
             let recording = self.recording()?;
             let gel = self.gel();
             let bar = progress::bar("simulating", 0);
-            let store = SweepStore::new(&gel, folder.join("sweeps"), bar.clone());
+            let store = DepthTableStore::new(&gel, folder.join("depth_tables"), bar.clone());
             let places = Places::of(&recording, &store, &self.record.settings.places)?;
             let settings = self.resolved(&recording, &places);
             let split = Split::new(&recording, &settings.split)?;
             let bench = fit_bench(&recording, &places, &split.train, &store, &settings.bench)?;
             let places = places.at_bench(&bench);
-            let sweeps = store
-                .sweeps(&places.requests)
+            let tables = store
+                .depth_tables(&places.requests)
                 .map_err(anyhow::Error::from_boxed)?;
             bar.finish_and_clear();
             write_json(&folder.join("split.json"), &split)?;
             write_json(&folder.join("bench.json"), &bench)?;
-            write_json(&folder.join("places.json"), &sweeps)?;
+            write_json(&folder.join("places.json"), &tables)?;
             Ok(())
         })
     }
@@ -79,13 +79,17 @@ impl Run {
         let folder = self.stage("simulation");
         let bench: Bench = read_json(&folder.join("bench.json"))?;
         let gel = self.gel();
-        let store = SweepStore::new(&gel, folder.join("sweeps"), indicatif::ProgressBar::hidden());
+        let store = DepthTableStore::new(
+            &gel,
+            folder.join("depth_tables"),
+            indicatif::ProgressBar::hidden(),
+        );
         let places = Places::of(recording, &store, &self.record.settings.places)?.at_bench(&bench);
         Ok(Simulation {
             split: read_json(&folder.join("split.json"))?,
             bench,
             places,
-            sweeps: read_json(&folder.join("places.json"))?,
+            tables: read_json(&folder.join("places.json"))?,
         })
     }
 

@@ -98,7 +98,7 @@ pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
         Ok(ReferenceFrame {
             depth_mm,
             force_n: -frame.force_n.z,
-            penetration_mm: frame.honesty.penetration_mm,
+            penetration_mm: frame.quality.penetration_mm,
             pressure_kpa: taxels
                 .map(|(name, _)| Ok((name.clone(), pressure(&name)?)))
                 .collect::<Result<_>>()?,

@@ -9,11 +9,12 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, Quantity, Signal, fit};
+use twintac_depth_table::MonotoneCubic;
 use twintac_material::{Material, Ogden, OgdenTerm, PronyTerm, Yeoh};
 use twintac_report::plot::{Panel, Panels};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
-use twintac_simulate::{Gel, Keyframe, Pchip, PressPlace, SimulateSettings};
+use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};
 
 use super::Effort;
 use super::outcome::{Figure, Outcome, Plot};
@@ -309,9 +310,9 @@ fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut ChaCha8Rng) ->
         }
         ends.push(keyframes.len() - 1);
     }
-    let sweep = gel.press(&place, &keyframes)?;
-    ensure!(sweep.failure.is_none(), "{:?}", sweep.failure);
-    let force_n: Vec<f64> = sweep.frames.iter().map(|frame| frame.force_n).collect();
+    let history = gel.press(&place, &keyframes)?;
+    ensure!(history.failure.is_none(), "{:?}", history.failure);
+    let force_n: Vec<f64> = history.frames.iter().map(|frame| frame.force_n).collect();
     let largest_n = force_n.iter().copied().fold(0.0, f64::max);
     let mut curve = Curve {
         name: "press".into(),
@@ -330,7 +331,8 @@ fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut ChaCha8Rng) ->
         let leg = leg[0]..leg[1] + 1;
         let times_s: Vec<f64> = keyframes[leg.clone()].iter().map(|frame| frame.time_s).collect();
         let [from, to] = [leg.start, leg.end - 1].map(|frame| keyframes[frame]);
-        let force = Pchip::new(times_s, force_n[leg].to_vec()).context("times of a leg do not increase")?;
+        let force =
+            MonotoneCubic::new(times_s, force_n[leg].to_vec()).context("times of a leg do not increase")?;
         for sample in 1..=((to.time_s - from.time_s) * RATE_HZ).round() as u32 {
             let time_s = from.time_s + f64::from(sample) / RATE_HZ;
             let part = (time_s - from.time_s) / (to.time_s - from.time_s);

@@ -347,7 +347,6 @@ pub(crate) fn moving() -> ReportData {
         .collect();
     data.simulation = Some(SimulationQuality {
         frames: 4210,
-        converged_frames: 4207,
         worst_residual: 8.3e-7,
         largest_penetration_mm: 0.0041,
         smallest_volume_ratio: 0.71,

@@ -70,10 +70,8 @@ pub struct WarpPath {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SimulationQuality {
-    /// Frames that were simulated.
+    /// Frames that were solved to the tolerance.
     pub frames: usize,
-    /// Frames whose solution met the tolerance.
-    pub converged_frames: usize,
     /// Largest relative residual of any accepted frame.
     pub worst_residual: f64,
     /// Largest penetration of the indenter into the gel, mm.

@@ -160,11 +160,7 @@ pub(super) fn simulation(data: &ReportData) -> Option<Section> {
     let quality = data.simulation.as_ref()?;
     let source = Provenance::Simulated;
     let mut body = cards(&[
-        (
-            format!("{} of {}", quality.converged_frames, quality.frames),
-            "frames converged",
-            source,
-        ),
+        (quality.frames.to_string(), "frames solved", source),
         (short(quality.worst_residual), "worst relative residual", source),
         (
             format!("{} mm", short(quality.largest_penetration_mm)),

@@ -1,17 +1,11 @@
-//! A press at one place, from first touch to full depth.
-//!
-//! The elastic gel without friction has no memory: what it does at a depth does not depend on how it got there. So a place is
-//! simulated once as a table over depth, and any press there, at any speed and with any holds, is read off the table.
+//! A table over depth at one place, and its frames.
 
 use serde::{Deserialize, Serialize};
 use twintac_shape::Pose;
-use twintac_softbody::Frame;
 
-/// How far a simulated frame can be trusted.
+/// How well the solver balanced a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Honesty {
-    /// Whether the residual fell below the tolerance.
-    pub converged: bool,
+pub struct SolveQuality {
     /// Newton iterations.
     pub iterations: u32,
     /// Residual force over the indenter's force.
@@ -25,24 +19,9 @@ pub struct Honesty {
     pub wall_time_s: f64,
 }
 
-impl Honesty {
-    pub(crate) fn of(frame: &Frame) -> Self {
-        Self {
-            converged: frame.converged,
-            iterations: frame.iterations,
-            residual: frame.residual,
-            penetration_mm: frame.penetration_mm,
-            smallest_volume_ratio: frame.smallest_volume_ratio,
-            wall_time_s: frame.wall_time_s,
-        }
-    }
-}
-
-/// The gel at one depth.
+/// The gel at one moment of a press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SweepFrame {
-    /// Time, s; zero throughout a table over depth.
-    pub time_s: f64,
+pub struct PressFrame {
     /// Depth below first touch, mm.
     pub depth_mm: f64,
     /// Force of the indenter on the gel along -z, N.
@@ -52,26 +31,26 @@ pub struct SweepFrame {
     /// The stress feature of TwinTac (arXiv 2509.10063, equation 6): mean over the surface nodes above each taxel of von Mises stress over
     /// distance to the taxel, kPa/mm; `[n_taxels]`.
     pub stress_feature_kpa_per_mm: Vec<f64>,
-    /// How far to trust it.
-    pub honesty: Honesty,
+    /// How well it is solved.
+    pub quality: SolveQuality,
 }
 
 /// A table over depth at one place. The first frame is the untouched gel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sweep {
+pub struct DepthTable {
     /// The indenter's name.
     pub indenter: String,
     /// The indenter at first touch.
     pub gel_from_indenter_at_touch: Pose,
     /// Nodes of the mesh.
     pub n_nodes: usize,
-    /// Frames at increasing depth, or in time for a press that follows a trajectory.
-    pub frames: Vec<SweepFrame>,
+    /// Frames at increasing depth.
+    pub frames: Vec<PressFrame>,
     /// Why the frames end before they should; `None` if they do not.
     pub failure: Option<String>,
 }
 
-impl Sweep {
+impl DepthTable {
     /// Depth of the last frame, mm.
     #[must_use]
     pub fn depth_mm(&self) -> f64 {

@@ -1,12 +1,12 @@
-//! Sweeps on a regular lattice of places, read off anywhere between them.
+//! Tables over depth on a regular lattice of places, and the table at any place between them.
 //!
-//! An array pressed at thousands of places need not be simulated at each: what a port feels varies over the gel's height, so splines
-//! through a lattice some third of that height apart lose less than the mesh does.
+//! An array pressed at thousands of places need not be simulated at each: the pressure at a port varies over distances of the gel's height, so
+//! splines through a lattice of a third of that height lose less than the mesh does.
 
 use glam::DVec2;
 use twintac_shape::Pose;
 
-use crate::{Sweep, SweepFrame};
+use crate::{DepthTable, PressFrame};
 
 /// Places x = x0 + i·dx, y = y0 + j·dy, at least four each way, with x running fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,20 +55,20 @@ impl Lattice {
             .to_vec()
     }
 
-    /// The sweep at a place inside the lattice, from the sweeps at [`Lattice::places_mm`], by cubic splines frame by frame. Frames that
+    /// The table at a place inside the lattice, from the tables at [`Lattice::places_mm`], by cubic splines frame by frame. Frames that
     /// some node lacks are left out.
     #[must_use]
-    pub fn at(&self, sweeps: &[Sweep], place_mm: DVec2) -> Sweep {
+    pub fn at(&self, tables: &[DepthTable], place_mm: DVec2) -> DepthTable {
         let along_x = spline_weights((place_mm.x - self.low_mm.x) / self.step_mm.x, self.n_x);
         let along_y = spline_weights((place_mm.y - self.low_mm.y) / self.step_mm.y, self.n_y);
-        let nodes: Vec<(&Sweep, f64)> = sweeps
+        let nodes: Vec<(&DepthTable, f64)> = tables
             .iter()
             .enumerate()
-            .map(|(node, sweep)| (sweep, along_x[node % self.n_x] * along_y[node / self.n_x]))
+            .map(|(node, table)| (table, along_x[node % self.n_x] * along_y[node / self.n_x]))
             .collect();
         let n_frames = nodes
             .iter()
-            .map(|(sweep, _)| sweep.frames.len())
+            .map(|(table, _)| table.frames.len())
             .min()
             .unwrap_or(0);
         let nearest = nearest(&nodes);
@@ -76,7 +76,7 @@ impl Lattice {
             .iter()
             .map(|(s, w)| w * s.gel_from_indenter_at_touch.position_mm.z)
             .sum();
-        Sweep {
+        DepthTable {
             gel_from_indenter_at_touch: Pose {
                 position_mm: place_mm.extend(z_mm),
                 ..nearest.gel_from_indenter_at_touch
@@ -87,7 +87,7 @@ impl Lattice {
     }
 }
 
-fn nearest<'a>(nodes: &[(&'a Sweep, f64)]) -> &'a Sweep {
+fn nearest<'a>(nodes: &[(&'a DepthTable, f64)]) -> &'a DepthTable {
     let mut best = nodes[0];
     for &candidate in nodes {
         if candidate.1 > best.1 {
@@ -97,24 +97,23 @@ fn nearest<'a>(nodes: &[(&'a Sweep, f64)]) -> &'a Sweep {
     best.0
 }
 
-fn blend(nodes: &[(&Sweep, f64)], nearest: &Sweep, frame: usize) -> SweepFrame {
-    let sum = |value: &dyn Fn(&SweepFrame) -> f64| -> f64 {
+fn blend(nodes: &[(&DepthTable, f64)], nearest: &DepthTable, frame: usize) -> PressFrame {
+    let sum = |value: &dyn Fn(&PressFrame) -> f64| -> f64 {
         nodes
             .iter()
-            .map(|(sweep, weight)| weight * value(&sweep.frames[frame]))
+            .map(|(table, weight)| weight * value(&table.frames[frame]))
             .sum()
     };
     let template = &nearest.frames[frame];
     let n_taxels = template.port_pressure_kpa.len();
-    SweepFrame {
-        time_s: template.time_s,
+    PressFrame {
         depth_mm: sum(&|f| f.depth_mm),
         force_n: sum(&|f| f.force_n),
         port_pressure_kpa: (0..n_taxels).map(|k| sum(&|f| f.port_pressure_kpa[k])).collect(),
         stress_feature_kpa_per_mm: (0..n_taxels)
             .map(|k| sum(&|f| f.stress_feature_kpa_per_mm[k]))
             .collect(),
-        honesty: template.honesty,
+        quality: template.quality,
     }
 }
 
@@ -159,27 +158,25 @@ fn curvatures(n_nodes: usize, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Honesty;
+    use crate::SolveQuality;
 
-    fn sweep_of(place: DVec2) -> Sweep {
+    fn table_of(place: DVec2) -> DepthTable {
         let value = place.x.powi(3) - 2.0 * place.x * place.y + place.y.powi(2) * place.x;
-        let honesty = Honesty {
-            converged: true,
+        let quality = SolveQuality {
             iterations: 1,
             residual: 0.0,
             penetration_mm: 0.0,
             smallest_volume_ratio: 1.0,
             wall_time_s: 0.0,
         };
-        let frame = SweepFrame {
-            time_s: 0.0,
+        let frame = PressFrame {
             depth_mm: 1.0,
             force_n: value,
             port_pressure_kpa: vec![2.0 * value],
             stress_feature_kpa_per_mm: vec![3.0 * value],
-            honesty,
+            quality,
         };
-        Sweep {
+        DepthTable {
             indenter: "sphere".into(),
             gel_from_indenter_at_touch: Pose::from_position(place.extend(8.0)),
             n_nodes: 1,
@@ -191,14 +188,14 @@ mod tests {
     #[test]
     fn cubics_are_interpolated_exactly_up_to_the_border() {
         let lattice = Lattice::covering(DVec2::new(-1.0, 2.0), DVec2::new(6.0, 9.5), 1.5);
-        let sweeps: Vec<Sweep> = lattice.places_mm().into_iter().map(sweep_of).collect();
+        let tables: Vec<DepthTable> = lattice.places_mm().into_iter().map(table_of).collect();
         for place in [
             DVec2::new(-1.0, 2.0),
             DVec2::new(0.3, 2.1),
             DVec2::new(3.3, 5.0),
             DVec2::new(6.0, 9.5),
         ] {
-            let (found, expected) = (lattice.at(&sweeps, place), sweep_of(place));
+            let (found, expected) = (lattice.at(&tables, place), table_of(place));
             assert!((found.frames[0].force_n - expected.frames[0].force_n).abs() < 1e-9);
             assert!(
                 (found.frames[0].port_pressure_kpa[0] - expected.frames[0].port_pressure_kpa[0]).abs() < 1e-9

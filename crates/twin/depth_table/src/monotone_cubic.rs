@@ -1,14 +1,15 @@
 //! Shape-preserving interpolation of a table.
 
-/// Monotone piecewise cubic through a table (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984): it never overshoots the data.
+/// Monotone piecewise cubic through a table, known as PCHIP (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984): it never overshoots the
+/// data.
 #[derive(Clone, Debug)]
-pub struct Pchip {
+pub struct MonotoneCubic {
     x: Vec<f64>,
     y: Vec<f64>,
     slope: Vec<f64>,
 }
 
-impl Pchip {
+impl MonotoneCubic {
     /// Interpolates `y` over strictly increasing `x`; `None` if there are no points, the lengths differ, or `x` does not increase.
     #[must_use]
     pub fn new(x: Vec<f64>, y: Vec<f64>) -> Option<Self> {
@@ -73,7 +74,7 @@ mod tests {
     fn knots_are_met_and_nothing_overshoots() {
         let x = vec![0.0, 0.3, 1.0, 1.2, 2.0];
         let y = vec![0.0, 0.1, 1.0, 1.0, 0.2];
-        let curve = Pchip::new(x.clone(), y.clone()).unwrap();
+        let curve = MonotoneCubic::new(x.clone(), y.clone()).unwrap();
         for (x, y) in x.iter().zip(&y) {
             assert!((curve.at(*x) - y).abs() < 1e-12);
         }
@@ -88,7 +89,7 @@ mod tests {
         let error = |n: i32| {
             let x: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
             let y = x.iter().map(|x| x.exp()).collect();
-            let curve = Pchip::new(x, y).unwrap();
+            let curve = MonotoneCubic::new(x, y).unwrap();
             (10..90)
                 .map(|i| f64::from(i) / 100.0)
                 .map(|x| (curve.at(x) - x.exp()).abs())
@@ -98,9 +99,9 @@ mod tests {
     }
 
     #[test]
-    fn tables_that_are_none_are_refused() {
-        assert!(Pchip::new(vec![], vec![]).is_none());
-        assert!(Pchip::new(vec![0.0, 0.0], vec![1.0, 2.0]).is_none());
-        assert!(Pchip::new(vec![0.0], vec![1.0, 2.0]).is_none());
+    fn knots_that_do_not_increase_are_refused() {
+        assert!(MonotoneCubic::new(vec![], vec![]).is_none());
+        assert!(MonotoneCubic::new(vec![0.0, 0.0], vec![1.0, 2.0]).is_none());
+        assert!(MonotoneCubic::new(vec![0.0], vec![1.0, 2.0]).is_none());
     }
 }

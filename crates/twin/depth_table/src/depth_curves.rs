@@ -1,0 +1,290 @@
+//! A table over depth, read at any depth or any force.
+
+use crate::{DepthTable, DepthTableError, MonotoneCubic};
+
+/// Smallest step of depth, mm, or force, N, that counts as an increase.
+const STEP: f64 = 1e-9;
+
+/// Monotone cubics through a table over depth: zero above the surface, the end of the table beyond it.
+///
+/// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1
+/// under a flat punch), over which everything begins as a straight line. A table of ten depths is then as
+/// good as one of fifty.
+#[derive(Clone, Debug)]
+pub struct DepthCurves {
+    growth: f64,
+    force_n: MonotoneCubic,
+    /// From force to depth^n.
+    loading: MonotoneCubic,
+    /// Port pressures, then stress features; `[2 * n_taxels]`.
+    features: Vec<MonotoneCubic>,
+    max_depth_mm: f64,
+    max_force_n: f64,
+}
+
+impl DepthCurves {
+    /// Interpolates a table.
+    ///
+    /// # Errors
+    /// A table of another number of taxels, with values that are not finite, without a frame below the surface, or whose depths do not
+    /// increase.
+    pub fn new(table: &DepthTable, n_taxels: usize) -> Result<Self, DepthTableError> {
+        let mut knots = vec![Knot {
+            depth_mm: 0.0,
+            force_n: 0.0,
+            features: vec![0.0; 2 * n_taxels],
+        }];
+        for frame in table.frames.iter().filter(|frame| frame.depth_mm > STEP) {
+            let features = [&frame.port_pressure_kpa[..], &frame.stress_feature_kpa_per_mm[..]].concat();
+            if features.len() != 2 * n_taxels {
+                return Err(DepthTableError::Taxels {
+                    expected: n_taxels,
+                    found: features.len(),
+                });
+            }
+            if !features
+                .iter()
+                .chain([&frame.force_n, &frame.depth_mm])
+                .all(|value| value.is_finite())
+            {
+                return Err(DepthTableError::NotFinite {
+                    depth_mm: frame.depth_mm,
+                });
+            }
+            knots.push(Knot {
+                depth_mm: frame.depth_mm,
+                force_n: frame.force_n,
+                features,
+            });
+        }
+        if knots.len() < 2 {
+            let failure = table.failure.clone();
+            return Err(DepthTableError::NoPress {
+                found: failure.unwrap_or_else(|| "no frame below the surface".into()),
+            });
+        }
+        Self::from_knots(&knots).ok_or(DepthTableError::Order)
+    }
+
+    fn from_knots(knots: &[Knot]) -> Option<Self> {
+        let growth = growth(knots);
+        let grown: Vec<f64> = knots.iter().map(|knot| knot.depth_mm.powf(growth)).collect();
+        let last = knots.last()?;
+        let mut loading: Vec<&Knot> = Vec::with_capacity(knots.len());
+        for knot in knots {
+            if loading
+                .last()
+                .is_none_or(|before| knot.force_n > before.force_n + STEP)
+            {
+                loading.push(knot);
+            }
+        }
+        let curve = |value: &dyn Fn(&Knot) -> f64| {
+            MonotoneCubic::new(grown.clone(), knots.iter().map(value).collect())
+        };
+        Some(Self {
+            force_n: curve(&|knot| knot.force_n)?,
+            growth,
+            loading: MonotoneCubic::new(
+                loading.iter().map(|knot| knot.force_n).collect(),
+                loading.iter().map(|knot| knot.depth_mm.powf(growth)).collect(),
+            )?,
+            features: (0..last.features.len())
+                .map(|k| curve(&|knot| knot.features[k]))
+                .collect::<Option<_>>()?,
+            max_depth_mm: last.depth_mm,
+            max_force_n: loading.last()?.force_n,
+        })
+    }
+
+    /// The weighted mean of tables of the same press, resampled at `n_knots` depths.
+    ///
+    /// # Errors
+    /// No tables, or one that has no depth.
+    pub fn blend(tables: &[&Self], weights: &[f64], n_knots: usize) -> Result<Self, DepthTableError> {
+        let max_depth_mm = tables
+            .iter()
+            .map(|table| table.max_depth_mm)
+            .fold(f64::INFINITY, f64::min);
+        let n_features = tables.first().ok_or(DepthTableError::Blend)?.features.len();
+        let mean =
+            |value: &dyn Fn(&Self) -> f64| tables.iter().zip(weights).map(|(t, w)| w * value(t)).sum::<f64>();
+        let knots: Vec<Knot> = (0..n_knots)
+            .map(|i| {
+                let depth_mm = max_depth_mm * i as f64 / (n_knots - 1) as f64;
+                Knot {
+                    depth_mm,
+                    force_n: mean(&|t| t.force_n(depth_mm)),
+                    features: (0..n_features)
+                        .map(|k| mean(&|t| t.features[k].at(t.grown(depth_mm))))
+                        .collect(),
+                }
+            })
+            .collect();
+        Self::from_knots(&knots).ok_or(DepthTableError::Blend)
+    }
+
+    fn grown(&self, depth_mm: f64) -> f64 {
+        depth_mm.max(0.0).powf(self.growth)
+    }
+
+    /// Force of the indenter at a depth, N.
+    #[must_use]
+    pub fn force_n(&self, depth_mm: f64) -> f64 {
+        self.force_n.at(self.grown(depth_mm))
+    }
+
+    /// Depth at a force, mm.
+    #[must_use]
+    pub fn depth_mm(&self, force_n: f64) -> f64 {
+        self.loading.at(force_n).powf(self.growth.recip())
+    }
+
+    /// Port pressure of each taxel at a depth, kPa; `[n_taxels]`.
+    #[must_use]
+    pub fn pressure_kpa(&self, depth_mm: f64) -> Vec<f64> {
+        let grown = self.grown(depth_mm);
+        self.features[..self.features.len() / 2]
+            .iter()
+            .map(|curve| curve.at(grown))
+            .collect()
+    }
+
+    /// Stress feature of each taxel at a depth, kPa/mm; `[n_taxels]`.
+    #[must_use]
+    pub fn stress_kpa_per_mm(&self, depth_mm: f64) -> Vec<f64> {
+        let grown = self.grown(depth_mm);
+        self.features[self.features.len() / 2..]
+            .iter()
+            .map(|curve| curve.at(grown))
+            .collect()
+    }
+
+    /// Depth at which the table ends, mm.
+    #[must_use]
+    pub fn max_depth_mm(&self) -> f64 {
+        self.max_depth_mm
+    }
+
+    /// Force at which the table ends, N.
+    #[must_use]
+    pub fn max_force_n(&self) -> f64 {
+        self.max_force_n
+    }
+}
+
+/// The power of depth with which the force begins to grow, from the first two depths below the surface.
+fn growth(knots: &[Knot]) -> f64 {
+    match knots {
+        [_, a, b, ..] if a.force_n > 0.0 && b.force_n > a.force_n && b.depth_mm > a.depth_mm => {
+            ((b.force_n / a.force_n).ln() / (b.depth_mm / a.depth_mm).ln()).clamp(1.0, 2.0)
+        }
+        _ => 1.5,
+    }
+}
+
+struct Knot {
+    depth_mm: f64,
+    force_n: f64,
+    features: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{PressFrame, SolveQuality};
+
+    /// Hertz's force, and two pressures in proportion to it.
+    fn table() -> DepthTable {
+        let frame = |i: i32| {
+            let depth_mm = 2.0 * (f64::from(i) / 14.0).powf(1.25);
+            let force_n = hertz_n(depth_mm);
+            PressFrame {
+                depth_mm,
+                force_n,
+                port_pressure_kpa: vec![10.0 * force_n, 5.0 * force_n],
+                stress_feature_kpa_per_mm: vec![3.0 * force_n, force_n],
+                quality: SolveQuality {
+                    iterations: 3,
+                    residual: 0.0,
+                    penetration_mm: 0.0,
+                    smallest_volume_ratio: 0.9,
+                    wall_time_s: 0.0,
+                },
+            }
+        };
+        DepthTable {
+            indenter: "ball".into(),
+            gel_from_indenter_at_touch: twintac_shape::Pose::IDENTITY,
+            n_nodes: 1,
+            frames: (0..=14).map(frame).collect(),
+            failure: None,
+        }
+    }
+
+    fn hertz_n(depth_mm: f64) -> f64 {
+        2.0 * depth_mm.powf(1.5)
+    }
+
+    #[test]
+    fn depth_and_force_agree_and_nothing_is_felt_above_the_gel() {
+        let curves = DepthCurves::new(&table(), 2).unwrap();
+        for depth_mm in [0.1, 0.77, 1.9] {
+            let force_n = hertz_n(depth_mm);
+            assert!((curves.force_n(depth_mm) / force_n - 1.0).abs() < 0.001);
+            assert!((curves.depth_mm(force_n) - depth_mm).abs() < 0.001);
+            assert!((curves.pressure_kpa(depth_mm)[1] / (5.0 * force_n) - 1.0).abs() < 0.001);
+            assert!((curves.stress_kpa_per_mm(depth_mm)[0] / (3.0 * force_n) - 1.0).abs() < 0.001);
+        }
+        assert_eq!(curves.pressure_kpa(-0.3), [0.0; 2]);
+        assert_eq!(curves.force_n(0.0), 0.0);
+        assert_eq!(curves.force_n(5.0), curves.max_force_n());
+    }
+
+    #[test]
+    fn a_table_without_a_press_says_why() {
+        let mut table = table();
+        table.frames.truncate(1);
+        table.failure = Some("at 0.1 mm: no".into());
+        let error = DepthCurves::new(&table, 2).unwrap_err();
+        assert!(error.to_string().contains("at 0.1 mm"), "{error}");
+    }
+
+    #[test]
+    fn another_number_of_taxels_other_orders_and_nan_are_refused() {
+        assert_eq!(
+            DepthCurves::new(&table(), 8).unwrap_err(),
+            DepthTableError::Taxels {
+                expected: 8,
+                found: 4
+            }
+        );
+        let mut backwards = table();
+        backwards.frames.reverse();
+        assert_eq!(
+            DepthCurves::new(&backwards, 2).unwrap_err(),
+            DepthTableError::Order
+        );
+        let mut broken = table();
+        broken.frames[3].force_n = f64::NAN;
+        assert!(matches!(
+            DepthCurves::new(&broken, 2).unwrap_err(),
+            DepthTableError::NotFinite { .. }
+        ));
+    }
+
+    #[test]
+    fn a_blend_lies_between_its_tables() {
+        let [one, other] = [1.0, 3.0].map(|factor| {
+            let mut table = table();
+            table.frames.iter_mut().for_each(|frame| frame.force_n *= factor);
+            DepthCurves::new(&table, 2).unwrap()
+        });
+        let blend = DepthCurves::blend(&[&one, &other], &[0.5, 0.5], 40).unwrap();
+        assert!((blend.force_n(1.0) / (2.0 * hertz_n(1.0)) - 1.0).abs() < 0.001);
+        assert_eq!(
+            DepthCurves::blend(&[], &[], 40).unwrap_err(),
+            DepthTableError::Blend
+        );
+    }
+}
