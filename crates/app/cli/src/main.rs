@@ -4,15 +4,7 @@
 //! 3 when a bench was stopped: what was recorded until then is kept.
 
 mod arguments;
-mod built_in;
-mod calibration;
 mod command;
-mod drawing;
-mod progress;
-mod run;
-mod sensor_file;
-mod stage;
-mod store;
 
 use std::io::Write;
 use std::process::ExitCode;

@@ -11,11 +11,11 @@ use twintac_report::{png, svg};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;
-use crate::calibration::{CsvPlace, Measured, material_file, of_csv, of_file, scene};
-use crate::progress;
-use crate::run::RunSettings;
-use crate::sensor_file::read_sensor;
-use crate::stage::{write_file, write_json};
+use twintac_run::cache::{write_file, write_json};
+use twintac_run::calibration::{CsvPlace, Measured, material_file, of_csv, of_file, scene};
+use twintac_run::progress;
+use twintac_run::sensor_file::read_sensor;
+use twintac_run::settings::RunSettings;
 
 /// Pixels of the PNG for each of the plot's.
 const PNG_SCALE: f64 = 2.0;

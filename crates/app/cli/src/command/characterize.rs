@@ -9,9 +9,9 @@ use twintac_recording::Recording;
 
 use super::files::expand;
 use crate::arguments::Characterize;
-use crate::progress::say;
-use crate::sensor_file::read_sensor;
-use crate::stage::write_json;
+use twintac_run::cache::write_json;
+use twintac_run::progress::say;
+use twintac_run::sensor_file::read_sensor;
 
 /// Characterizes, and prints or writes what was found.
 pub(crate) fn run(arguments: &Characterize) -> Result<()> {

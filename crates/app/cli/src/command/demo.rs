@@ -6,10 +6,12 @@ use twintac_lab::Reality;
 use twintac_simulate::SimulateSettings;
 
 use crate::arguments::Demo;
-use crate::built_in::{DEMO_PROTOCOL, REALITY};
-use crate::run::{Run, RunSettings, plan_text};
-use crate::sensor_file::SensorFile;
-use crate::stage::write_file;
+use twintac_run::built_in::{DEMO_PROTOCOL, REALITY};
+use twintac_run::cache::write_file;
+use twintac_run::run::Run;
+use twintac_run::sensor_file::SensorFile;
+use twintac_run::settings::RunSettings;
+use twintac_run::stages::recordings::plan_text;
 
 /// Runs every stage on the emulated bench.
 pub(crate) fn run(arguments: &Demo) -> Result<()> {

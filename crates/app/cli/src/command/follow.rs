@@ -7,11 +7,10 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use twintac_protocol::PressPath;
 use twintac_recording::Provenance;
-use twintac_sensor::Sensor;
-use twintac_shape::Shape;
+use twintac_run::sensor_file::indenter;
 use twintac_simulate::{Followed, FollowedFrame, Gel};
 
-use crate::progress;
+use twintac_run::progress;
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -66,26 +65,6 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> 
         ),
         None => Ok(()),
     }
-}
-
-/// The shape of a sensor's indenter.
-pub(crate) fn indenter<'a>(sensor: &'a Sensor, name: &str) -> Result<&'a Shape> {
-    let known = sensor.indenters.iter();
-    let names = || {
-        known
-            .clone()
-            .map(|indenter| indenter.name.as_str())
-            .collect::<Vec<_>>()
-    };
-    let found = known.clone().find(|indenter| indenter.name == name);
-    Ok(&found
-        .with_context(|| {
-            format!(
-                "there is no indenter `{name}`; the sensor has {}",
-                names().join(", ")
-            )
-        })?
-        .shape)
 }
 
 /// Comma-separated columns with their units.

@@ -18,8 +18,6 @@ use anyhow::Result;
 
 use crate::arguments::{Command, SensorCommand};
 
-pub(crate) use follow::indenter;
-pub(crate) use mesh::{mesh_of, write_mesh};
 pub(crate) use record::Stopped;
 
 /// Does what was asked for.
@@ -50,4 +48,9 @@ pub(crate) fn print(text: &str) -> Result<()> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }
+}
+
+/// How this program was called, for the report.
+pub(crate) fn command_line() -> String {
+    std::env::args().collect::<Vec<_>>().join(" ")
 }

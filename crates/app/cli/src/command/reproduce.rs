@@ -6,8 +6,9 @@ use anyhow::{Context, Result};
 
 use super::files::expand;
 use crate::arguments::{Import, Recorded, Reproduce, Start};
-use crate::run::{Run, RunSettings};
-use crate::sensor_file::read_sensor;
+use twintac_run::run::Run;
+use twintac_run::sensor_file::read_sensor;
+use twintac_run::settings::RunSettings;
 
 /// Runs every stage on recordings.
 pub(crate) fn run(arguments: &Reproduce) -> Result<()> {
@@ -22,7 +23,7 @@ pub(crate) fn import(arguments: &Import) -> Result<()> {
 
 fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> {
     let sensor = read_sensor(&recorded.sensor)?;
-    let settings = RunSettings::of(start)?;
+    let settings = RunSettings::read(start.settings.as_deref())?;
     let files = expand(&recorded.recordings)?;
     let import = recorded
         .import

@@ -3,8 +3,8 @@
 use anyhow::Result;
 
 use crate::arguments::SensorShow;
-use crate::drawing;
-use crate::sensor_file::read_sensor;
+use twintac_run::drawing;
+use twintac_run::sensor_file::read_sensor;
 
 /// Prints a description with units, and draws it.
 pub(crate) fn show(arguments: &SensorShow) -> Result<()> {

@@ -13,10 +13,12 @@ use twintac_recording::Provenance;
 use twintac_simulate::{Fields, Gel, PressPlace, SimulateSettings};
 
 use crate::arguments::Simulate;
-use crate::progress;
-use crate::run::{Run, RunSettings, plan};
-use crate::sensor_file::read_sensor;
-use crate::stage::{write_file, write_json};
+use twintac_run::cache::{write_file, write_json};
+use twintac_run::progress;
+use twintac_run::run::Run;
+use twintac_run::sensor_file::read_sensor;
+use twintac_run::settings::RunSettings;
+use twintac_run::stages::recordings::plan;
 
 /// One simulated press: `<press>.json`.
 #[derive(Serialize)]
@@ -52,7 +54,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
         .par_iter()
         .with_max_len(1)
         .try_for_each(|plan| -> Result<()> {
-            let shape = super::follow::indenter(&sensor, &plan.indenter)?.clone();
+            let shape = twintac_run::sensor_file::indenter(&sensor, &plan.indenter)?.clone();
             let place = PressPlace {
                 enough_force_n: None,
                 indenter: plan.indenter.clone(),

@@ -5,7 +5,10 @@ use twintac_recording::Recording;
 
 use super::files::expand;
 use crate::arguments::{Align, Evaluate, Report, Train};
-use crate::run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files};
+use twintac_run::metrics::Metrics;
+use twintac_run::run::Run;
+use twintac_run::stages::evaluation::{UnseenEvaluation, evaluate_elsewhere};
+use twintac_run::stages::recordings::import_files;
 
 /// Everything after the recordings; prints the headline.
 pub(crate) fn finish(run: &Run) -> Result<()> {
@@ -14,7 +17,7 @@ pub(crate) fn finish(run: &Run) -> Result<()> {
     run.pair()?;
     run.train()?;
     run.evaluate()?;
-    run.report()?;
+    run.report(&super::command_line())?;
     print_headline(run)
 }
 
@@ -59,7 +62,7 @@ pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
 
 /// `twintac report`.
 pub(crate) fn report(arguments: &Report) -> Result<()> {
-    Run::open(&arguments.run)?.report()
+    Run::open(&arguments.run)?.report(&super::command_line())
 }
 
 fn read_presses(files: &[std::path::PathBuf]) -> Result<Recording> {

@@ -1,7 +1,5 @@
 //! `twintac record`: presses on a bench, over its wires.
 
-mod bench;
-mod lab;
 mod preview;
 
 use std::collections::BTreeMap;
@@ -22,11 +20,13 @@ use twintac_recording::Provenance;
 use twintac_rig::xarm::Client;
 
 use crate::arguments::Record;
-use crate::built_in::{LAB_BENCH, REALITY};
-use crate::progress::{self, say};
-use crate::run::{Run, RunSettings, plan, plan_loads};
-use crate::sensor_file::SensorFile;
-use bench::OpenBench;
+use twintac_run::bench::{self, OpenBench, lab};
+use twintac_run::built_in::{LAB_BENCH, REALITY};
+use twintac_run::progress::{self, say};
+use twintac_run::run::Run;
+use twintac_run::sensor_file::SensorFile;
+use twintac_run::settings::RunSettings;
+use twintac_run::stages::recordings::{plan, plan_loads};
 
 /// Set by Ctrl-C: the bench stops.
 static INTERRUPT: AtomicBool = AtomicBool::new(false);
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     };
     if let (Some(reality), true) = (&reality, arguments.at_once) {
         let source = format!("{} presses on the emulated bench", plans.len() + loads.len());
-        let settings = RunSettings::of(&arguments.start)?;
+        let settings = RunSettings::read(arguments.start.settings.as_deref())?;
         return Run::start(&out, sensor, source, seed, settings)?.record(reality, &plans, &loads);
     }
     if !loads.is_empty() {
@@ -90,7 +90,13 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
         "a real"
     };
     let source = format!("{} presses on {whose} bench, over its wires", plans.len());
-    let run = Run::start(&out, sensor, source, seed, RunSettings::of(&arguments.start)?)?;
+    let run = Run::start(
+        &out,
+        sensor,
+        source,
+        seed,
+        RunSettings::read(arguments.start.settings.as_deref())?,
+    )?;
     let mut bench = match &reality {
         Some(reality) => lab::open(&run, reality, &plans, &settings, faults)?,
         None => {

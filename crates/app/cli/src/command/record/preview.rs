@@ -13,7 +13,7 @@ use twintac_report::{Ink, svg};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
-use crate::stage::write_file;
+use twintac_run::cache::write_file;
 
 /// The last line with `--json`.
 #[derive(Debug, Serialize)]

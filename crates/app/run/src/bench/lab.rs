@@ -18,7 +18,7 @@ use twintac_rig::xarm::ReportPort;
 use twintac_rig::{BenchClock, netft};
 use twintac_shape::Pose;
 
-use super::bench::{Addresses, OpenBench, connect};
+use super::{Addresses, OpenBench, connect};
 use crate::run::Run;
 
 /// What `--faults FILE` holds.
@@ -29,14 +29,14 @@ struct FaultsFile {
 }
 
 /// Reads what is to go wrong, from a file.
-pub(super) fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>> {
+pub fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>> {
     let faults = twintac_config::read::<FaultsFile>(file)?.value.faults;
     check_faults(&faults).with_context(|| file.display().to_string())?;
     Ok(faults)
 }
 
 /// Computes what the gel answers at the places of the plans, and switches the emulated devices on.
-pub(super) fn open(
+pub fn open(
     run: &Run,
     reality: &Reality,
     plans: &[PressPlan],

@@ -10,8 +10,6 @@ use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::SimulateSettings;
 
-use crate::arguments::Start;
-
 /// From this many places on, presses are told apart for the split by squares of the gel, not by place: neighbours on a dense grid
 /// know too much of each other.
 const DENSE_FROM: usize = 150;
@@ -22,29 +20,24 @@ const DENSE_BLOCK_MM: f64 = 3.0;
 /// What `--settings FILE` may hold; each field has a default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(crate) struct RunSettings {
+pub struct RunSettings {
     /// How finely the gel is simulated.
-    pub(crate) simulate: SimulateSettings,
+    pub simulate: SimulateSettings,
     /// How deep places are simulated.
-    pub(crate) places: PlaceSettings,
+    pub places: PlaceSettings,
     /// What is fitted about the bench.
-    pub(crate) bench: BenchSettings,
+    pub bench: BenchSettings,
     /// Which presses are held out.
-    pub(crate) split: SplitSettings,
+    pub split: SplitSettings,
     /// How clocks are aligned.
-    pub(crate) pair: PairSettings,
+    pub pair: PairSettings,
     /// How twins are trained.
-    pub(crate) train: TrainSettings,
+    pub train: TrainSettings,
 }
 
 impl RunSettings {
-    /// The usual settings but for those in the file that a run is started with.
-    pub(crate) fn of(start: &Start) -> Result<Self> {
-        Self::read(start.settings.as_deref())
-    }
-
     /// The usual settings but for those in the file, if there is one.
-    pub(crate) fn read(path: Option<&Path>) -> Result<Self> {
+    pub fn read(path: Option<&Path>) -> Result<Self> {
         let Some(path) = path else {
             return Ok(Self::default());
         };
@@ -67,11 +60,11 @@ impl RunSettings {
     }
 
     /// The settings with all that depends on the seed, the sensor and the presses filled in.
-    pub(crate) fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
+    pub fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
         let mut resolved = self.clone();
         resolved.split.seed = seed;
         resolved.train.seed = seed;
-        resolved.bench.left_out = super::left_out(sensor);
+        resolved.bench.left_out = crate::run::left_out(sensor);
         if !has_unknown_tip(sensor, recording) {
             resolved.bench.tip_radii_mm.clear();
         }
@@ -100,7 +93,7 @@ fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
 }
 
 /// Whether the presses are static: one frame each, under a prescribed force.
-pub(crate) fn is_static(recording: &Recording) -> bool {
+pub fn is_static(recording: &Recording) -> bool {
     recording
         .presses
         .iter()

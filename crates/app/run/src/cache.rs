@@ -18,22 +18,22 @@ const RECORD: &str = "stage.json";
 
 /// What a finished stage was made from, and what it left.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct StageRecord {
+pub struct StageRecord {
     /// Name and SHA-256 of each input; settings are inputs too.
-    pub(crate) inputs: BTreeMap<String, String>,
+    pub inputs: BTreeMap<String, String>,
     /// Name and SHA-256 of each file left.
-    pub(crate) outputs: BTreeMap<String, String>,
+    pub outputs: BTreeMap<String, String>,
     /// How long it took, s. Differs from run to run, and is no input to anything.
-    pub(crate) wall_time_s: f64,
+    pub wall_time_s: f64,
 }
 
 /// The inputs of a stage, gathered before it runs.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Inputs(BTreeMap<String, String>);
+pub struct Inputs(BTreeMap<String, String>);
 
 impl Inputs {
     /// Starts with the program itself: another build may compute something else.
-    pub(crate) fn new() -> Result<Self> {
+    pub fn new() -> Result<Self> {
         static PROGRAM: OnceLock<String> = OnceLock::new();
         let hash = match PROGRAM.get() {
             Some(hash) => hash,
@@ -47,7 +47,7 @@ impl Inputs {
     }
 
     /// Adds settings.
-    pub(crate) fn settings(mut self, name: &str, settings: &impl Serialize) -> Result<Self> {
+    pub fn settings(mut self, name: &str, settings: &impl Serialize) -> Result<Self> {
         let text =
             serde_json::to_vec(settings).with_context(|| format!("writing down the settings of {name}"))?;
         self.0.insert(name.to_owned(), sha256(&text));
@@ -55,13 +55,13 @@ impl Inputs {
     }
 
     /// Adds a file by its content.
-    pub(crate) fn file(mut self, path: &Path) -> Result<Self> {
+    pub fn file(mut self, path: &Path) -> Result<Self> {
         self.0.insert(path.display().to_string(), sha256_of_file(path)?);
         Ok(self)
     }
 
     /// Adds all that an earlier stage left.
-    pub(crate) fn stage(mut self, folder: &Path) -> Result<Self> {
+    pub fn stage(mut self, folder: &Path) -> Result<Self> {
         let record = read_record(folder).with_context(|| {
             format!(
                 "{} is not a finished stage: run the command that makes it first",
@@ -77,7 +77,7 @@ impl Inputs {
 
 /// Whether a stage ran or was already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
+pub enum Outcome {
     /// Its inputs had changed, or it had never run.
     Ran,
     /// It was there.
@@ -85,7 +85,7 @@ pub(crate) enum Outcome {
 }
 
 /// Runs `work` unless `folder` already holds what it would make. `work` writes into the folder that it is given.
-pub(crate) fn run(folder: &Path, inputs: Inputs, work: impl FnOnce(&Path) -> Result<()>) -> Result<Outcome> {
+pub fn run(folder: &Path, inputs: Inputs, work: impl FnOnce(&Path) -> Result<()>) -> Result<Outcome> {
     if is_current(folder, &inputs) {
         return Ok(Outcome::Kept);
     }
@@ -114,18 +114,18 @@ pub(crate) fn run(folder: &Path, inputs: Inputs, work: impl FnOnce(&Path) -> Res
 }
 
 /// The record of a finished stage.
-pub(crate) fn read_record(folder: &Path) -> Result<StageRecord> {
+pub fn read_record(folder: &Path) -> Result<StageRecord> {
     read_json(&folder.join(RECORD))
 }
 
 /// Reads a JSON file; the error names it.
-pub(crate) fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<T> {
+pub fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<T> {
     let bytes = fs::read(path).with_context(|| format!("reading {}", path.display()))?;
     serde_json::from_slice(&bytes).with_context(|| format!("{} is damaged", path.display()))
 }
 
 /// Writes a JSON file under a temporary name and renames it.
-pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     let mut bytes =
         serde_json::to_vec_pretty(value).with_context(|| format!("writing {}", path.display()))?;
     bytes.push(b'\n');
@@ -133,7 +133,7 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 }
 
 /// Writes a file under a temporary name and renames it.
-pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder {
         fs::create_dir_all(folder).with_context(|| format!("creating {}", folder.display()))?;
@@ -146,7 +146,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// SHA-256 as hexadecimal digits.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
+pub fn sha256(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
     let mut text = String::with_capacity(64);
     for byte in Sha256::digest(bytes) {

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use twintac_calibrate::Fit;
 
 /// The file; `measured` says what it was fitted to.
-pub(crate) fn material_file(fit: &Fit, measured: &str) -> Result<String> {
+pub fn material_file(fit: &Fit, measured: &str) -> Result<String> {
     let of_material = || {
         fit.unknowns
             .iter()

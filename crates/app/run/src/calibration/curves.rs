@@ -10,7 +10,7 @@ use twintac_recording::{Control, Import, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
-use crate::command::indenter;
+use crate::sensor_file::indenter;
 
 /// Recorded frames before and after the press are kept up to this far above the gel, mm.
 const ABOVE_MM: f64 = 0.25;
@@ -41,17 +41,17 @@ struct CsvCurve {
 }
 
 /// A curve, and where it comes from.
-pub(crate) type Measured = (Curve, Provenance);
+pub type Measured = (Curve, Provenance);
 
 /// With what and where a curve was measured.
 #[derive(Clone, Debug)]
-pub(crate) struct CsvPlace {
+pub struct CsvPlace {
     /// Name of the sensor's indenter.
-    pub(crate) indenter: String,
+    pub indenter: String,
     /// Place of its origin, mm.
-    pub(crate) x_mm: f64,
+    pub x_mm: f64,
     /// Place of its origin, mm.
-    pub(crate) y_mm: f64,
+    pub y_mm: f64,
 }
 
 /// Presses out of recordings.
@@ -80,7 +80,7 @@ enum Signals {
 }
 
 /// The curves that a file names; paths in it are relative to it.
-pub(crate) fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result<Vec<Measured>> {
+pub fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result<Vec<Measured>> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let file = twintac_config::read::<CurvesFile>(path)?.value;
     let mut curves = Vec::new();
@@ -108,7 +108,7 @@ pub(crate) fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) ->
 }
 
 /// One curve from a CSV file, which is taken to be measured on hardware.
-pub(crate) fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured> {
+pub fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured> {
     let at = || path.display().to_string();
     let mut reader = csv::Reader::from_path(path).with_context(|| format!("reading {}", at()))?;
     let headers = reader.headers().with_context(at)?.clone();

@@ -13,13 +13,13 @@ use twintac_protocol::{LoadPlan, PressPlan, Protocol, Target};
 use twintac_recording::{Import, ImportSummary, Recording};
 use twintac_sensor::Sensor;
 
-use super::Run;
+use crate::cache::{Inputs, read_json, write_json};
 use crate::progress;
-use crate::stage::{Inputs, read_json, write_json};
+use crate::run::Run;
 
 impl Run {
     /// Imports files; all of them must belong to the run's sensor.
-    pub(crate) fn import(&self, import: &Path, files: &[PathBuf]) -> Result<()> {
+    pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<()> {
         let mut inputs = Inputs::new()?.file(import)?;
         for file in files {
             inputs = inputs.file(file)?;
@@ -33,7 +33,7 @@ impl Run {
     }
 
     /// Records planned presses and weights on the emulated bench, each kept as soon as it is done.
-    pub(crate) fn record(&self, reality: &Reality, plans: &[PressPlan], loads: &[LoadPlan]) -> Result<()> {
+    pub fn record(&self, reality: &Reality, plans: &[PressPlan], loads: &[LoadPlan]) -> Result<()> {
         let inputs = Inputs::new()?
             .settings("reality", reality)?
             .settings("plans", &plans)?
@@ -67,7 +67,7 @@ impl Run {
     }
 
     /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
-    pub(crate) fn live_tables(
+    pub fn live_tables(
         &self,
         lab: &Lab,
         reality: &Reality,
@@ -93,7 +93,7 @@ impl Run {
     }
 
     /// Makes the run's recordings of the logs of its presses, as far as they are done.
-    pub(crate) fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<()> {
+    pub fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<()> {
         let files = twintac_press::done_logs(logs, plans)?;
         let mut inputs = Inputs::new()?;
         for file in &files {
@@ -145,7 +145,7 @@ impl Run {
 }
 
 /// Reads files through an import description.
-pub(crate) fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary)> {
+pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary)> {
     let text = std::fs::read_to_string(import).with_context(|| format!("reading {}", import.display()))?;
     let import = Import::parse(&import.display().to_string(), &text)?;
     Ok(import.read_all(files)?)
@@ -186,13 +186,13 @@ fn kept_in(folder: &Path, name: &str) -> PathBuf {
 }
 
 /// The presses that a protocol plans for a sensor.
-pub(crate) fn plan(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
+pub fn plan(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
     let protocol = read_protocol(protocol)?;
     Ok(protocol.plan(&target(sensor), seed)?)
 }
 
 /// The weights that a protocol puts on a sensor.
-pub(crate) fn plan_loads(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<LoadPlan>> {
+pub fn plan_loads(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<LoadPlan>> {
     let protocol = read_protocol(protocol)?;
     Ok(protocol.loads(&target(sensor), seed)?)
 }
@@ -203,7 +203,7 @@ fn read_protocol(path: &Path) -> Result<Protocol> {
 }
 
 /// The presses that a protocol's text plans for a sensor.
-pub(crate) fn plan_text(file: &str, text: &str, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
+pub fn plan_text(file: &str, text: &str, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
     Ok(Protocol::parse(file, text)?.plan(&target(sensor), seed)?)
 }
 

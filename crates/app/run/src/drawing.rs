@@ -16,7 +16,7 @@ const BOARD_MM: f64 = 1.2;
 const PROFILE_POINTS: usize = 80;
 
 /// Top view, and section through the taxel nearest to the gel's middle.
-pub(crate) fn drawing(sensor: &Sensor) -> SensorDrawing {
+pub fn drawing(sensor: &Sensor) -> SensorDrawing {
     SensorDrawing {
         title: format!("{}: {}", sensor.name, sensor.summary),
         views: vec![top(sensor), section(sensor)],
@@ -24,7 +24,7 @@ pub(crate) fn drawing(sensor: &Sensor) -> SensorDrawing {
 }
 
 /// Size, material and read-out in words.
-pub(crate) fn facts(sensor: &Sensor) -> Vec<Fact> {
+pub fn facts(sensor: &Sensor) -> Vec<Fact> {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let size = high - low;
     let material = &sensor.gel.material;

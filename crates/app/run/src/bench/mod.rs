@@ -1,5 +1,7 @@
 //! The devices of a bench, connected.
 
+pub mod lab;
+
 use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::path::Path;
 use std::time::Duration;
@@ -20,30 +22,30 @@ use twintac_sensor::Sensor;
 const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 
 /// A bench that is switched on.
-pub(super) struct OpenBench {
-    pub(super) devices: Bench<Client<TcpStream>>,
-    pub(super) transfer: Transfer,
-    pub(super) provenance: Provenance,
+pub struct OpenBench {
+    pub devices: Bench<Client<TcpStream>>,
+    pub transfer: Transfer,
+    pub provenance: Provenance,
     /// What was odd when it was switched on, a sentence each.
-    pub(super) notes: Vec<String>,
+    pub notes: Vec<String>,
     /// Where the robot listens.
-    pub(super) robot: SocketAddr,
+    pub robot: SocketAddr,
     /// Puts indenters on, where nobody has to.
-    pub(super) selector: Option<Selector>,
+    pub selector: Option<Selector>,
     /// What keeps emulated devices running.
-    pub(super) _emulated: Option<twintac_emulate::EmulatedBench>,
+    pub _emulated: Option<twintac_emulate::EmulatedBench>,
 }
 
 /// Where robot and force sensor listen.
-pub(super) struct Addresses {
-    pub(super) commands: SocketAddr,
-    pub(super) reports: SocketAddr,
+pub struct Addresses {
+    pub commands: SocketAddr,
+    pub reports: SocketAddr,
     /// Of the force sensor's requests; what its page says.
-    pub(super) force: (SocketAddr, netft::Configuration),
+    pub force: (SocketAddr, netft::Configuration),
 }
 
 /// Connects the devices of the settings. The robot is enabled, and stands.
-pub(super) fn open_real(sensor: &Sensor, settings: &PressSettings, known: &Known) -> Result<OpenBench> {
+pub fn open_real(sensor: &Sensor, settings: &PressSettings, known: &Known) -> Result<OpenBench> {
     let devices = settings.real_devices()?;
     let clock = BenchClock::start();
     let configuration = netft::Client::read_configuration(&devices.force)?;
@@ -112,7 +114,7 @@ fn open_bus(
 }
 
 /// Connects, checks the taxels in free air, and has everything heard. The robot is enabled last.
-pub(super) fn connect<I, D, C>(
+pub fn connect<I, D, C>(
     addresses: &Addresses,
     mut taxels: PhysTac<I, D, C, TAXELS>,
     free: impl FnMut(&mut I, &mut D) + Send + 'static,

@@ -6,27 +6,27 @@ use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_mesh::MeshSettings;
 use twintac_recording::Recording;
 
-use super::Run;
-use super::settings::is_static;
+use crate::cache::{Inputs, read_json, write_json};
+use crate::depth_tables::DepthTableStore;
 use crate::progress;
-use crate::stage::{Inputs, read_json, write_json};
-use crate::store::DepthTableStore;
+use crate::run::Run;
+use crate::settings::is_static;
 
 /// What the simulation stage left.
-pub(crate) struct Simulation {
+pub struct Simulation {
     /// Which presses teach, decide and judge.
-    pub(crate) split: Split,
+    pub split: Split,
     /// What was fitted about the bench.
-    pub(crate) bench: Bench,
+    pub bench: Bench,
     /// The distinct places.
-    pub(crate) places: Places,
+    pub places: Places,
     /// A table over depth for each place.
-    pub(crate) tables: Vec<DepthTable>,
+    pub sweeps: Vec<Sweep>,
 }
 
 impl Run {
     /// Meshes the gel as it stands, for people to look at; presses refine it where they touch.
-    pub(crate) fn mesh(&self) -> Result<()> {
+    pub fn mesh(&self) -> Result<()> {
         let settings = &self.record.settings.simulate;
         let inputs = Inputs::new()?
             .settings("simulate", settings)?
@@ -35,19 +35,19 @@ impl Run {
             let gel = self.gel();
             let edge_mm = gel.height_mm() / settings.edges_per_height;
             let sensor = gel.sensor();
-            let mesh = crate::command::mesh_of(
+            let mesh = crate::mesh::mesh_of(
                 sensor,
                 &MeshSettings {
                     edge_mm,
                     ..MeshSettings::default()
                 },
             )?;
-            crate::command::write_mesh(folder, sensor, &mesh).map(|_| ())
+            crate::mesh::write_mesh(folder, sensor, &mesh).map(|_| ())
         })
     }
 
     /// Fits the bench to training presses and simulates every place.
-    pub(crate) fn simulate(&self) -> Result<()> {
+    pub fn simulate(&self) -> Result<()> {
         let inputs = Inputs::new()?
             .settings("settings", &self.record.settings)?
             .settings("seed", &self.record.seed)?
@@ -75,7 +75,7 @@ impl Run {
     }
 
     /// What the simulation stage left.
-    pub(crate) fn simulation(&self, recording: &Recording) -> Result<Simulation> {
+    pub fn simulation(&self, recording: &Recording) -> Result<Simulation> {
         let folder = self.stage("simulation");
         let bench: Bench = read_json(&folder.join("bench.json"))?;
         let gel = self.gel();
@@ -94,7 +94,7 @@ impl Run {
     }
 
     /// The settings with what depends on sensor and presses filled in.
-    pub(crate) fn resolved(&self, recording: &Recording, places: &Places) -> super::RunSettings {
+    pub fn resolved(&self, recording: &Recording, places: &Places) -> crate::settings::RunSettings {
         let n_places = if is_static(recording) {
             places.requests.len()
         } else {

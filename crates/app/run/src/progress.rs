@@ -6,7 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar for `n_steps` steps of one stage. It draws nothing where standard error is not a terminal.
-pub(crate) fn bar(stage: &str, n_steps: u64) -> ProgressBar {
+pub fn bar(stage: &str, n_steps: u64) -> ProgressBar {
     let template = "{prefix:>10} [{bar:30}] {pos}/{len} {msg} {elapsed}, {eta} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::new(n_steps).with_style(style.progress_chars("=> "));
@@ -16,13 +16,13 @@ pub(crate) fn bar(stage: &str, n_steps: u64) -> ProgressBar {
 }
 
 /// A line about what happened, on a terminal only.
-pub(crate) fn note(line: &str) {
+pub fn note(line: &str) {
     if std::io::stderr().is_terminal() {
         say(line);
     }
 }
 
 /// A line that is to be known wherever standard error goes.
-pub(crate) fn say(line: &str) {
+pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

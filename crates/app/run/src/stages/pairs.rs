@@ -3,12 +3,12 @@
 use anyhow::{Context, Result};
 use digitac::{PairedPress, pair};
 
-use super::Run;
-use crate::stage::{Inputs, read_json, write_json};
+use crate::cache::{Inputs, read_json, write_json};
+use crate::run::Run;
 
 impl Run {
     /// Aligns every press with its simulation, and pairs their frames.
-    pub(crate) fn pair(&self) -> Result<()> {
+    pub fn pair(&self) -> Result<()> {
         let inputs = Inputs::new()?
             .settings("pair", &self.record.settings.pair)?
             .stage(&self.stage("recordings"))?
@@ -24,14 +24,14 @@ impl Run {
                 &self.record.settings.pair,
             )?;
             write_json(&folder.join("paired.json"), &pairs)?;
-            let warps = super::report::warps(&pairs);
-            super::report::warp_plot(&warps).write(&folder.join("warps.svg"))?;
+            let warps = crate::report::warps(&pairs);
+            crate::report::warp_plot(&warps).write(&folder.join("warps.svg"))?;
             Ok(())
         })
     }
 
     /// The paired presses.
-    pub(crate) fn pairs(&self) -> Result<Vec<PairedPress>> {
+    pub fn pairs(&self) -> Result<Vec<PairedPress>> {
         read_json(&self.stage("pairs").join("paired.json")).context("run `twintac align` first")
     }
 }

@@ -8,15 +8,15 @@ use twintac_recording::Provenance;
 
 /// Errors in % of the largest reading of the file that they belong to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Figures {
+pub struct Figures {
     /// Mean absolute error of the nearest taxel while in contact.
-    pub(crate) nearest_in_contact_percent: f64,
+    pub nearest_in_contact_percent: f64,
     /// Mean absolute error of all taxels in all frames.
-    pub(crate) all_percent: f64,
+    pub all_percent: f64,
     /// Mean absolute error of the presses' largest readings.
-    pub(crate) peak_percent: f64,
+    pub peak_percent: f64,
     /// Frames behind the headline.
-    pub(crate) frames_in_contact: usize,
+    pub frames_in_contact: usize,
 }
 
 impl From<&Errors> for Figures {
@@ -32,20 +32,20 @@ impl From<&Errors> for Figures {
 
 /// The twin's figures, taken apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct TwinFigures {
+pub struct TwinFigures {
     /// Overall.
     #[serde(flatten)]
-    pub(crate) overall: Figures,
+    pub overall: Figures,
     /// By file.
-    pub(crate) by_file: BTreeMap<String, Figures>,
+    pub by_file: BTreeMap<String, Figures>,
     /// By taxel.
-    pub(crate) by_taxel: BTreeMap<String, Figures>,
+    pub by_taxel: BTreeMap<String, Figures>,
     /// Frames deeper than the simulation reached; they are scored all the same.
-    pub(crate) frames_not_simulated: usize,
+    pub frames_not_simulated: usize,
 }
 
 impl TwinFigures {
-    pub(crate) fn new(score: &Score, taxels: &[String]) -> Self {
+    pub fn new(score: &Score, taxels: &[String]) -> Self {
         Self {
             overall: Figures::from(&score.overall),
             by_file: score
@@ -65,43 +65,43 @@ impl TwinFigures {
 
 /// What the twin is compared with, on the same presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct BaselineFigures {
+pub struct BaselineFigures {
     /// Nothing is ever felt.
-    pub(crate) zero: Figures,
+    pub zero: Figures,
     /// A polynomial of depth and place, fitted to the twin's training presses.
-    pub(crate) polynomial: Option<Figures>,
+    pub polynomial: Option<Figures>,
 }
 
 /// All figures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Metrics {
+pub struct Metrics {
     /// The sensor's name.
-    pub(crate) sensor: String,
+    pub sensor: String,
     /// Where the readings come from.
-    pub(crate) provenance: Provenance,
+    pub provenance: Provenance,
     /// What the figures mean.
-    pub(crate) definition: String,
+    pub definition: String,
     /// Taxels left out of the headline.
-    pub(crate) taxels_left_out: Vec<String>,
+    pub taxels_left_out: Vec<String>,
     /// The variant behind the headline.
-    pub(crate) variant: String,
+    pub variant: String,
     /// Presses that the twin never saw.
-    pub(crate) held_out_presses: usize,
+    pub held_out_presses: usize,
     /// The twin's errors on them.
-    pub(crate) twin: TwinFigures,
+    pub twin: TwinFigures,
     /// The same with no taxel left out, if some were.
-    pub(crate) twin_all_taxels: Option<Figures>,
+    pub twin_all_taxels: Option<Figures>,
     /// What to beat.
-    pub(crate) baselines: BaselineFigures,
+    pub baselines: BaselineFigures,
     /// What no twin can beat.
-    pub(crate) repeatability: Option<Figures>,
+    pub repeatability: Option<Figures>,
     /// Every variant that was trained, on the same presses.
-    pub(crate) variants: BTreeMap<String, Figures>,
+    pub variants: BTreeMap<String, Figures>,
     /// Seed of the run.
-    pub(crate) seed: u64,
+    pub seed: u64,
 }
 
-pub(crate) fn baselines(evaluation: &Evaluation) -> BaselineFigures {
+pub fn baselines(evaluation: &Evaluation) -> BaselineFigures {
     BaselineFigures {
         zero: Figures::from(&evaluation.zero.overall),
         polynomial: evaluation
@@ -111,6 +111,6 @@ pub(crate) fn baselines(evaluation: &Evaluation) -> BaselineFigures {
     }
 }
 
-pub(crate) fn repeatability(found: Option<&Repeatability>) -> Option<Figures> {
+pub fn repeatability(found: Option<&Repeatability>) -> Option<Figures> {
     found.map(|repeatability| Figures::from(&repeatability.errors))
 }

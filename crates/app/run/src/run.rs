@@ -15,16 +15,6 @@
 //! report.html, metrics.json
 //! ```
 
-mod evaluate;
-mod metrics;
-mod pair;
-mod record;
-mod report;
-mod report_figures;
-mod settings;
-mod simulate;
-mod train;
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -34,37 +24,34 @@ use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
+use crate::cache::{self, read_json, write_json};
 use crate::sensor_file::{SensorFile, read_sensor};
-use crate::stage::{self, read_json, write_json};
 
-pub(crate) use evaluate::{UnseenEvaluation, evaluate_elsewhere};
-pub(crate) use metrics::Metrics;
-pub(crate) use record::{import_files, plan, plan_loads, plan_text};
-pub(crate) use settings::RunSettings;
+use crate::settings::RunSettings;
 
 /// What a run is made from: `run.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct RunRecord {
+pub struct RunRecord {
     /// The sensor's name.
-    pub(crate) sensor: String,
+    pub sensor: String,
     /// Where the presses come from, in words.
-    pub(crate) source: String,
+    pub source: String,
     /// Seed of all that chance decides.
-    pub(crate) seed: u64,
+    pub seed: u64,
     /// Settings of every stage.
-    pub(crate) settings: RunSettings,
+    pub settings: RunSettings,
 }
 
 /// An open run.
-pub(crate) struct Run {
-    pub(crate) folder: PathBuf,
-    pub(crate) record: RunRecord,
-    pub(crate) sensor: SensorFile,
+pub struct Run {
+    pub folder: PathBuf,
+    pub record: RunRecord,
+    pub sensor: SensorFile,
 }
 
 impl Run {
     /// Starts a run, or takes up the one that the folder holds with new settings: stages that they do not touch are kept.
-    pub(crate) fn start(
+    pub fn start(
         folder: &Path,
         sensor: SensorFile,
         source: String,
@@ -88,7 +75,7 @@ impl Run {
     }
 
     /// Opens a run that was started.
-    pub(crate) fn open(folder: &Path) -> Result<Self> {
+    pub fn open(folder: &Path) -> Result<Self> {
         let record: RunRecord = read_json(&folder.join("run.json")).with_context(|| {
             format!(
                 "{} is not a run; start one with `twintac import` or `twintac record`",
@@ -104,18 +91,18 @@ impl Run {
     }
 
     /// The folder of a stage.
-    pub(crate) fn stage(&self, name: &str) -> PathBuf {
+    pub fn stage(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
     /// The presses, as recorded.
-    pub(crate) fn recording(&self) -> Result<Recording> {
+    pub fn recording(&self) -> Result<Recording> {
         let path = self.stage("recordings").join("presses.parquet");
         Recording::read_parquet(&path).map_err(Into::into)
     }
 
     /// The gel as the twin simulates it.
-    pub(crate) fn gel(&self) -> Gel {
+    pub fn gel(&self) -> Gel {
         Gel::new(
             Arc::clone(&self.sensor.sensor),
             self.record.settings.simulate.clone(),
@@ -123,22 +110,22 @@ impl Run {
     }
 
     /// Taxels whose readings are not to be trusted, by index: left out of headline figures.
-    pub(crate) fn left_out(&self) -> std::collections::BTreeSet<usize> {
+    pub fn left_out(&self) -> std::collections::BTreeSet<usize> {
         left_out(&self.sensor.sensor)
     }
 
     /// Runs a stage unless it is there, and says so.
-    pub(crate) fn run_stage(
+    pub fn run_stage(
         &self,
         name: &str,
-        inputs: stage::Inputs,
+        inputs: cache::Inputs,
         work: impl FnOnce(&Path) -> Result<()>,
     ) -> Result<()> {
         let outcome =
-            stage::run(&self.stage(name), inputs, work).with_context(|| format!("stage `{name}`"))?;
+            cache::run(&self.stage(name), inputs, work).with_context(|| format!("stage `{name}`"))?;
         let word = match outcome {
-            stage::Outcome::Ran => "done",
-            stage::Outcome::Kept => "kept",
+            cache::Outcome::Ran => "done",
+            cache::Outcome::Kept => "kept",
         };
         crate::progress::note(&format!("{name:>11} {word}"));
         Ok(())
@@ -146,7 +133,7 @@ impl Run {
 }
 
 /// Taxels of a sensor whose readings are not to be trusted, by index.
-pub(crate) fn left_out(sensor: &Sensor) -> std::collections::BTreeSet<usize> {
+pub fn left_out(sensor: &Sensor) -> std::collections::BTreeSet<usize> {
     let taxels = sensor.taxels.iter().enumerate();
     taxels
         .filter(|(_, taxel)| taxel.doubtful.is_some())

@@ -1,5 +1,7 @@
 //! The report of a run, from what its stages left.
 
+mod figures;
+
 use anyhow::Result;
 use digitac::{Bench, PairedPress};
 use twintac_depth_table::DepthTable;
@@ -11,11 +13,11 @@ use twintac_report::data::{
 use twintac_report::plot::{Panel, Panels, Series};
 use twintac_report::{Ink, Provenance as Badge, ReportData, Scene};
 
-use super::metrics::{Figures, Metrics};
-use super::train::VariantRecord;
-use super::{Run, report_figures};
+use crate::cache::{read_json, read_record, write_file};
 use crate::drawing;
-use crate::stage::{read_json, read_record, write_file};
+use crate::metrics::{Figures, Metrics};
+use crate::run::Run;
+use crate::stages::training::VariantRecord;
 
 /// Stages in the order in which they run.
 const STAGES: [&str; 6] = [
@@ -28,8 +30,8 @@ const STAGES: [&str; 6] = [
 ];
 
 impl Run {
-    /// Writes `report.html` and `metrics.json`.
-    pub(crate) fn report(&self) -> Result<()> {
+    /// Writes `report.html` and `metrics.json`; the report names the command that made it.
+    pub fn report(&self, command: &str) -> Result<()> {
         let (held_out, metrics) = self.evaluation()?;
         let recording = self.recording()?;
         let simulation = self.simulation(&recording)?;
@@ -39,7 +41,7 @@ impl Run {
         let data = ReportData {
             title: format!("Digital twin of {}", sensor.name),
             provenance: badge(metrics.provenance),
-            command: std::env::args().collect::<Vec<_>>().join(" "),
+            command: command.to_owned(),
             versions: vec![
                 Fact::new("twintac", env!("CARGO_PKG_VERSION")),
                 Fact::new("presses", &self.record.source),
@@ -52,12 +54,12 @@ impl Run {
                 drawing: Some(drawing::drawing(sensor)),
             }),
             headline: Some(headline(&metrics)),
-            presses: report_figures::series(&held_out.evaluation, &presses),
-            peaks: report_figures::peaks(&held_out.evaluation, sensor),
-            places: report_figures::places(&held_out.evaluation, sensor),
-            agreement: Some(report_figures::agreement(&held_out.evaluation)),
+            presses: figures::series(&held_out.evaluation, &presses),
+            peaks: figures::peaks(&held_out.evaluation, sensor),
+            places: figures::places(&held_out.evaluation, sensor),
+            agreement: Some(figures::agreement(&held_out.evaluation)),
             taxels: taxels(&metrics, sensor, &held_out.evaluation),
-            depths: report_figures::depths(&held_out.evaluation, &self.left_out()),
+            depths: figures::depths(&held_out.evaluation, &self.left_out()),
             files: files(&metrics, &held_out.evaluation),
             variants: variants.iter().map(variant).collect(),
             training: variants.iter().map(curve).collect(),
@@ -107,7 +109,7 @@ impl Run {
 }
 
 /// Alignment of presses, as the report shows it.
-pub(crate) fn warps(presses: &[PairedPress]) -> Vec<WarpPath> {
+pub fn warps(presses: &[PairedPress]) -> Vec<WarpPath> {
     presses
         .iter()
         .map(|press| WarpPath {
@@ -136,7 +138,7 @@ fn shift_s(press: &PairedPress) -> Vec<f64> {
 }
 
 /// The alignment of all presses as a picture.
-pub(crate) fn warp_plot(warps: &[WarpPath]) -> Scene {
+pub fn warp_plot(warps: &[WarpPath]) -> Scene {
     let series = warps.iter().map(|warp| Series {
         name: String::new(),
         points: warp
@@ -279,7 +281,7 @@ fn taxels(
                     figures.nearest_in_contact_percent
                 },
                 all_percent: figures.all_percent,
-                bias_percent: report_figures::bias_percent(evaluation, index),
+                bias_percent: figures::bias_percent(evaluation, index),
                 note: taxel.doubtful.clone().unwrap_or_default(),
             })
         })

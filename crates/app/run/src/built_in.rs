@@ -6,35 +6,35 @@ use anyhow::{Context, Result};
 
 /// A file of the repository.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BuiltIn {
-    pub(crate) name: &'static str,
-    pub(crate) text: &'static str,
+pub struct BuiltIn {
+    pub name: &'static str,
+    pub text: &'static str,
 }
 
-pub(crate) const PHYSTAC: BuiltIn = BuiltIn {
+pub const PHYSTAC: BuiltIn = BuiltIn {
     name: "sensors/phystac.toml",
     text: include_str!("../../../../sensors/phystac.toml"),
 };
 
-pub(crate) const DEMO_PROTOCOL: BuiltIn = BuiltIn {
+pub const DEMO_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/demo.toml",
     text: include_str!("../../../../protocols/demo.toml"),
 };
 
-pub(crate) const REALITY: BuiltIn = BuiltIn {
+pub const REALITY: BuiltIn = BuiltIn {
     name: "realities/default.toml",
     text: include_str!("../../../../realities/default.toml"),
 };
 
 /// How the emulated bench presses.
-pub(crate) const LAB_BENCH: BuiltIn = BuiltIn {
+pub const LAB_BENCH: BuiltIn = BuiltIn {
     name: "rigs/lab.toml",
     text: include_str!("../../../../rigs/lab.toml"),
 };
 
 impl BuiltIn {
     /// Name and text of a file, or without one of this.
-    pub(crate) fn unless(self, file: Option<&Path>) -> Result<(String, String)> {
+    pub fn unless(self, file: Option<&Path>) -> Result<(String, String)> {
         let Some(file) = file else {
             return Ok((self.name.to_owned(), self.text.to_owned()));
         };

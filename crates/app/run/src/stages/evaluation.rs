@@ -14,28 +14,28 @@ use twintac_depth_table::DepthTableSource;
 use twintac_recording::{Provenance, Recording};
 use twintac_simulate::{Gel, SimulateSettings};
 
-use super::metrics::{BaselineFigures, Figures, Metrics, TwinFigures, baselines};
-use super::{Run, left_out};
+use crate::cache::{Inputs, read_json, write_json};
+use crate::depth_tables::DepthTableStore;
+use crate::metrics::{BaselineFigures, Figures, Metrics, TwinFigures, baselines};
 use crate::progress;
+use crate::run::{Run, left_out};
 use crate::sensor_file::parse_sensor;
-use crate::stage::{Inputs, read_json, write_json};
-use crate::store::DepthTableStore;
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
 
 /// What the evaluation stage left: `evaluation.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct HeldOut {
+pub struct HeldOut {
     /// The twin on presses that it never saw.
-    pub(crate) evaluation: Evaluation,
+    pub evaluation: Evaluation,
     /// How well the presses themselves repeat.
-    pub(crate) repeatability: Option<Repeatability>,
+    pub repeatability: Option<Repeatability>,
 }
 
 impl Run {
     /// Judges the held-out twin.
-    pub(crate) fn evaluate(&self) -> Result<()> {
+    pub fn evaluate(&self) -> Result<()> {
         let inputs = Inputs::new()?
             .file(&self.folder.join("sensor.toml"))?
             .stage(&self.stage("simulation"))?
@@ -74,7 +74,7 @@ impl Run {
         every_taxel: Option<Figures>,
         repeatability: Option<&Repeatability>,
     ) -> Result<Metrics> {
-        let variants: Vec<super::train::VariantRecord> =
+        let variants: Vec<super::training::VariantRecord> =
             read_json(&self.stage("training").join("variants.json"))?;
         Ok(Metrics {
             sensor: self.record.sensor.clone(),
@@ -86,7 +86,7 @@ impl Run {
             twin: TwinFigures::new(&evaluation.twin, &evaluation.taxels),
             twin_all_taxels: every_taxel,
             baselines: baselines(evaluation),
-            repeatability: super::metrics::repeatability(repeatability),
+            repeatability: crate::metrics::repeatability(repeatability),
             variants: variants
                 .iter()
                 .map(|v| (v.variant.to_string(), Figures::from(&v.test.overall)))
@@ -96,7 +96,7 @@ impl Run {
     }
 
     /// What the evaluation stage left.
-    pub(crate) fn evaluation(&self) -> Result<(HeldOut, Metrics)> {
+    pub fn evaluation(&self) -> Result<(HeldOut, Metrics)> {
         let folder = self.stage("evaluation");
         let held_out = read_json(&folder.join("evaluation.json")).context("run `twintac evaluate` first")?;
         Ok((held_out, read_json(&folder.join("metrics.json"))?))
@@ -105,32 +105,32 @@ impl Run {
 
 /// A model's figures on recordings that it was not trained on.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct UnseenEvaluation {
+pub struct UnseenEvaluation {
     /// Where the readings come from.
-    pub(crate) provenance: Provenance,
+    pub provenance: Provenance,
     /// What the figures mean.
-    pub(crate) definition: String,
+    pub definition: String,
     /// Taxels left out of the headline.
-    pub(crate) taxels_left_out: Vec<String>,
+    pub taxels_left_out: Vec<String>,
     /// The variant.
-    pub(crate) variant: String,
+    pub variant: String,
     /// Presses that were scored.
-    pub(crate) presses: usize,
+    pub presses: usize,
     /// Errors after each new file's contact height was fitted to its first presses, which are not scored.
     #[serde(flatten)]
-    pub(crate) twin: TwinFigures,
+    pub twin: TwinFigures,
     /// Errors on the same presses with contact heights as at training: what the twin says without having touched the gel once.
-    pub(crate) uncalibrated: Figures,
+    pub uncalibrated: Figures,
     /// Predicting nothing, on the same presses.
-    pub(crate) baselines: BaselineFigures,
+    pub baselines: BaselineFigures,
     /// How well the presses themselves repeat.
-    pub(crate) repeatability: Option<Figures>,
+    pub repeatability: Option<Figures>,
     /// Contact heights of files that the model had not seen.
-    pub(crate) contact: Vec<Recalibration>,
+    pub contact: Vec<Recalibration>,
 }
 
 /// Judges a model on other recordings of its sensor: simulates their places, fits each new file's contact height, and scores the rest.
-pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> Result<UnseenEvaluation> {
+pub fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> Result<UnseenEvaluation> {
     let model = Model::load(model_folder)?;
     let record = &model.record;
     if recording.taxels != record.taxels {
@@ -203,7 +203,7 @@ pub(crate) fn evaluate_elsewhere(model_folder: &Path, recording: &Recording) -> 
         twin: TwinFigures::new(&evaluation.twin, &record.taxels),
         uncalibrated: Figures::from(&uncalibrated.twin.overall),
         baselines: baselines(&evaluation),
-        repeatability: super::metrics::repeatability(repeats.as_ref()),
+        repeatability: crate::metrics::repeatability(repeats.as_ref()),
         contact,
     })
 }

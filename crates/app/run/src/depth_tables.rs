@@ -10,7 +10,7 @@ use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, Latti
 use twintac_shape::{Pose, Shape};
 use twintac_simulate::{Gel, PressPlace};
 
-use crate::stage::{read_json, sha256, write_json};
+use crate::cache::{read_json, sha256, write_json};
 
 /// From this many different places on, a lattice of places is simulated and interpolated.
 const LATTICE_FROM: usize = 150;
@@ -19,7 +19,7 @@ const LATTICE_FROM: usize = 150;
 const LATTICE_SPACING: f64 = 1.0 / 3.0;
 
 /// Tables over depth of one gel, kept in a folder: what is there is not computed again.
-pub(crate) struct DepthTableStore<'a> {
+pub struct DepthTableStore<'a> {
     gel: &'a Gel,
     folder: PathBuf,
     progress: ProgressBar,
@@ -27,7 +27,7 @@ pub(crate) struct DepthTableStore<'a> {
 
 impl<'a> DepthTableStore<'a> {
     /// Keeps the gel's tables in `folder`, which holds tables of no other gel.
-    pub(crate) fn new(gel: &'a Gel, folder: PathBuf, progress: ProgressBar) -> Self {
+    pub fn new(gel: &'a Gel, folder: PathBuf, progress: ProgressBar) -> Self {
         Self {
             gel,
             folder,

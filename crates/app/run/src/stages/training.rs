@@ -8,28 +8,28 @@ use digitac::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::Run;
+use crate::cache::{Inputs, write_json};
 use crate::progress;
-use crate::stage::{Inputs, write_json};
+use crate::run::Run;
 
 /// How each variant did: `variants.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct VariantRecord {
+pub struct VariantRecord {
     /// Which.
-    pub(crate) variant: Variant,
+    pub variant: Variant,
     /// Whether it was chosen.
-    pub(crate) chosen: bool,
+    pub chosen: bool,
     /// Its errors on validation presses, by which the choice was made.
-    pub(crate) validation: Score,
+    pub validation: Score,
     /// Its errors on test presses, which nothing was chosen by.
-    pub(crate) test: Score,
+    pub test: Score,
     /// Its losses.
-    pub(crate) history: Vec<Epoch>,
+    pub history: Vec<Epoch>,
 }
 
 impl Run {
     /// Trains the variants without the test presses, then the chosen one with them.
-    pub(crate) fn train(&self) -> Result<()> {
+    pub fn train(&self) -> Result<()> {
         let inputs = Inputs::new()?
             .settings("settings", &self.record.settings)?
             .settings("seed", &self.record.seed)?
