@@ -21,7 +21,7 @@ pub struct Simulation {
     /// The distinct places.
     pub places: Places,
     /// A table over depth for each place.
-    pub sweeps: Vec<Sweep>,
+    pub tables: Vec<DepthTable>,
 }
 
 impl Run {
