@@ -67,12 +67,7 @@ impl Run {
     }
 
     /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
-    pub fn live_tables(
-        &self,
-        lab: &Lab,
-        reality: &Reality,
-        plans: &[PressPlan],
-    ) -> Result<Vec<LiveTable>> {
+    pub fn live_tables(&self, lab: &Lab, reality: &Reality, plans: &[PressPlan]) -> Result<Vec<LiveTable>> {
         let inputs = Inputs::new()?
             .settings("reality", reality)?
             .settings("plans", &plans)?
