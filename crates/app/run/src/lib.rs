@@ -5,7 +5,6 @@ pub mod built_in;
 pub mod cache;
 pub mod calibration;
 mod depth_tables;
-pub mod drawing;
 pub mod mesh;
 pub mod metrics;
 pub mod progress;

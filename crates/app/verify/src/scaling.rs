@@ -102,7 +102,7 @@ pub(crate) fn run() -> Result<()> {
     ];
     let labels = ["tetrahedra, power of ten", "ms, MiB"];
     let scene = plots::lines("Time and memory over the size of the mesh", labels, true, series);
-    let chart = twintac_report::png(&scene, 2.0)?;
+    let chart = twintac_plot::png(&scene, 2.0)?;
     files::write_whole(&folder.join("scaling.png"), &chart)?;
     files::write_whole(&folder.join("scaling.md"), page(&scaling)?.as_bytes())?;
     eprintln!("wrote {RESULTS}/scaling.md, scaling.json and scaling.png");

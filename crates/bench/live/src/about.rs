@@ -2,8 +2,8 @@
 
 use phystac::{Settings, Transfer, Wiring};
 use twintac_log::Description;
+use twintac_map::{Rectangle, pitch_mm};
 use twintac_recording::Provenance;
-use twintac_report::{Rectangle, pitch_mm};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 

@@ -1,7 +1,7 @@
 //! What can go wrong between a sensor and an eye.
 
 use twintac_log::LogError;
-use twintac_report::ReportError;
+use twintac_map::MapError;
 
 /// What was expected of a sensor, a terminal or a file, and what was found.
 #[derive(Debug, thiserror::Error)]
@@ -72,5 +72,5 @@ pub enum LiveError {
     Log(#[from] LogError),
     /// A map could not be prepared.
     #[error(transparent)]
-    Map(#[from] ReportError),
+    Map(#[from] MapError),
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use twintac_report::ReportError;
+use twintac_plot::PlotError;
 
 /// Why there is no characterization.
 #[derive(Debug, thiserror::Error)]
@@ -37,5 +37,5 @@ pub enum CharacterizeError {
     },
     /// A page could not be written.
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Page(#[from] PlotError),
 }

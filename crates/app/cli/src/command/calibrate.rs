@@ -6,8 +6,8 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use serde::Serialize;
 use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, fit};
+use twintac_plot::{png, svg};
 use twintac_recording::Provenance;
-use twintac_report::{png, svg};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;

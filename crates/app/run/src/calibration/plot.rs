@@ -1,8 +1,8 @@
 //! Measured and fitted curves, and what is left between them.
 
 use twintac_calibrate::{Fit, FittedSignal};
-use twintac_report::plot::{Panel, Panels, Series};
-use twintac_report::{Ink, Scene};
+use twintac_plot::{Ink, Scene};
+use twintac_plot::{Panel, Panels, Series};
 use twintac_sensor::Sensor;
 
 /// Signals that get panels of their own; more would not be read.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use digitac::{Evaluation, PairedPress, PressEvaluation};
-use twintac_report::Rectangle;
+use twintac_map::Rectangle;
 use twintac_report::data::{Agreement, DepthError, PlaceErrors, PressPeak, PressSeries};
 use twintac_sensor::Sensor;
 

@@ -5,16 +5,16 @@ mod figures;
 use anyhow::Result;
 use digitac::{Bench, PairedPress};
 use twintac_depth_table::DepthTable;
+use twintac_plot::page::Fact;
+use twintac_plot::{Ink, Panel, Panels, Scene, Series};
 use twintac_recording::Provenance;
 use twintac_report::data::{
-    BenchFit, Fact, FileError, Gain, Headline, Parameter, Reference, ReferenceKind, SensorSummary,
+    BenchFit, FileError, Gain, Headline, Parameter, Reference, ReferenceKind, SensorSummary,
     SimulationQuality, Stage, TaxelError, TrainingCurve, Variant, WarpPath,
 };
-use twintac_report::plot::{Panel, Panels, Series};
-use twintac_report::{Ink, Provenance as Badge, ReportData, Scene};
+use twintac_report::{Provenance as Badge, ReportData};
 
 use crate::cache::{read_json, read_record, write_file};
-use crate::drawing;
 use crate::metrics::{Figures, Metrics};
 use crate::run::Run;
 use crate::stages::training::VariantRecord;
@@ -50,8 +50,8 @@ impl Run {
             warnings: self.warnings(&simulation.bench, &metrics),
             sensor: Some(SensorSummary {
                 name: sensor.name.clone(),
-                facts: drawing::facts(sensor),
-                drawing: Some(drawing::drawing(sensor)),
+                facts: twintac_drawing::facts(sensor),
+                drawing: Some(twintac_drawing::drawing(sensor)),
             }),
             headline: Some(headline(&metrics)),
             presses: figures::series(&held_out.evaluation, &presses),
@@ -69,7 +69,7 @@ impl Run {
             settings: serde_json::to_string_pretty(&self.record.settings)?,
             stages: self.stages(),
         };
-        twintac_report::write(&self.folder.join("report.html"), &data)?;
+        twintac_report::page(&data).write(&self.folder.join("report.html"))?;
         let figures = std::fs::read(self.stage("evaluation").join("metrics.json"))?;
         write_file(&self.folder.join("metrics.json"), &figures)
     }

@@ -13,8 +13,8 @@ mod rigid;
 use std::path::Path;
 
 use anyhow::{Result, ensure};
-use twintac_report::plot::{Panel, Panels};
-use twintac_report::{Ink, Scene};
+use twintac_plot::{Ink, Scene};
+use twintac_plot::{Panel, Panels};
 
 use crate::ladder::outcome::{Figure, Outcome, Plot};
 use crate::ladder::{Effort, plots};
@@ -170,7 +170,7 @@ fn plot(compared: &[Compared]) -> Scene {
                 let points = pressures.map(|(at, pair)| [at.x, pair[side]]).collect();
                 match side {
                     0 => plots::line("TwinTac", 0, points),
-                    _ => twintac_report::plot::Series {
+                    _ => twintac_plot::Series {
                         ink: Ink::Text,
                         ..plots::dashes("CalculiX, or quadratic elements", 0, points)
                     },

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, Quantity, Signal, fit};
 use twintac_depth_table::MonotoneCubic;
 use twintac_material::{Material, Ogden, OgdenTerm, PronyTerm, Yeoh};
-use twintac_report::plot::{Panel, Panels};
+use twintac_plot::{Panel, Panels};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};

@@ -74,7 +74,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
 }
 
 /// A short upright tick.
-fn cross(x: f64, y: f64, color: usize) -> twintac_report::plot::Series {
+fn cross(x: f64, y: f64, color: usize) -> twintac_plot::Series {
     plots::line("", color, vec![[x, y - 2.5], [x, y + 2.5]])
 }
 

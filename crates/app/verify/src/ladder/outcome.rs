@@ -1,7 +1,7 @@
 //! What a rung comes to.
 
 use serde::Serialize;
-use twintac_report::Scene;
+use twintac_plot::Scene;
 
 /// What a rung comes to.
 #[derive(Default)]

@@ -40,7 +40,7 @@ pub(crate) fn write(folder: &Path, rung: &Rung, outcome: &Outcome, effort: Effor
     for plot in &outcome.plots {
         let file = format!("{}-{}.png", rung.name, plot.name);
         let _ = write!(page, "\n![{}]({file})\n\n{}\n", plot.scene.name, plot.caption);
-        write_whole(&folder.join(file), &twintac_report::png(&plot.scene, 2.0)?)?;
+        write_whole(&folder.join(file), &twintac_plot::png(&plot.scene, 2.0)?)?;
     }
     write_whole(&folder.join(format!("{}.md", rung.name)), page.as_bytes())?;
     let record = json!({

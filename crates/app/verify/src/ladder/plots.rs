@@ -1,7 +1,7 @@
 //! Plots of the ladder.
 
-use twintac_report::plot::{Panel, Panels, Series};
-use twintac_report::{Ink, Scene};
+use twintac_plot::{Ink, Scene};
+use twintac_plot::{Panel, Panels, Series};
 
 /// A line in the nth colour.
 pub(crate) fn line(name: impl Into<String>, color: usize, points: Vec<[f64; 2]>) -> Series {

@@ -1,6 +1,6 @@
 //! Force error against real-time factor.
 
-use twintac_report::{Anchor, Ink, Scene};
+use twintac_plot::{Anchor, Ink, Scene};
 
 use super::row::Row;
 

@@ -101,7 +101,7 @@ fn write_results(results: &Results) -> Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("creating {RESULTS}"))?;
     let figures = serde_json::to_string_pretty(results)? + "\n";
     write_whole(&folder.join("peers.json"), figures.as_bytes())?;
-    let chart = twintac_report::png(&chart::scene(&results.rows), 2.0)?;
+    let chart = twintac_plot::png(&chart::scene(&results.rows), 2.0)?;
     write_whole(&folder.join("peers.png"), &chart)?;
     write_whole(&folder.join("peers.md"), page::markdown(results).as_bytes())?;
     eprintln!("wrote {RESULTS}/peers.md, peers.json and peers.png");

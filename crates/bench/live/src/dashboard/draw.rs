@@ -7,7 +7,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Sparkline};
-use twintac_report::PALETTE;
+use twintac_plot::PALETTE;
 
 use super::DashboardState;
 use super::map::Map;

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Color;
 use ratatui::widgets::Widget;
-use twintac_report::viridis;
+use twintac_plot::viridis;
 
 use super::DashboardState;
 

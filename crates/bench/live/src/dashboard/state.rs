@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use twintac_report::{MapSettings, PreparedMap};
+use twintac_map::{MapSettings, PreparedMap};
 
 use crate::{About, LiveError, Reading, Tally, Tare, Taring};
 

@@ -1,14 +1,17 @@
 //! The report and the data sheet.
 
-mod figures;
+mod plots;
 mod report;
 mod sheet;
 mod words;
 
 use std::path::Path;
 
+use twintac_plot::page::{Badge, Block, Cell, Figure, Row, Table};
 use twintac_recording::{Provenance, Recording};
 use twintac_sensor::Sensor;
+
+use plots::Plot;
 
 use crate::recorded::Recorded;
 use crate::{Characterization, CharacterizeError};
@@ -35,12 +38,27 @@ pub fn write_pages(
     Ok(())
 }
 
-fn badge(provenance: Provenance) -> twintac_report::Provenance {
-    match provenance {
-        Provenance::Real => twintac_report::Provenance::Real,
-        Provenance::Emulated => twintac_report::Provenance::Emulated,
-        Provenance::Simulated => twintac_report::Provenance::Simulated,
-    }
+/// Plots beside each other; all figures of a page have one provenance.
+fn figures(plots: Vec<Option<Plot>>, provenance: Provenance) -> Block {
+    let figure = |(scene, caption)| Figure {
+        scene,
+        badge: Some(badge(provenance)),
+        caption,
+        table: None,
+    };
+    Block::Figures(plots.into_iter().flatten().map(figure).collect())
+}
+
+fn badge(provenance: Provenance) -> Badge {
+    Badge(provenance.to_string())
+}
+
+fn table<const N: usize>(caption: impl Into<String>, head: [&str; N], rows: Vec<Vec<Cell>>) -> Block {
+    Block::Table(Table {
+        caption: caption.into(),
+        head: head.map(str::to_owned).to_vec(),
+        rows: rows.into_iter().map(Row::from).collect(),
+    })
 }
 
 /// What the reader must know first.

@@ -1,13 +1,13 @@
 //! The report.
 
+use twintac_plot::page::{Block, Card, Cell, Fact, Page, Section};
 use twintac_recording::Recording;
-use twintac_report::data::Fact;
-use twintac_report::{Block, Cell, Page, PageSection};
 use twintac_sensor::Sensor;
 
-use super::figures::{self, Plot};
-use super::sheet::table;
+use super::plots::{self, Plot};
 use super::words::{number, or_not};
+use super::{badge, figures, sheet, table};
+use crate::recorded::Recorded;
 use crate::{Characterization, Finding};
 
 /// How descriptions of the TwinTac paper's sensor name their source.
@@ -17,115 +17,97 @@ const PAPER: &str = "arXiv 2509.10063";
 #[must_use]
 pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
     let recorded = super::recorded(found, recording, sensor);
-    let section = |id, title, blocks| PageSection { id, title, blocks };
-    let plots = |plots: Vec<Option<Plot>>| -> Vec<Block> {
-        let plots: Vec<Plot> = plots.into_iter().flatten().collect();
-        if plots.is_empty() {
-            Vec::new()
-        } else {
-            vec![Block::Figures(plots)]
-        }
-    };
-    let mut range = plots(vec![
-        figures::smallest_step(found, &recorded),
-        figures::largest_force(found, recording, &recorded),
-        figures::responses(found),
-        figures::linearity(found),
+    let figures = |plots| vec![figures(plots, found.provenance)];
+    let section = |id, title, blocks| Section { id, title, blocks };
+    let time = figures(vec![plots::over_time(recording, &recorded)]);
+    let speed = figures(vec![
+        plots::rise(found, &recorded),
+        plots::creep(found, &recorded),
     ]);
-    range.extend(response_table(found));
-    range.extend(step_table(found));
-    if sensor.source.contains(PAPER) {
-        range.push(Block::Text(format!(
-            "For its own sensor the TwinTac paper ({PAPER}) reports 7.24 kPa/N with a round indenter 25 mm wide, a step of 0.007 N seen, and 212 N \
-             as the largest force."
-        )));
-    }
-    let bars = |title: &str, x_label: &str, values: Vec<(String, f64)>, caption: &str| {
-        (!values.is_empty()).then(|| {
-            (
-                figures::bars(title, x_label, values.into_iter(), 2),
-                caption.to_owned(),
-            )
-        })
-    };
-    let noise = found
-        .noise
-        .found()
-        .into_iter()
-        .flatten()
-        .map(|noise| (noise.taxel.clone(), noise.deviation_kpa));
-    let repeats = found.repeatability.found().into_iter().flatten();
-    let repeats = repeats.map(|taxel| (taxel.taxel.clone(), taxel.percent));
-    let loops = found
-        .hysteresis
-        .found()
-        .into_iter()
-        .flatten()
-        .map(|taxel| (taxel.taxel.clone(), taxel.percent));
+    let cross_talk = figures(vec![found.cross_talk.found().map(plots::cross_talk)]);
+    let noise = figures(vec![noise_bars(found), plots::drift(found)]);
     Page {
         kind: "Characterization".into(),
         title: found.sensor.clone(),
-        provenance: super::badge(found.provenance),
-        lead: lead(found),
+        badge: badge(found.provenance),
+        lead: vec![lead(found).into()],
         warnings: super::warnings(found),
         sections: vec![
             section("result", "Result", result(found, sensor)),
+            section("time", "Over time", time),
             section(
-                "time",
-                "Over time",
-                plots(vec![figures::over_time(recording, &recorded)]),
+                "range",
+                "Range and sensitivity",
+                range(found, recording, sensor, &recorded),
             ),
-            section("range", "Range and sensitivity", range),
             section(
                 "repeats",
                 "Hysteresis and repeatability",
-                plots(vec![
-                    figures::hysteresis(found),
-                    bars(
-                        "Hysteresis",
-                        "% of full scale",
-                        loops.collect(),
-                        "Largest difference of unloading from loading at the same force.",
-                    ),
-                    bars(
-                        "Repeatability",
-                        "% of full scale",
-                        repeats.collect(),
-                        "Largest standard deviation at the same force.",
-                    ),
-                ]),
+                figures(repeat_plots(found)),
             ),
-            section(
-                "speed",
-                "Rise and creep",
-                plots(vec![
-                    figures::rise(found, &recorded),
-                    figures::creep(found, &recorded),
-                ]),
-            ),
-            section(
-                "cross-talk",
-                "Cross-talk",
-                plots(vec![found.cross_talk.found().map(figures::cross_talk)]),
-            ),
-            section(
-                "noise",
-                "Noise and drift",
-                plots(vec![
-                    bars(
-                        "Noise floor",
-                        "kPa",
-                        noise.collect(),
-                        "Standard deviation of single unloaded readings.",
-                    ),
-                    figures::drift(found),
-                ]),
-            ),
+            section("speed", "Rise and creep", speed),
+            section("cross-talk", "Cross-talk", cross_talk),
+            section("noise", "Noise and drift", noise),
             section("missing", "Not given by these recordings", missing(found)),
             section("definitions", "Definitions", definitions(found)),
         ],
         is_sheet: false,
     }
+}
+
+fn range(
+    found: &Characterization,
+    recording: &Recording,
+    sensor: &Sensor,
+    recorded: &[Recorded<'_>],
+) -> Vec<Block> {
+    let plots = vec![
+        plots::smallest_step(found, recorded),
+        plots::largest_force(found, recording, recorded),
+        plots::responses(found),
+        plots::linearity(found),
+    ];
+    let mut blocks = vec![figures(plots, found.provenance)];
+    blocks.extend(response_table(found));
+    blocks.extend(step_table(found));
+    if sensor.source.contains(PAPER) {
+        let text = format!(
+            "For its own sensor the TwinTac paper ({PAPER}) reports 7.24 kPa/N with a round indenter 25 mm wide, a step of 0.007 N seen, and 212 N \
+             as the largest force."
+        );
+        blocks.push(Block::Text(text.into()));
+    }
+    blocks
+}
+
+fn repeat_plots(found: &Characterization) -> Vec<Option<Plot>> {
+    let loops = found.hysteresis.found().into_iter().flatten();
+    let repeats = found.repeatability.found().into_iter().flatten();
+    vec![
+        plots::hysteresis(found),
+        plots::bars(
+            "Hysteresis",
+            "% of full scale",
+            loops.map(|taxel| (taxel.taxel.clone(), taxel.percent)),
+            "Largest difference of unloading from loading at the same force.",
+        ),
+        plots::bars(
+            "Repeatability",
+            "% of full scale",
+            repeats.map(|taxel| (taxel.taxel.clone(), taxel.percent)),
+            "Largest standard deviation at the same force.",
+        ),
+    ]
+}
+
+fn noise_bars(found: &Characterization) -> Option<Plot> {
+    let noise = found.noise.found().into_iter().flatten();
+    plots::bars(
+        "Noise floor",
+        "kPa",
+        noise.map(|noise| (noise.taxel.clone(), noise.deviation_kpa)),
+        "Standard deviation of single unloaded readings.",
+    )
 }
 
 fn lead(found: &Characterization) -> String {
@@ -146,7 +128,10 @@ fn lead(found: &Characterization) -> String {
 fn result(found: &Characterization, sensor: &Sensor) -> Vec<Block> {
     let mut cards = Vec::new();
     let mut card = |value: Option<String>, name: &str| {
-        cards.extend(value.map(|value| Fact::new(name, value)));
+        cards.extend(value.map(|value| Card {
+            fact: Fact::new(name, value),
+            badge: badge(found.provenance),
+        }));
     };
     let overall = found.overall.found();
     card(
@@ -176,12 +161,7 @@ fn result(found: &Characterization, sensor: &Sensor) -> Vec<Block> {
             .map(|percent| format!("{} %", number(percent, 2))),
         "largest hysteresis",
     );
-    let mut blocks = Vec::new();
-    if !cards.is_empty() {
-        blocks.push(Block::Cards(cards));
-    }
-    blocks.push(table(found, sensor));
-    blocks
+    vec![Block::Cards(cards), sheet::table(found, sensor)]
 }
 
 fn response_table(found: &Characterization) -> Option<Block> {
@@ -205,12 +185,8 @@ fn response_table(found: &Characterization) -> Option<Block> {
         "data to, N",
         "presses",
     ];
-    let caption = "Sensitivity over the linear range, by taxel.".to_owned();
-    Some(Block::Table(
-        caption,
-        head.map(str::to_owned).to_vec(),
-        rows.collect(),
-    ))
+    let caption = "Sensitivity over the linear range, by taxel.";
+    Some(table(caption, head, rows.collect()))
 }
 
 fn step_table(found: &Characterization) -> Option<Block> {
@@ -241,11 +217,7 @@ fn step_table(found: &Characterization) -> Option<Block> {
          detected from z = {} of the mean on.",
         found.options.window_s, found.options.sigmas
     );
-    Some(Block::Table(
-        caption,
-        head.map(str::to_owned).to_vec(),
-        rows.collect(),
-    ))
+    Some(table(caption, head, rows.collect()))
 }
 
 fn missing(found: &Characterization) -> Vec<Block> {
@@ -269,11 +241,7 @@ fn missing(found: &Characterization) -> Vec<Block> {
     .into_iter()
     .flatten()
     .collect();
-    if facts.is_empty() {
-        Vec::new()
-    } else {
-        vec![Block::Facts(facts)]
-    }
+    vec![Block::Facts(facts)]
 }
 
 fn definitions(found: &Characterization) -> Vec<Block> {
@@ -315,11 +283,7 @@ fn definitions(found: &Characterization) -> Vec<Block> {
         row("cross-talk", "reading of another taxel over that of the pressed one, at the same force".into()),
         row("return to zero", "unloaded reading after a press, less that before".into()),
     ];
-    vec![Block::Table(
-        String::new(),
-        vec!["figure".into(), "definition".into()],
-        rows,
-    )]
+    vec![table("", ["figure", "definition"], rows)]
 }
 
 #[cfg(test)]

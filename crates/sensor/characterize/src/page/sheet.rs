@@ -1,10 +1,10 @@
 //! The data sheet: one page.
 
+use twintac_plot::page::{Block, Cell, Page, Section};
 use twintac_recording::Recording;
-use twintac_report::{Block, Cell, Page, PageSection};
 use twintac_sensor::Sensor;
 
-use super::figures;
+use super::plots;
 use super::words::{NOT_GIVEN, if_found, number, or_not, span};
 use crate::Characterization;
 
@@ -12,26 +12,26 @@ use crate::Characterization;
 #[must_use]
 pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
     let recorded = super::recorded(found, recording, sensor);
-    let plots = [
-        figures::smallest_step(found, &recorded),
-        figures::largest_force(found, recording, &recorded),
-        figures::responses(found),
+    let plots = vec![
+        plots::smallest_step(found, &recorded),
+        plots::largest_force(found, recording, &recorded),
+        plots::responses(found),
     ];
-    let plots: Vec<_> = plots.into_iter().flatten().collect();
-    let section = |id, title, blocks| PageSection { id, title, blocks };
-    let mut sections = vec![section("figures", "Characteristics", vec![table(found, sensor)])];
-    if !plots.is_empty() {
-        sections.push(section(
-            "plots",
-            "Range and sensitivity",
-            vec![Block::Figures(plots)],
-        ));
-    }
+    let plots = super::figures(plots, found.provenance);
+    let section = |id, title, block| Section {
+        id,
+        title,
+        blocks: vec![block],
+    };
+    let sections = vec![
+        section("figures", "Characteristics", table(found, sensor)),
+        section("plots", "Range and sensitivity", plots),
+    ];
     Page {
         kind: "Data sheet".into(),
         title: found.sensor.clone(),
-        provenance: super::badge(found.provenance),
-        lead: sensor.summary.clone(),
+        badge: super::badge(found.provenance),
+        lead: vec![sensor.summary.as_str().into()],
         warnings: super::warnings(found),
         sections,
         is_sheet: true,
@@ -40,10 +40,9 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
 
 /// The figures as a table.
 pub(super) fn table(found: &Characterization, sensor: &Sensor) -> Block {
-    let head = ["", "value", "condition"].map(str::to_owned).to_vec();
     let rows = found.rows(sensor).into_iter();
     let rows = rows.map(|row| row.map(Cell::Words).to_vec()).collect();
-    Block::Table(String::new(), head, rows)
+    super::table("", ["", "value", "condition"], rows)
 }
 
 impl Characterization {

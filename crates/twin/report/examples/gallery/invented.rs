@@ -1,14 +1,17 @@
 //! Data that nobody measured, in the shape of data that somebody could.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
+use twintac_map::Rectangle;
+use twintac_plot::Scene;
+use twintac_plot::page::Fact;
 use twintac_report::data::{
-    Agreement, BenchFit, DepthError, Fact, FileError, Gain, Headline, Parameter, PlaceErrors, PressPeak,
+    Agreement, BenchFit, DepthError, FileError, Gain, Headline, Parameter, PlaceErrors, PressPeak,
     PressSeries, Reference, ReferenceKind, SensorSummary, SimulationQuality, Stage, TaxelError,
     TrainingCurve, Variant, WarpPath,
 };
-use twintac_report::sensor_drawing::{Dimension, Outline, Part, Shape, View};
-use twintac_report::{Provenance, Rectangle, ReportData, SensorDrawing};
+use twintac_report::{Provenance, ReportData};
+use twintac_sensor::Sensor;
 
 const PITCH_MM: f64 = 8.0;
 const GEL_MM: Rectangle = Rectangle {
@@ -116,82 +119,11 @@ fn curve(name: &str, floor: f64) -> TrainingCurve {
     }
 }
 
-/// A sensor like the paper's, drawn.
-pub(crate) fn drawing() -> SensorDrawing {
-    let shape = |part, outline, name: Option<String>| Shape { part, outline, name };
-    let rectangle = |x0, y0, x1, y1| Outline::Rectangle {
-        min_mm: [x0, y0],
-        max_mm: [x1, y1],
-    };
-    let mut top = vec![
-        shape(Part::Shell, rectangle(-20.0, -12.0, 20.0, 12.0), None),
-        shape(Part::Board, rectangle(-18.0, -10.0, 18.0, 10.0), None),
-        shape(Part::Gel, rectangle(-17.0, -9.0, 17.0, 9.0), None),
-    ];
-    let mut cut = vec![
-        shape(Part::Shell, rectangle(-20.0, -2.6, 20.0, -1.6), None),
-        shape(Part::Shell, rectangle(-20.0, -1.6, -18.0, 7.0), None),
-        shape(Part::Shell, rectangle(18.0, -1.6, 20.0, 7.0), None),
-        shape(Part::Board, rectangle(-18.0, -1.6, 18.0, 0.0), None),
-        shape(Part::Gel, rectangle(-17.0, 0.0, 17.0, 8.5), None),
-    ];
-    for (index, [x, y]) in taxels_mm().into_iter().enumerate() {
-        top.push(shape(
-            Part::Chip,
-            rectangle(x - 1.9, y - 1.9, x + 1.9, y + 1.9),
-            Some(format!("T{index}")),
-        ));
-        top.push(shape(
-            Part::Port,
-            Outline::Circle {
-                centre_mm: [x, y],
-                radius_mm: 0.5,
-            },
-            None,
-        ));
-        if y < 0.0 {
-            cut.push(shape(
-                Part::Chip,
-                rectangle(x - 1.9, 0.0, x + 1.9, 1.8),
-                Some(format!("T{index}")),
-            ));
-            cut.push(shape(Part::Port, rectangle(x - 0.5, 1.5, x + 0.5, 1.8), None));
-        }
-    }
-    let arc = (0..=40).map(|step| PI + PI * f64::from(step) / 40.0);
-    let points_mm = arc
-        .map(|angle| [4.0 + 3.0 * angle.cos(), 10.2 + 3.0 * angle.sin()])
-        .collect();
-    cut.push(shape(
-        Part::Indenter,
-        Outline::Polygon { points_mm },
-        Some("sphere, radius 3 mm".into()),
-    ));
-    let between = |from_mm, to_mm| Dimension { from_mm, to_mm };
-    SensorDrawing {
-        title: "Sensor".into(),
-        views: vec![
-            View {
-                name: "from above".into(),
-                shapes: top,
-                dimensions: vec![
-                    between([4.0, -4.0], [12.0, -4.0]),
-                    between([-17.0, -9.0], [17.0, -9.0]),
-                    between([-20.0, -12.0], [20.0, -12.0]),
-                    between([-12.0, -4.0], [-12.0, 4.0]),
-                    between([-20.0, -12.0], [-20.0, 12.0]),
-                ],
-            },
-            View {
-                name: "cut through the lower row".into(),
-                shapes: cut,
-                dimensions: vec![
-                    between([17.0, 7.0], [18.0, 7.0]),
-                    between([-17.0, 0.0], [-17.0, 8.5]),
-                ],
-            },
-        ],
-    }
+/// PhysTac, drawn from its description.
+pub(crate) fn drawing() -> Scene {
+    let text = include_str!("../../../../../sensors/phystac.toml");
+    let sensor = Sensor::parse("phystac.toml", text, &|name| std::fs::read(name)).unwrap();
+    twintac_drawing::drawing(&sensor)
 }
 
 fn common() -> ReportData {

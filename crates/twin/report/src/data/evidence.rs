@@ -1,10 +1,7 @@
 //! What stands behind the result: the fit of the bench, training, alignment, the simulation and time spent.
 
-use serde::{Deserialize, Serialize};
-
 /// Losses over a training run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrainingCurve {
     /// The variant that was trained.
     pub name: String,
@@ -17,8 +14,7 @@ pub struct TrainingCurve {
 }
 
 /// What was fitted about the bench.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct BenchFit {
     /// Fitted quantities such as the indenter's radius and the contact offset.
     pub parameters: Vec<Parameter>,
@@ -29,8 +25,7 @@ pub struct BenchFit {
 }
 
 /// A fitted quantity.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parameter {
     /// Its name.
     pub name: String,
@@ -43,8 +38,7 @@ pub struct Parameter {
 }
 
 /// A fitted gain.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gain {
     /// The taxel.
     pub taxel: String,
@@ -55,8 +49,7 @@ pub struct Gain {
 }
 
 /// How the times of one press were matched.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct WarpPath {
     /// Which press.
     pub name: String,
@@ -67,8 +60,7 @@ pub struct WarpPath {
 }
 
 /// How far the simulation can be trusted.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SimulationQuality {
     /// Frames that were solved to the tolerance.
     pub frames: usize,
@@ -83,8 +75,7 @@ pub struct SimulationQuality {
 }
 
 /// Time spent in one stage.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
     /// Its name.
     pub name: String,

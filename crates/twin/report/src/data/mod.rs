@@ -4,13 +4,12 @@ mod evidence;
 mod presses;
 mod scores;
 
-use serde::{Deserialize, Serialize};
-
 pub use evidence::{BenchFit, Gain, Parameter, SimulationQuality, Stage, TrainingCurve, WarpPath};
 pub use presses::{Agreement, PlaceErrors, PressPeak, PressSeries};
 pub use scores::{DepthError, FileError, Headline, Reference, ReferenceKind, TaxelError, Variant};
 
-use crate::sensor_drawing::SensorDrawing;
+use twintac_plot::Scene;
+use twintac_plot::page::{Badge, Fact};
 
 /// The twin's error that the paper reports: mean absolute error over the largest contact pressure, %.
 ///
@@ -18,8 +17,7 @@ use crate::sensor_drawing::SensorDrawing;
 pub const PAPER_ERROR_PERCENT: f64 = 5.95;
 
 /// Where a number comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Provenance {
     /// Measured on a physical sensor.
     Real,
@@ -31,50 +29,29 @@ pub enum Provenance {
 }
 
 impl Provenance {
-    /// The word on the badge.
-    pub fn word(self) -> &'static str {
-        match self {
+    pub(crate) fn badge(self) -> Badge {
+        let word = match self {
             Provenance::Real => "real",
             Provenance::Emulated => "emulated",
             Provenance::Simulated => "simulated",
-        }
-    }
-}
-
-/// A name with its value as text.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Fact {
-    /// What it is.
-    pub name: String,
-    /// Its value with the unit.
-    pub value: String,
-}
-
-impl Fact {
-    /// A fact from anything that reads as text.
-    pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
-        Fact {
-            name: name.into(),
-            value: value.into(),
-        }
+        };
+        Badge(word.into())
     }
 }
 
 /// The sensor in a few facts and a drawing.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorSummary {
     /// Its name.
     pub name: String,
     /// Dimensions, material, taxels.
     pub facts: Vec<Fact>,
     /// Top view and section.
-    pub drawing: Option<SensorDrawing>,
+    pub drawing: Option<Scene>,
 }
 
 /// Everything that a report shows.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReportData {
     /// Title of the page.
     pub title: String,

@@ -1,12 +1,9 @@
 //! Readings of presses, measured and predicted.
 
-use serde::{Deserialize, Serialize};
-
-use crate::pressure_map::Rectangle;
+use twintac_map::Rectangle;
 
 /// One press over time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PressSeries {
     /// Why it is shown: "best", "median" or "worst".
     pub label: String,
@@ -31,8 +28,7 @@ pub struct PressSeries {
 }
 
 /// One press at its peak.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PressPeak {
     /// Which press of which recording.
     pub name: String,
@@ -49,8 +45,7 @@ pub struct PressPeak {
 }
 
 /// Errors of static presses over the gel.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaceErrors {
     /// Where each press was, mm.
     pub places_mm: Vec<[f64; 2]>,
@@ -63,8 +58,7 @@ pub struct PlaceErrors {
 }
 
 /// All readings, measured and predicted.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Agreement {
     /// Measured, kPa.
     pub measured_kpa: Vec<f64>,

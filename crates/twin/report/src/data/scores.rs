@@ -1,12 +1,9 @@
 //! Errors, in % of the largest reading.
 
-use serde::{Deserialize, Serialize};
-
 use super::Provenance;
 
 /// The twin's error in one number.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Headline {
     /// Number of held-out presses behind the number.
     pub presses: usize,
@@ -21,8 +18,7 @@ pub struct Headline {
 }
 
 /// What a reference stands for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReferenceKind {
     /// A simpler predictor, which a twin must beat.
     #[default]
@@ -32,8 +28,7 @@ pub enum ReferenceKind {
 }
 
 /// Something to compare the twin with, by the same measure and on the same presses.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
     /// Its name, such as "zero" or "polynomial".
     pub name: String,
@@ -46,8 +41,7 @@ pub struct Reference {
 }
 
 /// One of the twins that were compared.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variant {
     /// Its name.
     pub name: String,
@@ -62,8 +56,7 @@ pub struct Variant {
 }
 
 /// Errors on one recording.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FileError {
     /// The recording.
     pub name: String,
@@ -84,8 +77,7 @@ pub struct FileError {
 }
 
 /// Errors of one taxel.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TaxelError {
     /// The taxel.
     pub name: String,
@@ -100,8 +92,7 @@ pub struct TaxelError {
 }
 
 /// Errors of frames within a range of depths.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DepthError {
     /// From this depth, mm.
     pub from_mm: f64,

@@ -6,10 +6,10 @@ use std::path::Path;
 use anyhow::Result;
 use glam::DVec3;
 use serde::Serialize;
+use twintac_plot::{Ink, svg};
+use twintac_plot::{Panel, Panels, Places, Series};
 use twintac_press::{DryRun, PressSettings, dry_run};
 use twintac_protocol::PressPlan;
-use twintac_report::plot::{Panel, Panels, Places, Series};
-use twintac_report::{Ink, svg};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
@@ -71,7 +71,7 @@ fn places(plans: &[PressPlan], sensor: &Sensor) -> Places {
         unit: "mm".to_owned(),
         places_mm: plans.iter().map(|plan| [plan.x_mm, plan.y_mm]).collect(),
         values: plans.iter().map(|plan| plan.depth_mm).collect(),
-        taxels_mm: sensor
+        marks_mm: sensor
             .taxels
             .iter()
             .map(|taxel| [taxel.position_mm.x, taxel.position_mm.y])

@@ -1,0 +1,284 @@
+//! Paints a scene as a PNG on white paper, anti-aliased, with the embedded font.
+
+use tiny_skia::{
+    Color, FillRule, FilterQuality, IntSize, Mask, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
+    StrokeDash, Transform,
+};
+use ttf_parser::{Face, OutlineBuilder};
+
+use crate::PlotError;
+use crate::color::Ink;
+use crate::font;
+use crate::scene::{Anchor, Mark, Scene};
+
+/// The scene as the bytes of a PNG file, `scale` pixels for each pixel of the scene (2 looks sharp on paper).
+///
+/// # Errors
+/// [`PlotError::Raster`] if the size is zero or too large for memory.
+pub fn png(scene: &Scene, scale: f64) -> Result<Vec<u8>, PlotError> {
+    let (width_px, height_px) = ((scene.width * scale).ceil(), (scene.height * scale).ceil());
+    let failed = |reason: String| PlotError::Raster {
+        width_px,
+        height_px,
+        reason,
+    };
+    let mut pixmap = Pixmap::new(width_px as u32, height_px as u32)
+        .ok_or_else(|| failed("the size is not possible".into()))?;
+    let face = font::face().ok_or_else(|| failed("the embedded font is damaged".into()))?;
+    pixmap.fill(Color::WHITE);
+    let transform = Transform::from_scale(scale as f32, scale as f32);
+    for mark in &scene.marks {
+        paint(&mut pixmap, mark, transform, &face);
+    }
+    pixmap.encode_png().map_err(|error| failed(error.to_string()))
+}
+
+fn paint(pixmap: &mut Pixmap, mark: &Mark, transform: Transform, face: &Face<'_>) {
+    const NO_MASK: Option<&Mask> = None;
+    let mut fill = |path: Option<Path>, ink: Ink, opacity: f64, transform: Transform| {
+        if let Some(path) = path {
+            pixmap.fill_path(&path, &solid(ink, opacity), FillRule::Winding, transform, NO_MASK);
+        }
+    };
+    match mark {
+        Mark::Line {
+            points,
+            ink,
+            width,
+            dashed,
+        } => {
+            let dash = if *dashed {
+                StrokeDash::new(vec![4.0, 3.0], 0.0)
+            } else {
+                None
+            };
+            let line_join = tiny_skia::LineJoin::Round;
+            let stroke = Stroke {
+                width: *width as f32,
+                dash,
+                line_join,
+                ..Stroke::default()
+            };
+            if let Some(path) = polygon(points, false) {
+                pixmap.stroke_path(&path, &solid(*ink, 1.0), &stroke, transform, NO_MASK);
+            }
+        }
+        Mark::Area { points, ink, opacity } => fill(polygon(points, true), *ink, *opacity, transform),
+        Mark::Circle {
+            centre: [x, y],
+            radius,
+            fill: filling,
+            stroke,
+            opacity,
+        } => {
+            let path = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32);
+            if let Some(ink) = filling {
+                fill(path.clone(), *ink, *opacity, transform);
+            }
+            if let (Some(ink), Some(path)) = (stroke, path) {
+                let stroke = Stroke {
+                    width: 1.25,
+                    ..Stroke::default()
+                };
+                pixmap.stroke_path(&path, &solid(*ink, 1.0), &stroke, transform, NO_MASK);
+            }
+        }
+        Mark::Text {
+            at,
+            text,
+            size,
+            ink,
+            anchor,
+            bold,
+            upwards,
+        } => {
+            let (path, width_em) = letters(face, text);
+            let shift_em = match anchor {
+                Anchor::Start => 0.0,
+                Anchor::Middle => -0.5 * width_em,
+                Anchor::End => -width_em,
+            };
+            let size = *size as f32;
+            let turn = if *upwards {
+                Transform::from_rotate(-90.0)
+            } else {
+                Transform::identity()
+            };
+            let placed = Transform::from_translate(shift_em as f32, 0.0)
+                .post_scale(size, size)
+                .post_concat(turn)
+                .post_translate(at[0] as f32, at[1] as f32)
+                .post_concat(transform);
+            fill(path.clone(), *ink, 1.0, placed);
+            // The embedded font is a light one: an outline gives it the weight of a browser's text.
+            let weight = if *bold { 0.055 } else { 0.018 };
+            if let Some(path) = path {
+                let stroke = Stroke {
+                    width: weight,
+                    ..Stroke::default()
+                };
+                pixmap.stroke_path(&path, &solid(*ink, 1.0), &stroke, placed, NO_MASK);
+            }
+        }
+        Mark::Image {
+            at,
+            size,
+            columns,
+            pixels,
+        } => {
+            let Some(image) = pixmap_of(*columns, pixels) else {
+                return;
+            };
+            let (across, down) = (image.width() as f32, image.height() as f32);
+            let placed = Transform::from_scale(size[0] as f32 / across, size[1] as f32 / down)
+                .post_translate(at[0] as f32, at[1] as f32)
+                .post_concat(transform);
+            let style = PixmapPaint {
+                quality: FilterQuality::Bilinear,
+                ..PixmapPaint::default()
+            };
+            pixmap.draw_pixmap(0, 0, image.as_ref(), &style, placed, NO_MASK);
+        }
+    }
+}
+
+fn solid(ink: Ink, opacity: f64) -> Paint<'static> {
+    let [red, green, blue] = ink.rgb();
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(red, green, blue, (opacity.clamp(0.0, 1.0) * 255.0).round() as u8);
+    paint
+}
+
+fn polygon(points: &[[f64; 2]], closed: bool) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for (index, &[x, y]) in points.iter().enumerate() {
+        if index == 0 {
+            builder.move_to(x as f32, y as f32)
+        } else {
+            builder.line_to(x as f32, y as f32)
+        }
+    }
+    if closed {
+        builder.close();
+    }
+    builder.finish()
+}
+
+/// Outlines of a text from the origin, one em high, y down; and its width in em.
+fn letters(face: &Face<'_>, text: &str) -> (Option<Path>, f64) {
+    let (glyphs, width_em) = font::layout(face, text);
+    let unit = 1.0 / f32::from(face.units_per_em());
+    let mut pen = Pen {
+        builder: PathBuilder::new(),
+        start: 0.0,
+        unit,
+    };
+    for (glyph, start_em) in glyphs {
+        pen.start = start_em as f32;
+        face.outline_glyph(glyph, &mut pen);
+    }
+    (pen.builder.finish(), width_em)
+}
+
+struct Pen {
+    builder: PathBuilder,
+    start: f32,
+    unit: f32,
+}
+
+impl Pen {
+    fn at(&self, x: f32, y: f32) -> (f32, f32) {
+        (self.start + x * self.unit, -y * self.unit)
+    }
+}
+
+impl OutlineBuilder for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.at(x, y);
+        self.builder.move_to(x, y);
+    }
+    fn line_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.at(x, y);
+        self.builder.line_to(x, y);
+    }
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let ((x1, y1), (x, y)) = (self.at(x1, y1), self.at(x, y));
+        self.builder.quad_to(x1, y1, x, y);
+    }
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let ((x1, y1), (x2, y2), (x, y)) = (self.at(x1, y1), self.at(x2, y2), self.at(x, y));
+        self.builder.cubic_to(x1, y1, x2, y2, x, y);
+    }
+    fn close(&mut self) {
+        self.builder.close();
+    }
+}
+
+/// A grid of colours as a PNG, one pixel each; `None` if it is empty or ragged.
+pub(crate) fn rgb_png(columns: usize, pixels: &[[u8; 3]]) -> Option<Vec<u8>> {
+    pixmap_of(columns, pixels)?.encode_png().ok()
+}
+
+fn pixmap_of(columns: usize, pixels: &[[u8; 3]]) -> Option<Pixmap> {
+    if columns == 0 || !pixels.len().is_multiple_of(columns) {
+        return None;
+    }
+    let rows = pixels.len() / columns;
+    let data = pixels
+        .iter()
+        .flat_map(|&[red, green, blue]| [red, green, blue, 255])
+        .collect();
+    Pixmap::from_vec(data, IntSize::from_wh(columns as u32, rows as u32)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Scene {
+        let mut scene = Scene::new("sample", 80.0, 40.0);
+        scene.rectangle([10.0, 10.0], [20.0, 20.0], Ink::Rgb([10, 200, 30]), 1.0);
+        scene.title([40.0, 20.0], "kPa");
+        scene
+    }
+
+    #[test]
+    fn colours_land_where_they_belong_and_letters_leave_ink() {
+        let pixmap = Pixmap::decode_png(&png(&sample(), 2.0).unwrap()).unwrap();
+        assert_eq!((pixmap.width(), pixmap.height()), (160, 80));
+        let at = |x, y| {
+            let pixel = pixmap.pixel(x, y).unwrap();
+            [pixel.red(), pixel.green(), pixel.blue()]
+        };
+        assert_eq!(at(40, 40), [10, 200, 30]);
+        assert_eq!(at(4, 4), [255, 255, 255]);
+        let dark = (80..160)
+            .flat_map(|x| (0..80).map(move |y| (x, y)))
+            .filter(|&(x, y)| at(x, y)[0] < 100);
+        assert!(dark.count() > 50);
+    }
+
+    #[test]
+    fn the_same_scene_gives_the_same_bytes() {
+        assert_eq!(png(&sample(), 1.5).unwrap(), png(&sample(), 1.5).unwrap());
+    }
+
+    #[test]
+    fn an_impossible_size_is_refused() {
+        assert!(matches!(
+            png(&Scene::new("none", 0.0, 5.0), 1.0),
+            Err(PlotError::Raster { .. })
+        ));
+        assert!(matches!(
+            png(&Scene::new("none", f64::NAN, 5.0), 1.0),
+            Err(PlotError::Raster { .. })
+        ));
+    }
+
+    #[test]
+    fn a_ragged_image_is_left_out() {
+        assert!(rgb_png(3, &[[0; 3]; 4]).is_none());
+        assert!(rgb_png(0, &[]).is_none());
+        assert!(rgb_png(2, &[[0; 3]; 4]).is_some());
+    }
+}

@@ -1,0 +1,449 @@
+//! The plots, in the order of the paper's: time, small and large force, sensitivity; then what it does not show.
+
+use twintac_plot::{Anchor, Bar, Bars, Ink, Panel, Panels, Scene, Series, viridis};
+use twintac_recording::{Control, Recording};
+
+use super::words::number;
+use crate::creep::BEGINS_S;
+use crate::phases::duration_s;
+use crate::recorded::{Recorded, above};
+use crate::statistics::mean;
+use crate::{Characterization, CrossTalk};
+
+/// A plot with its caption.
+pub(super) type Plot = (Scene, String);
+
+/// Presses in the plot over time.
+const MOST_SHOWN: usize = 8;
+
+/// Longest of them, s.
+const LONGEST_SHOWN_S: f64 = 8.0;
+
+fn line(name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64) -> Series {
+    Series {
+        name: name.into(),
+        points,
+        ink,
+        width_px,
+        dashed: false,
+    }
+}
+
+fn dashed(name: &str, points: Vec<[f64; 2]>, ink: Ink) -> Series {
+    Series {
+        dashed: true,
+        ..line(name, points, ink, 1.5)
+    }
+}
+
+fn panel(y_label: &str, series: Vec<Series>) -> Panel {
+    Panel {
+        y_label: y_label.into(),
+        series,
+        ..Panel::default()
+    }
+}
+
+fn panels(title: &str, x_label: &str, panels: Vec<Panel>) -> Scene {
+    let panel_height_px = if panels.len() > 1 { 110.0 } else { 230.0 };
+    Panels {
+        title: title.into(),
+        x_label: x_label.into(),
+        panels,
+        panel_height_px,
+        logarithmic: false,
+    }
+    .scene()
+}
+
+/// Force, N, and the reading of a taxel, kPa, over time, s, in some frames; times count from `zero_s`.
+fn courses(
+    press: &Recorded<'_>,
+    taxel: usize,
+    frames: std::ops::Range<usize>,
+    zero_s: f64,
+) -> [Vec<[f64; 2]>; 2] {
+    let time_s = |frame: usize| press.press.time_s[frame] - zero_s;
+    [
+        frames
+            .clone()
+            .map(|frame| [time_s(frame), press.force_n(frame)])
+            .collect(),
+        frames
+            .map(|frame| [time_s(frame), press.press.taxels_kpa[frame][taxel]])
+            .collect(),
+    ]
+}
+
+fn force_and_reading(title: &str, name: &str, [force, reading]: [Vec<[f64; 2]>; 2]) -> Scene {
+    let above = panel("force, N", vec![line("force", force, Ink::Series(0), 1.5)]);
+    let below = panel("pressure, kPa", vec![line(name, reading, Ink::Twin, 1.5)]);
+    panels(title, "time, s", vec![above, below])
+}
+
+/// Force and reading over time, at several amplitudes and speeds of one taxel, one press after the other.
+pub(super) fn over_time(recording: &Recording, recorded: &[Recorded<'_>]) -> Option<Plot> {
+    let touched_s = |press: &Recorded<'_>| {
+        let end = press.phases.unloading.end.min(press.press.time_s.len() - 1);
+        press.press.time_s[end] - press.press.time_s[press.phases.loading.start]
+    };
+    let is_shown =
+        |press: &&Recorded<'_>| press.press.control == Control::Pose && touched_s(press) <= LONGEST_SHOWN_S;
+    let of_taxel = |taxel: usize| above(recorded, taxel).filter(is_shown);
+    let taxel = (0..recording.taxels.len())
+        .rev()
+        .max_by_key(|&taxel| of_taxel(taxel).count())?;
+    // The most different: evenly chosen by how fast they load, shown as they were recorded.
+    let mut order: Vec<(usize, &Recorded<'_>)> = of_taxel(taxel).enumerate().collect();
+    let rate =
+        |press: &Recorded<'_>| press.peak_n() / duration_s(press.press, &press.phases.loading).max(1e-3);
+    order.sort_by(|a, b| rate(a.1).total_cmp(&rate(b.1)));
+    let n_shown = order.len().min(MOST_SHOWN);
+    let mut chosen: Vec<_> = (0..n_shown)
+        .map(|index| order[index * order.len() / n_shown])
+        .collect();
+    chosen.sort_by_key(|(index, _)| *index);
+    let mut all = [Vec::new(), Vec::new()];
+    let mut behind_s = 0.0;
+    for (_, press) in &chosen {
+        let time_s = &press.press.time_s;
+        let (from_s, to_s) = (time_s[press.phases.loading.start] - 0.3, touched_s(press) + 0.6);
+        let first = time_s.partition_point(|at_s| *at_s < from_s);
+        let last = time_s.partition_point(|at_s| *at_s < from_s + to_s);
+        let parts = courses(press, taxel, first..last, from_s - behind_s);
+        for (whole, part) in all.iter_mut().zip(parts) {
+            whole.extend(part);
+            whole.push([f64::NAN; 2]);
+        }
+        behind_s += to_s;
+    }
+    let name = &recording.taxels[taxel];
+    let caption = format!(
+        "Force on the gel and what taxel {name} reads, in {} presses of various amplitude and speed, set one behind the other.",
+        chosen.len()
+    );
+    Some((force_and_reading("Response over time", name, all), caption))
+}
+
+/// The smallest known step of force, with the means that tell it.
+pub(super) fn smallest_step(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
+    let step = found.smallest_step().or(found.steps.found()?.first())?;
+    let press = recorded.iter().find(|press| press.press.name == step.press)?;
+    let (taxel, phases, time_s) = (press.taxel?, &press.phases, &press.press.time_s);
+    let n = time_s.len();
+    let [force, reading] = courses(press, taxel, 0..n, 0.0);
+    let force_mn = force
+        .into_iter()
+        .map(|[time_s, force_n]| [time_s, 1000.0 * force_n])
+        .collect();
+    let level = |frames: &std::ops::Range<usize>| -> Option<Vec<[f64; 2]>> {
+        let level_kpa = mean(&press.readings_kpa(taxel, frames))?;
+        Some(vec![
+            [time_s[frames.start], level_kpa],
+            [time_s[frames.end - 1], level_kpa],
+        ])
+    };
+    let means: Vec<[f64; 2]> = [&phases.rest, &phases.hold, &phases.rest_after]
+        .into_iter()
+        .filter(|frames| !frames.is_empty())
+        .filter_map(level)
+        .flat_map(|mut ends| {
+            ends.push([f64::NAN; 2]);
+            ends
+        })
+        .collect();
+    let readings = vec![
+        line("readings", reading, Ink::Sensor, 1.0),
+        line("means", means, Ink::Twin, 2.0),
+    ];
+    let scene = panels(
+        &format!("A  Step of {} N", number(step.force_n, 2)),
+        "time, s",
+        vec![
+            panel("force, mN", vec![line("force", force_mn, Ink::Series(0), 1.5)]),
+            panel("pressure, kPa", readings),
+        ],
+    );
+    let caption = format!(
+        "A weight of {} N above taxel {}: a step of {} kPa, {} standard deviations of a single reading, {} of a mean over {} s.",
+        number(step.force_n, 2),
+        step.taxel,
+        number(step.step_kpa, 2),
+        number(step.z_single, 2),
+        number(step.z_averaged, 2),
+        found.options.window_s
+    );
+    Some((scene, caption))
+}
+
+/// The press with the largest force.
+pub(super) fn largest_force(
+    found: &Characterization,
+    recording: &Recording,
+    recorded: &[Recorded<'_>],
+) -> Option<Plot> {
+    let range = found.range.found()?;
+    let press = recorded.iter().find(|press| press.press.name == range.press)?;
+    let taxel = recording.taxels.iter().position(|taxel| *taxel == range.taxel)?;
+    let n = press.press.time_s.len();
+    let scene = force_and_reading(
+        &format!("B  Up to {} N", number(range.force_n, 3)),
+        &range.taxel,
+        courses(press, taxel, 0..n, 0.0),
+    );
+    let caption = format!(
+        "The largest force in the data, {} N, and the taxel that reads most then, {}. Nothing is known beyond.",
+        number(range.force_n, 3),
+        range.taxel
+    );
+    Some((scene, caption))
+}
+
+/// Responses of all taxels, and their mean line.
+pub(super) fn responses(found: &Characterization) -> Option<Plot> {
+    let (taxels, overall) = (found.sensitivity.found()?, found.overall.found()?);
+    let common_n = taxels
+        .iter()
+        .map(|taxel| taxel.data_to_n)
+        .fold(f64::INFINITY, f64::min);
+    let shown = |response: &[[f64; 2]]| {
+        response
+            .iter()
+            .copied()
+            .filter(|point| point[0] <= common_n)
+            .collect()
+    };
+    let mut series: Vec<Series> = taxels
+        .iter()
+        .map(|taxel| line("taxels", shown(&taxel.response), Ink::Sensor, 1.5))
+        .collect();
+    let name = format!("{} kPa/N", number(overall.mean_kpa_per_n, 3));
+    let end_n = overall.linear_to_n.min(common_n);
+    let offset_kpa = mean(&taxels.iter().map(|taxel| taxel.offset_kpa).collect::<Vec<_>>())?;
+    series.push(line(
+        &name,
+        [0.0, end_n]
+            .map(|force_n| [force_n, offset_kpa + overall.mean_kpa_per_n * force_n])
+            .to_vec(),
+        Ink::Twin,
+        2.5,
+    ));
+    let scene = panels("C  Sensitivity", "force, N", vec![panel("pressure, kPa", series)]);
+    let caption = format!(
+        "Slow loadings above each taxel, and the mean of the {} taxels’ lines over the range in which all are linear, to {} N.",
+        taxels.len(),
+        number(overall.linear_to_n, 2)
+    );
+    Some((scene, caption))
+}
+
+/// How far responses are from their lines.
+pub(super) fn linearity(found: &Characterization) -> Option<Plot> {
+    let taxels = found.sensitivity.found()?;
+    let limit = found.options.linear_percent;
+    let mut end_n: f64 = 0.0;
+    let mut series = Vec::new();
+    for taxel in taxels {
+        let span_kpa = taxel.sensitivity_kpa_per_n * taxel.linear_to_n;
+        let shown = taxel
+            .response
+            .iter()
+            .filter(|point| point[0] <= 1.5 * taxel.linear_to_n);
+        let points: Vec<[f64; 2]> = shown
+            .map(|[force_n, kpa]| {
+                let line_kpa = taxel.offset_kpa + taxel.sensitivity_kpa_per_n * force_n;
+                [*force_n, 100.0 * (kpa - line_kpa) / span_kpa]
+            })
+            .collect();
+        end_n = points.last().map_or(end_n, |point| end_n.max(point[0]));
+        series.push(line("taxels", points, Ink::Sensor, 1.5));
+    }
+    for (name, level) in [(format!("± {} %", limit), limit), (String::new(), -limit)] {
+        series.push(dashed(&name, vec![[0.0, level], [end_n, level]], Ink::Twin));
+    }
+    let scene = panels(
+        "Distance from the line",
+        "force, N",
+        vec![panel("% of the range’s end", series)],
+    );
+    let caption = format!(
+        "Response less the taxel’s own line, in % of the response at the end of its linear range: the range ends where no line keeps within {} %.",
+        limit
+    );
+    Some((scene, caption))
+}
+
+/// Bars of one figure a taxel; none without figures.
+pub(super) fn bars(
+    title: &str,
+    x_label: &str,
+    values: impl Iterator<Item = (String, f64)>,
+    caption: &str,
+) -> Option<Plot> {
+    let bar = |(name, value): (String, f64)| Bar {
+        name,
+        value,
+        uncertainty: None,
+        text: number(value, 2),
+        ink: Ink::Series(0),
+    };
+    let bars = Bars {
+        title: title.into(),
+        x_label: x_label.into(),
+        bars: values.map(bar).collect(),
+    };
+    (!bars.bars.is_empty()).then(|| (bars.scene(), caption.to_owned()))
+}
+
+/// The widest loop.
+pub(super) fn hysteresis(found: &Characterization) -> Option<Plot> {
+    let taxels = found.hysteresis.found()?;
+    let widest = taxels
+        .iter()
+        .max_by(|a, b| a.percent.abs().total_cmp(&b.percent.abs()))?;
+    let series = vec![
+        line("loading", widest.loading.clone(), Ink::Series(0), 2.0),
+        line("unloading", widest.unloading.clone(), Ink::Twin, 1.5),
+    ];
+    let scene = panels("Hysteresis", "force, N", vec![panel("pressure, kPa", series)]);
+    let caption = format!(
+        "Taxel {}, which has the widest loop: {} % of full scale. Force and taxels are stamped by clocks that may differ by tens of ms: each 10 ms \
+         widens or narrows the loop by 0.02 s times the loading rate, 2 % of full scale where loading takes 1 s, and 0.2 % where it takes 10 s.",
+        widest.taxel,
+        number(widest.percent, 2)
+    );
+    Some((scene, caption))
+}
+
+/// A fast press, force and reading in % of their largest.
+pub(super) fn rise(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
+    let rise = found.rise_time.found()?;
+    let press = recorded.iter().find(|press| press.press.name == rise.example)?;
+    let (taxel, time_s) = (press.taxel?, &press.press.time_s);
+    let zero_s = time_s[press.phases.loading.start];
+    let from = time_s.partition_point(|at_s| *at_s < zero_s - 0.1);
+    let to = time_s.partition_point(|at_s| *at_s < zero_s + 0.4);
+    let percent = |points: Vec<[f64; 2]>| {
+        let most = points
+            .iter()
+            .map(|point| point[1])
+            .fold(f64::MIN_POSITIVE, f64::max);
+        points
+            .into_iter()
+            .map(|[time_s, value]| [time_s, 100.0 * value / most])
+            .collect()
+    };
+    let [force, reading] = courses(press, taxel, from..to, zero_s);
+    let series = vec![
+        line("force", percent(force), Ink::Series(0), 2.0),
+        line("pressure", percent(reading), Ink::Twin, 1.5),
+    ];
+    let scene = panels("Rise", "time, s", vec![panel("% of the largest", series)]);
+    let caption = format!(
+        "A fast press. Frames come every {} s: a shorter rise is not seen.",
+        number(rise.frame_s, 2)
+    );
+    Some((scene, caption))
+}
+
+/// A long hold, in % of its beginning.
+pub(super) fn creep(found: &Characterization, recorded: &[Recorded<'_>]) -> Option<Plot> {
+    let creep = found.creep.found()?.first()?;
+    let press = recorded.iter().find(|press| press.press.name == creep.press)?;
+    let (taxel, hold) = (press.taxel?, press.phases.hold.clone());
+    let zero_s = press.press.time_s[hold.start];
+    let [force, reading] = courses(press, taxel, hold, zero_s);
+    let ratio: Vec<[f64; 2]> = force
+        .iter()
+        .zip(&reading)
+        .map(|(force, reading)| [force[0], reading[1] / force[1]])
+        .collect();
+    let percent = |points: &[[f64; 2]]| -> Option<Vec<[f64; 2]>> {
+        let begins: Vec<f64> = points
+            .iter()
+            .filter(|point| (BEGINS_S[0]..BEGINS_S[1]).contains(&point[0]))
+            .map(|point| point[1])
+            .collect();
+        let begin = mean(&begins)?;
+        Some(
+            points
+                .iter()
+                .map(|[time_s, value]| [*time_s, 100.0 * (value / begin - 1.0)])
+                .collect(),
+        )
+    };
+    let series = vec![
+        line("force", percent(&force)?, Ink::Series(0), 1.25),
+        line("pressure", percent(&reading)?, Ink::Twin, 1.25),
+        line("pressure / force", percent(&ratio)?, Ink::Series(2), 1.25),
+    ];
+    let scene = panels("Creep", "time held, s", vec![panel("change, %", series)]);
+    let caption = format!(
+        "A hold at one depth, above taxel {}: the gel relaxes, and force and pressure with it; what their ratio changes by is creep.",
+        creep.taxel
+    );
+    Some((scene, caption))
+}
+
+/// Unloaded pressure over temperature.
+pub(super) fn drift(found: &Characterization) -> Option<Plot> {
+    let taxels = found.temperature_drift.found()?;
+    let series = (0..).zip(taxels).map(|(index, taxel)| {
+        let (name, course) = (&taxel.taxel, taxel.course.clone());
+        // There are more taxels than colours that tell them apart.
+        match index < 6 {
+            true => line(name, course, Ink::Series(index), 1.25),
+            false => dashed(name, course, Ink::Series(index)),
+        }
+    });
+    let scene = panels(
+        "Drift with temperature",
+        "temperature, °C",
+        vec![panel("unloaded pressure, kPa", series.collect())],
+    );
+    let caption = "Unloaded pressure against the barometers' own temperature, from where each taxel's line begins; what drifts with time alone is in it.";
+    Some((scene, caption.to_owned()))
+}
+
+/// What each taxel reads while each is pressed.
+pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
+    const CELL: f64 = 36.0;
+    const LEFT: f64 = 64.0;
+    const TOP: f64 = 44.0;
+    let (columns, rows) = (talk.taxels.len(), talk.pressed.len());
+    let (width, height) = (CELL * columns as f64, CELL * rows as f64);
+    let mut scene = Scene::new("Cross-talk", LEFT + width + 8.0, TOP + height + 30.0);
+    scene.title([0.0, 14.0], "Cross-talk, %");
+    for (row, name) in talk.pressed.iter().enumerate() {
+        let y = TOP + CELL * (row as f64 + 0.5) + 4.0;
+        scene.small([LEFT - 6.0, y], name, Ink::Text, Anchor::End);
+        for (column, percent) in talk.percent[row].iter().enumerate() {
+            let ink = Ink::Rgb(if *percent > 55.0 { [0; 3] } else { [255; 3] });
+            let x = LEFT + CELL * (column as f64 + 0.5);
+            let corner = [x - 0.5 * CELL, TOP + CELL * row as f64];
+            scene.rectangle(corner, [CELL; 2], Ink::Rgb(viridis(percent / 100.0)), 1.0);
+            scene.small(
+                [x, y],
+                number(*percent, if percent.abs() < 10.0 { 1 } else { 2 }),
+                ink,
+                Anchor::Middle,
+            );
+        }
+    }
+    for (column, name) in talk.taxels.iter().enumerate() {
+        let x = LEFT + CELL * (column as f64 + 0.5);
+        scene.small([x, TOP - 6.0], name, Ink::Text, Anchor::Middle);
+    }
+    scene.upwards([14.0, TOP + 0.5 * height], "pressed taxel");
+    scene.small(
+        [LEFT + 0.5 * width, TOP + height + 18.0],
+        "read taxel",
+        Ink::Muted,
+        Anchor::Middle,
+    );
+    let caption = format!(
+        "Reading of each taxel in % of that of the pressed one, at {} N. In a gel a load spreads: it is no fault.",
+        number(talk.force_n, 2)
+    );
+    (scene, caption)
+}

@@ -1,0 +1,81 @@
+//! Many maps of the same taxels.
+
+use crate::fit::Fit;
+use crate::{MapError, MapSettings, Rectangle, cells, check_grid, check_length, finite_or_zero};
+
+/// A map is linear in its readings: what each taxel adds to each cell, worked out once, so that a map is a sum.
+#[derive(Clone, Debug)]
+pub struct PreparedMap {
+    rectangle: Rectangle,
+    grid: [usize; 2],
+    taxels_mm: Vec<[f64; 2]>,
+    length_mm: f64,
+    /// `[taxels][cells]`: kPa in the cell for 1 kPa at the taxel.
+    shares: Vec<Vec<f64>>,
+}
+
+impl PreparedMap {
+    /// Of taxels, over a rectangle. `fields_kpa` are readings above the baseline from which
+    /// [`leave_one_out_width_mm`](crate::leave_one_out_width_mm) chooses the width, if the settings give none; there may be none.
+    ///
+    /// # Errors
+    /// As [`pressure_map`](crate::pressure_map).
+    pub fn new(
+        taxels_mm: &[[f64; 2]],
+        rectangle: Rectangle,
+        settings: &MapSettings,
+        fields_kpa: &[&[f64]],
+    ) -> Result<Self, MapError> {
+        check_grid(settings.grid)?;
+        let fit = Fit::new(taxels_mm, settings, fields_kpa)?;
+        let mut shares = vec![Vec::with_capacity(settings.grid[0] * settings.grid[1]); taxels_mm.len()];
+        for place in cells(rectangle, settings.grid) {
+            for (share, of_cell) in shares.iter_mut().zip(fit.shares(place)) {
+                share.push(of_cell);
+            }
+        }
+        Ok(Self {
+            rectangle,
+            grid: settings.grid,
+            taxels_mm: taxels_mm.to_vec(),
+            length_mm: fit.length_mm,
+            shares,
+        })
+    }
+
+    /// The rectangle that the grid fills, mm.
+    #[must_use]
+    pub fn rectangle(&self) -> Rectangle {
+        self.rectangle
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn grid(&self) -> [usize; 2] {
+        self.grid
+    }
+
+    /// Standard deviation of the Gaussians, given or chosen, mm; the taxels' pitch for a thin plate.
+    #[must_use]
+    pub fn width_mm(&self) -> f64 {
+        self.length_mm
+    }
+
+    /// Fills `pressure_kpa` with a map, `[rows][columns]` flattened as in [`PressureMap`](crate::PressureMap), of one reading above the
+    /// baseline a taxel; one that is not a number counts as the baseline.
+    ///
+    /// # Errors
+    /// [`MapError::Input`] if there is not one reading a taxel.
+    pub fn fill(&self, above_kpa: &[f64], pressure_kpa: &mut Vec<f64>) -> Result<(), MapError> {
+        check_length("readings of a pressure map", above_kpa, &self.taxels_mm)?;
+        pressure_kpa.clear();
+        pressure_kpa.resize(self.grid[0] * self.grid[1], 0.0);
+        for (shares, above) in self.shares.iter().zip(above_kpa) {
+            let above = finite_or_zero(*above);
+            for (pressure, share) in pressure_kpa.iter_mut().zip(shares) {
+                *pressure += above * share;
+            }
+        }
+        Ok(())
+    }
+}
