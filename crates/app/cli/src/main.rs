@@ -5,6 +5,7 @@
 
 mod arguments;
 mod command;
+mod progress;
 
 use std::io::Write;
 use std::process::ExitCode;

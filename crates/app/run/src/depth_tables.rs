@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use glam::DVec2;
-use indicatif::ProgressBar;
 use rayon::prelude::*;
 use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, Lattice, SourceError};
 use twintac_shape::{Pose, Shape};
 use twintac_simulate::{Gel, PressPlace};
 
-use crate::cache::{read_json, sha256, write_json};
+use crate::Progress;
+use crate::files::{read_json, sha256, write_json};
+use crate::sensor_file::indenter;
 
 /// From this many different places on, a lattice of places is simulated and interpolated.
 const LATTICE_FROM: usize = 150;
@@ -18,16 +19,16 @@ const LATTICE_FROM: usize = 150;
 /// Spacing of that lattice over the gel's height.
 const LATTICE_SPACING: f64 = 1.0 / 3.0;
 
-/// Tables over depth of one gel, kept in a folder: what is there is not computed again.
-pub struct DepthTableStore<'a> {
+/// Sweeps of one gel, kept in a folder: what is there is not computed again.
+pub(crate) struct DepthTableStore<'a> {
     gel: &'a Gel,
     folder: PathBuf,
-    progress: ProgressBar,
+    progress: &'a dyn Progress,
 }
 
 impl<'a> DepthTableStore<'a> {
     /// Keeps the gel's tables in `folder`, which holds tables of no other gel.
-    pub fn new(gel: &'a Gel, folder: PathBuf, progress: ProgressBar) -> Self {
+    pub(crate) fn new(gel: &'a Gel, folder: PathBuf, progress: &'a dyn Progress) -> Self {
         Self {
             gel,
             folder,
@@ -53,21 +54,13 @@ impl<'a> DepthTableStore<'a> {
         })
     }
 
-    fn shape(&self, indenter: &str) -> Result<&Shape, SourceError> {
-        let found = self
-            .gel
-            .sensor()
-            .indenters
-            .iter()
-            .find(|candidate| candidate.name == indenter);
-        Ok(&found
-            .ok_or_else(|| format!("the sensor's description has no indenter `{indenter}`"))?
-            .shape)
+    fn shape(&self, name: &str) -> Result<&Shape, SourceError> {
+        Ok(indenter(self.gel.sensor(), name)?)
     }
 
     /// The tables at places, from their files or computed now, in order.
     fn compute(&self, places: &[PressPlace]) -> Result<Vec<DepthTable>, SourceError> {
-        self.progress.inc_length(places.len() as u64);
+        self.progress.more_steps(places.len());
         places
             .par_iter()
             .with_max_len(1)
@@ -81,7 +74,7 @@ impl<'a> DepthTableStore<'a> {
                         table
                     }
                 };
-                self.progress.inc(1);
+                self.progress.step("");
                 Ok(table)
             })
             .collect()

@@ -1,15 +1,74 @@
 //! Runs: from a sensor's description and its recordings to a judged twin and a report, stage by stage.
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use twintac_run::{Caller, Run, RunSettings, SensorFile};
+//!
+//! # fn main() -> Result<(), twintac_run::RunError> {
+//! let sensor = SensorFile::read(Path::new("sensors/strip4-gel-d.toml"))?;
+//! let settings = RunSettings::default();
+//! let run = Run::start(Path::new("runs/mine"), sensor, "three files", 1, settings, Caller::default())?;
+//! run.import(Path::new("imports/strip4.toml"), &["press-1.csv".into()])?;
+//! let metrics = run.finish()?; // minutes: simulate, align, train, evaluate, report
+//! println!("{:.1} %, see {}", metrics.twin.overall.nearest_in_contact_percent, run.report_path().display());
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A [`Run`] is a folder that a person can open:
+//!
+//! ```text
+//! run.json       what the run is made from, and its settings
+//! sensor.toml    the sensor description, as it was (surfaces beside it)
+//! logs/          of a bench: one for each press (MCAP)
+//! lab/           of the emulated bench: what its gel answers at the places of the presses
+//! recordings/    presses.parquet, summary.json
+//! mesh/          the gel's mesh for ParaView and Gmsh, quality.json
+//! simulation/    split.json, bench.json, and a table over depth for each place
+//! pairs/         measured and simulated frames side by side
+//! training/      a twin that never saw the test presses, a twin of all presses, losses
+//! evaluation/    the errors
+//! model/         the twin of all presses, to be used elsewhere
+//! report.html, metrics.json
+//! ```
+//!
+//! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`] hears. What is wrong is a [`RunError`].
+//!
+//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`calibration`] fits a gel's material, [`characterization`] reads
+//! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
+//! out, [`export`](mod@export) makes tables of logs.
 
 pub mod bench;
 pub mod built_in;
-pub mod cache;
+mod cache;
 pub mod calibration;
+mod caller;
+pub mod characterization;
+mod demo;
 mod depth_tables;
+mod error;
+pub mod export;
+mod files;
 pub mod mesh;
-pub mod metrics;
-pub mod progress;
+mod metrics;
+mod progress;
+mod protocol;
 mod report;
-pub mod run;
-pub mod sensor_file;
-pub mod settings;
-pub mod stages;
+mod run;
+mod sensor_file;
+mod settings;
+pub mod simulated;
+mod stages;
+mod unseen;
+
+pub use caller::Caller;
+pub use error::RunError;
+pub use files::sha256_of_file;
+pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};
+pub use progress::{Outcome, Progress, Silent};
+pub use protocol::Planned;
+pub use run::{Run, RunRecord};
+pub use sensor_file::SensorFile;
+pub use settings::RunSettings;
+pub use stages::recordings::{import_files, read_recordings};
+pub use unseen::{UnseenEvaluation, evaluate_elsewhere};

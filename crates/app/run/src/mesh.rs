@@ -1,47 +1,96 @@
-//! A gel's mesh, written for other programs.
+//! A gel's mesh, and files of it for other programs.
 
 use std::path::Path;
 
-use anyhow::Result;
-use twintac_mesh::{Cuboid, MeshSettings, Quality, TetMesh, gel_volume_mm3, generate, gmsh, stl, vtk};
+use twintac_mesh::{
+    Cuboid, MeshSettings, Quality, TetMesh, gel_volume_mm3, generate, generate_with_node_count, gmsh, stl,
+    vtk,
+};
 use twintac_sensor::Sensor;
 
-use crate::cache::{write_file, write_json};
+use crate::RunError;
+use crate::error::At;
+use crate::files::{write_file, write_json};
 
-/// The mesh of a sensor's gel.
-pub fn mesh_of(sensor: &Sensor, settings: &MeshSettings) -> Result<TetMesh> {
-    Ok(generate(
-        &sensor.gel.solid,
-        &sensor.surfaces,
-        &inclusions(sensor),
-        settings,
-    )?)
+/// Edges over the gel's height, where nothing else is asked for.
+const EDGES_PER_HEIGHT: f64 = 6.0;
+
+/// How fine a mesh is to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Fineness {
+    /// Six edges over the gel's height.
+    #[default]
+    Usual,
+    /// Edges of this length, mm.
+    EdgeMm(f64),
+    /// About so many nodes: met within a tenth.
+    Nodes(usize),
 }
 
-/// Writes a gel's mesh for Gmsh, ParaView and CAD, and its quality.
-pub fn write_mesh(folder: &Path, sensor: &Sensor, mesh: &TetMesh) -> Result<Quality> {
-    write_file(&folder.join("gel.msh"), gmsh::write(mesh).as_bytes())?;
-    write_file(&folder.join("gel.vtu"), vtk::write(mesh, &[], &[])?.as_bytes())?;
-    write_file(&folder.join("gel.stl"), &stl::write(mesh))?;
-    let quality = quality(sensor, mesh)?;
-    write_json(&folder.join("quality.json"), &quality)?;
-    Ok(quality)
+/// A sensor's gel, meshed.
+#[derive(Clone, Debug)]
+pub struct MeshedGel {
+    /// The mesh; z = 0 at the board.
+    pub mesh: TetMesh,
+    /// How good it is.
+    pub quality: Quality,
 }
 
-/// How good a gel's mesh is.
-pub fn quality(sensor: &Sensor, mesh: &TetMesh) -> Result<Quality> {
-    let volume_mm3 = gel_volume_mm3(&sensor.gel.solid, &sensor.surfaces, &inclusions(sensor));
-    Ok(Quality::of(mesh, Some(volume_mm3)))
+impl MeshedGel {
+    /// Meshes the gel of a sensor, around what stands in it.
+    ///
+    /// # Errors
+    /// A fineness that gives no mesh.
+    pub fn of(sensor: &Sensor, fineness: Fineness) -> Result<Self, RunError> {
+        let (solid, surfaces) = (&sensor.gel.solid, &sensor.surfaces);
+        let inclusions = inclusions(sensor);
+        let height_mm = solid.bounds_mm(surfaces).1.z;
+        let usual_mm = height_mm / EDGES_PER_HEIGHT;
+        let settings = |edge_mm: f64| MeshSettings {
+            edge_mm,
+            ..MeshSettings::default()
+        };
+        let mesh = match fineness {
+            Fineness::Usual => generate(solid, surfaces, &inclusions, &settings(usual_mm))?,
+            Fineness::EdgeMm(edge_mm) => generate(solid, surfaces, &inclusions, &settings(edge_mm))?,
+            Fineness::Nodes(nodes) => {
+                generate_with_node_count(solid, surfaces, &inclusions, &settings(usual_mm), nodes)?.0
+            }
+        };
+        let volume_mm3 = gel_volume_mm3(solid, surfaces, &inclusions);
+        let quality = Quality::of(&mesh, Some(volume_mm3));
+        Ok(Self { mesh, quality })
+    }
+
+    /// Writes `gel.msh` for Gmsh, `gel.vtu` for ParaView, `gel.stl` for CAD, and `quality.json`.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), RunError> {
+        write_file(&folder.join("gel.msh"), gmsh::write(&self.mesh).as_bytes())?;
+        write_file(
+            &folder.join("gel.vtu"),
+            vtk::write(&self.mesh, &[], &[])?.as_bytes(),
+        )?;
+        write_file(&folder.join("gel.stl"), &stl::write(&self.mesh))?;
+        write_json(&folder.join("quality.json"), &self.quality)
+    }
 }
 
-/// What stands in a gel.
-pub fn inclusions(sensor: &Sensor) -> Vec<Cuboid> {
-    sensor
-        .inclusions
-        .iter()
-        .map(|i| Cuboid {
-            min_mm: i.min_mm,
-            max_mm: i.max_mm,
-        })
-        .collect()
+/// How good the mesh in a Gmsh file is.
+///
+/// # Errors
+/// A file that cannot be read, or that is no mesh of tetrahedra.
+pub fn check_mesh(path: &Path) -> Result<Quality, RunError> {
+    let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
+    let mesh = gmsh::read(&bytes).at(|| path.display().to_string())?;
+    Ok(Quality::of(&mesh, None))
+}
+
+fn inclusions(sensor: &Sensor) -> Vec<Cuboid> {
+    let cuboid = |inclusion: &twintac_sensor::Inclusion| Cuboid {
+        min_mm: inclusion.min_mm,
+        max_mm: inclusion.max_mm,
+    };
+    sensor.inclusions.iter().map(cuboid).collect()
 }

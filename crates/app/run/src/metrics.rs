@@ -1,6 +1,6 @@
 //! `metrics.json`: the figures of a run, for programs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use digitac::{Errors, Evaluation, Repeatability, Score};
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ pub struct TwinFigures {
 }
 
 impl TwinFigures {
-    pub fn new(score: &Score, taxels: &[String]) -> Self {
+    pub(crate) fn new(score: &Score, taxels: &[String]) -> Self {
         Self {
             overall: Figures::from(&score.overall),
             by_file: score
@@ -101,7 +101,7 @@ pub struct Metrics {
     pub seed: u64,
 }
 
-pub fn baselines(evaluation: &Evaluation) -> BaselineFigures {
+pub(crate) fn baselines(evaluation: &Evaluation) -> BaselineFigures {
     BaselineFigures {
         zero: Figures::from(&evaluation.zero.overall),
         polynomial: evaluation
@@ -111,6 +111,12 @@ pub fn baselines(evaluation: &Evaluation) -> BaselineFigures {
     }
 }
 
-pub fn repeatability(found: Option<&Repeatability>) -> Option<Figures> {
+pub(crate) fn repeatability(found: Option<&Repeatability>) -> Option<Figures> {
     found.map(|repeatability| Figures::from(&repeatability.errors))
+}
+
+/// Names of taxels by their indices.
+pub(crate) fn names(indices: BTreeSet<usize>, taxels: &[String]) -> Vec<String> {
+    let name = |index: usize| taxels.get(index).cloned();
+    indices.into_iter().filter_map(name).collect()
 }

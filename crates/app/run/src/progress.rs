@@ -1,28 +1,83 @@
-//! Progress on standard error: a bar with an estimate on a terminal, and elsewhere only what must be known.
+//! Following long work.
 
-use std::io::{IsTerminal, Write};
-use std::time::Duration;
-
-use indicatif::{ProgressBar, ProgressStyle};
-
-/// A bar for `n_steps` steps of one stage. It draws nothing where standard error is not a terminal.
-pub fn bar(stage: &str, n_steps: u64) -> ProgressBar {
-    let template = "{prefix:>10} [{bar:30}] {pos}/{len} {msg} {elapsed}, {eta} left";
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::new(n_steps).with_style(style.progress_chars("=> "));
-    bar.set_prefix(stage.to_owned());
-    bar.enable_steady_tick(Duration::from_millis(500));
-    bar
+/// Whether a stage ran or was already there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Its inputs had changed, or it had never run.
+    Ran,
+    /// It was there.
+    Kept,
 }
 
-/// A line about what happened, on a terminal only.
-pub fn note(line: &str) {
-    if std::io::stderr().is_terminal() {
-        say(line);
+/// Hears how work goes that takes from seconds to minutes. Calls come from any thread, those of one piece of work in between its
+/// [`started`](Self::started) and [`finished`](Self::finished). There is one piece of work at a time. A method that is not written does
+/// nothing.
+///
+/// ```
+/// use std::sync::atomic::{AtomicUsize, Ordering};
+/// use twintac_run::Progress;
+///
+/// #[derive(Default)]
+/// struct Steps(AtomicUsize);
+///
+/// impl Progress for Steps {
+///     fn step(&self, _state: &str) {
+///         self.0.fetch_add(1, Ordering::Relaxed);
+///     }
+/// }
+/// ```
+pub trait Progress: Send + Sync {
+    /// Work starts. `n_steps` is 0 where steps come to light on the way.
+    fn started(&self, work: &str, n_steps: usize) {
+        let _ = (work, n_steps);
+    }
+
+    /// The work takes so many steps more.
+    fn more_steps(&self, n_steps: usize) {
+        let _ = n_steps;
+    }
+
+    /// A step is done. `state` says in a few words how things stand; it may be empty.
+    fn step(&self, state: &str) {
+        let _ = state;
+    }
+
+    /// The work is finished, or has failed.
+    fn finished(&self) {}
+
+    /// A stage of a run is done.
+    fn stage(&self, name: &str, outcome: Outcome) {
+        let _ = (name, outcome);
+    }
+
+    /// A person should know this, a sentence.
+    fn note(&self, text: &str) {
+        let _ = text;
     }
 }
 
-/// A line that is to be known wherever standard error goes.
-pub fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+/// Hears nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {}
+
+/// A piece of work; dropped, it is finished.
+pub(crate) struct Work<'a>(&'a dyn Progress);
+
+impl<'a> Work<'a> {
+    pub(crate) fn start(progress: &'a dyn Progress, work: &str, n_steps: usize) -> Self {
+        progress.started(work, n_steps);
+        Self(progress)
+    }
+
+    pub(crate) fn step(&self, state: &str) {
+        self.0.step(state);
+    }
+}
+
+impl Drop for Work<'_> {
+    fn drop(&mut self) {
+        self.0.finished();
+    }
 }

@@ -1,33 +1,18 @@
-//! A run: a folder in which a sensor's recordings become a judged twin, stage by stage.
-//!
-//! ```text
-//! run.json       what the run is made from, and its settings
-//! sensor.toml    the sensor description, as it was (surfaces beside it)
-//! logs/          of a bench: one for each press (MCAP)
-//! lab/           of the emulated bench: what its gel answers at the places of the presses
-//! recordings/    presses.parquet, summary.json
-//! mesh/          the gel's mesh for ParaView and Gmsh, quality.json
-//! simulation/    split.json, bench.json, and a table over depth for each place
-//! pairs/         measured and simulated frames side by side
-//! training/      a twin that never saw the test presses, a twin of all presses, losses
-//! evaluation/    the errors
-//! model/         the twin of all presses, to be used elsewhere
-//! report.html, metrics.json
-//! ```
+//! A run: a folder in which a sensor's recordings become a judged twin.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
-use crate::cache::{self, read_json, write_json};
-use crate::sensor_file::{SensorFile, read_sensor};
-
-use crate::settings::RunSettings;
+use crate::cache::{self, Inputs};
+use crate::error::At;
+use crate::files::{read_json, write_json};
+use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
 
 /// What a run is made from: `run.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -42,26 +27,38 @@ pub struct RunRecord {
     pub settings: RunSettings,
 }
 
-/// An open run.
+/// An open run. Its stages are methods, in the order in which they are called: one that brings recordings ([`import`](Self::import),
+/// [`emulate`](Self::emulate) or [`collect`](Self::collect)), then [`mesh`](Self::mesh), [`simulate`](Self::simulate), [`pair`](Self::pair),
+/// [`train`](Self::train), [`evaluate`](Self::evaluate), [`report`](Self::report).
+///
+/// A stage that is asked for again with the same inputs by the same [`Caller::program`] is not run again. A stage that was killed goes on
+/// with what it had finished.
+#[derive(Clone, Debug)]
 pub struct Run {
-    pub folder: PathBuf,
-    pub record: RunRecord,
-    pub sensor: SensorFile,
+    pub(crate) folder: PathBuf,
+    pub(crate) record: RunRecord,
+    pub(crate) sensor: SensorFile,
+    pub(crate) caller: Caller,
 }
 
 impl Run {
-    /// Starts a run, or takes up the one that the folder holds with new settings: stages that they do not touch are kept.
+    /// Starts a run, or takes up the one that the folder holds with new settings: stages that they do not touch are kept. `source` says
+    /// in words where the presses come from.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
     pub fn start(
         folder: &Path,
         sensor: SensorFile,
-        source: String,
+        source: &str,
         seed: u64,
         settings: RunSettings,
-    ) -> Result<Self> {
-        std::fs::create_dir_all(folder).with_context(|| format!("creating {}", folder.display()))?;
+        caller: Caller,
+    ) -> Result<Self, RunError> {
+        std::fs::create_dir_all(folder).map_err(RunError::file("creating", folder))?;
         let record = RunRecord {
             sensor: sensor.sensor.name.clone(),
-            source,
+            source: source.to_owned(),
             seed,
             settings,
         };
@@ -71,69 +68,129 @@ impl Run {
             folder: folder.to_owned(),
             record,
             sensor,
+            caller,
         })
     }
 
     /// Opens a run that was started.
-    pub fn open(folder: &Path) -> Result<Self> {
-        let record: RunRecord = read_json(&folder.join("run.json")).with_context(|| {
-            format!(
-                "{} is not a run; start one with `twintac import` or `twintac record`",
-                folder.display()
-            )
+    ///
+    /// # Errors
+    /// [`RunError::NotARun`]; a sensor description that cannot be read.
+    pub fn open(folder: &Path, caller: Caller) -> Result<Self, RunError> {
+        let record: RunRecord = read_json(&folder.join("run.json")).map_err(|source| RunError::NotARun {
+            folder: folder.to_owned(),
+            source: Box::new(source),
         })?;
-        let sensor = read_sensor(&folder.join("sensor.toml"))?;
+        let sensor = SensorFile::read(&folder.join("sensor.toml"))?;
         Ok(Self {
             folder: folder.to_owned(),
             record,
             sensor,
+            caller,
         })
     }
 
-    /// The folder of a stage.
-    pub fn stage(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
+    /// Runs all stages after the recordings, and says how well the twin did.
+    ///
+    /// # Errors
+    /// Those of the stages.
+    pub fn finish(&self) -> Result<Metrics, RunError> {
+        self.mesh()?;
+        self.simulate()?;
+        self.pair()?;
+        self.train()?;
+        let metrics = self.evaluate()?;
+        self.report()?;
+        Ok(metrics)
+    }
+
+    /// The run's folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// What the run is made from.
+    #[must_use]
+    pub fn record(&self) -> &RunRecord {
+        &self.record
+    }
+
+    /// The sensor whose twin is made.
+    #[must_use]
+    pub fn sensor(&self) -> &SensorFile {
+        &self.sensor
+    }
+
+    /// The folder of the twin of all presses: what [`digitac::Model::load`] reads.
+    #[must_use]
+    pub fn model_folder(&self) -> PathBuf {
+        self.folder.join("model")
+    }
+
+    /// The page that [`report`](Self::report) writes.
+    #[must_use]
+    pub fn report_path(&self) -> PathBuf {
+        self.folder.join("report.html")
+    }
+
+    /// The folder of the logs of a bench.
+    #[must_use]
+    pub fn logs_folder(&self) -> PathBuf {
+        self.folder.join("logs")
     }
 
     /// The presses, as recorded.
-    pub fn recording(&self) -> Result<Recording> {
+    ///
+    /// # Errors
+    /// There are none yet, or they cannot be read.
+    pub fn recording(&self) -> Result<Recording, RunError> {
         let path = self.stage("recordings").join("presses.parquet");
-        Recording::read_parquet(&path).map_err(Into::into)
+        Ok(Recording::read_parquet(&path)?)
+    }
+
+    /// The folder of a stage.
+    pub(crate) fn stage(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
     }
 
     /// The gel as the twin simulates it.
-    pub fn gel(&self) -> Gel {
+    pub(crate) fn gel(&self) -> Gel {
         Gel::new(
             Arc::clone(&self.sensor.sensor),
             self.record.settings.simulate.clone(),
         )
     }
 
+    pub(crate) fn progress(&self) -> &dyn Progress {
+        &*self.caller.progress
+    }
+
     /// Taxels whose readings are not to be trusted, by index: left out of headline figures.
-    pub fn left_out(&self) -> std::collections::BTreeSet<usize> {
+    pub(crate) fn left_out(&self) -> BTreeSet<usize> {
         left_out(&self.sensor.sensor)
     }
 
+    /// What every stage depends on.
+    pub(crate) fn inputs(&self) -> Inputs {
+        Inputs::new(&self.caller.program)
+    }
+
     /// Runs a stage unless it is there, and says so.
-    pub fn run_stage(
+    pub(crate) fn run_stage(
         &self,
         name: &str,
-        inputs: cache::Inputs,
-        work: impl FnOnce(&Path) -> Result<()>,
-    ) -> Result<()> {
-        let outcome =
-            cache::run(&self.stage(name), inputs, work).with_context(|| format!("stage `{name}`"))?;
-        let word = match outcome {
-            cache::Outcome::Ran => "done",
-            cache::Outcome::Kept => "kept",
-        };
-        crate::progress::note(&format!("{name:>11} {word}"));
+        inputs: Inputs,
+        work: impl FnOnce(&Path) -> Result<(), RunError>,
+    ) -> Result<(), RunError> {
+        let outcome = cache::run(&self.stage(name), inputs, work).at(|| format!("stage `{name}`"))?;
+        self.progress().stage(name, outcome);
         Ok(())
     }
 }
 
 /// Taxels of a sensor whose readings are not to be trusted, by index.
-pub fn left_out(sensor: &Sensor) -> std::collections::BTreeSet<usize> {
+pub(crate) fn left_out(sensor: &Sensor) -> BTreeSet<usize> {
     let taxels = sensor.taxels.iter().enumerate();
     taxels
         .filter(|(_, taxel)| taxel.doubtful.is_some())

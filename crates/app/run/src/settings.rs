@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use crate::RunError;
 use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings};
 use serde::{Deserialize, Serialize};
 use twintac_recording::{Control, Recording};
@@ -17,7 +17,7 @@ const DENSE_FROM: usize = 150;
 /// Side of those squares, mm.
 const DENSE_BLOCK_MM: f64 = 3.0;
 
-/// What `--settings FILE` may hold; each field has a default.
+/// Settings of every stage of a run; each has a default. A TOML file with those that differ has a table for each field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RunSettings {
@@ -36,8 +36,11 @@ pub struct RunSettings {
 }
 
 impl RunSettings {
-    /// The usual settings but for those in the file, if there is one.
-    pub fn read(path: Option<&Path>) -> Result<Self> {
+    /// The default settings but for those in the file, if there is one.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a field that there is not, a value that makes no sense.
+    pub fn read(path: Option<&Path>) -> Result<Self, RunError> {
         let Some(path) = path else {
             return Ok(Self::default());
         };
@@ -60,7 +63,7 @@ impl RunSettings {
     }
 
     /// The settings with all that depends on the seed, the sensor and the presses filled in.
-    pub fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
+    pub(crate) fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
         let mut resolved = self.clone();
         resolved.split.seed = seed;
         resolved.train.seed = seed;
@@ -93,7 +96,7 @@ fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
 }
 
 /// Whether the presses are static: one frame each, under a prescribed force.
-pub fn is_static(recording: &Recording) -> bool {
+pub(crate) fn is_static(recording: &Recording) -> bool {
     recording
         .presses
         .iter()

@@ -4,109 +4,53 @@ use std::io::Write;
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
-use serde::Serialize;
-use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, fit};
-use twintac_plot::{png, svg};
-use twintac_recording::Provenance;
+use twintac_calibrate::Fit;
+use twintac_run::calibration::{CsvPlace, Measured, calibrate, curve_of_csv, curves_of_file};
+use twintac_run::{RunSettings, SensorFile};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;
-use twintac_run::cache::{write_file, write_json};
-use twintac_run::calibration::{CsvPlace, Measured, material_file, of_csv, of_file, scene};
-use twintac_run::progress;
-use twintac_run::sensor_file::read_sensor;
-use twintac_run::settings::RunSettings;
-
-/// Pixels of the PNG for each of the plot's.
-const PNG_SCALE: f64 = 2.0;
-
-/// What `--json` prints, and `calibration.json` holds.
-#[derive(Serialize)]
-struct Answer<'a> {
-    sensor: &'a str,
-    /// Of the curves, without repetition.
-    provenance: Vec<Provenance>,
-    free: Vec<&'a str>,
-    settings: &'a SimulateSettings,
-    most_frames: usize,
-    #[serde(flatten)]
-    fit: &'a Fit,
-}
+use crate::progress::Bars;
 
 /// Fits, and prints or writes what came of it.
 pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
-    let described = read_sensor(&arguments.sensor)?;
-    let names: Vec<&str> = arguments.free.iter().map(|name| name.trim()).collect();
-    let free: Vec<Parameter> = names.iter().map(|name| Parameter::named(name)).collect();
+    let sensor = SensorFile::read(&arguments.sensor)?;
+    let names: Vec<String> = arguments.free.iter().map(|name| name.trim().to_owned()).collect();
     let settings = RunSettings::read(arguments.settings.as_deref())?.simulate;
-    let gel = Gel::new(Arc::clone(&described.sensor), settings.clone());
-    let (curves, mut provenance): (Vec<Curve>, Vec<Provenance>) =
-        measured(arguments, &gel, described.import())?.into_iter().unzip();
-    provenance.sort_unstable();
-    provenance.dedup();
-    let kinds: Vec<String> = provenance.iter().map(ToString::to_string).collect();
-    let kinds = kinds.join(" and ");
-    let fit_settings = FitSettings {
-        most_frames: arguments.frames,
-        ..FitSettings::default()
-    };
-    anyhow::ensure!(
-        arguments.frames >= 2,
-        "--frames is {}, expected 2 or more",
-        arguments.frames
-    );
-    let bar = progress::bar("fitting", u64::from(fit_settings.max_iterations));
-    let found = fit(&gel, &curves, &free, fit_settings, &mut |deviation| {
-        bar.inc(1);
-        bar.set_message(format!("deviation {:.3} %", 100.0 * deviation));
-    })?;
-    bar.finish_and_clear();
-    let answer = Answer {
-        sensor: &gel.sensor().name,
-        provenance,
-        free: names,
-        settings: &settings,
-        most_frames: arguments.frames,
-        fit: &found,
-    };
-    let n = curves.len();
-    let material = material_file(
-        &found,
-        &format!("{n} {kinds} curve{}", if n == 1 { "" } else { "s" }),
-    )?;
+    let measured = measured(arguments, &sensor, &settings)?;
+    let bars = Bars::default();
+    let found = calibrate(&sensor, settings, measured, &names, arguments.frames, &bars)?;
     if let Some(folder) = &arguments.out {
-        let plot = scene(&found, gel.sensor(), &kinds);
-        let picture = png(&plot, PNG_SCALE)?;
-        write_file(&folder.join("calibration.svg"), svg(&plot).as_bytes())?;
-        write_file(&folder.join("calibration.png"), &picture)?;
-        write_file(&folder.join("material.toml"), material.as_bytes())?;
-        write_json(&folder.join("calibration.json"), &answer)?;
+        found.write(folder, &sensor)?;
     }
-    tell(&found, &kinds)?;
+    tell(&found.fit, &found.kinds())?;
     if arguments.json {
-        super::print(&serde_json::to_string_pretty(&answer)?)
+        super::print(&serde_json::to_string_pretty(&found)?)
     } else {
-        super::print(material.trim_end())
+        super::print(found.material_toml()?.trim_end())
     }
 }
 
-fn measured(arguments: &Calibrate, gel: &Gel, import: Option<std::path::PathBuf>) -> Result<Vec<Measured>> {
+fn measured(
+    arguments: &Calibrate,
+    sensor: &SensorFile,
+    settings: &SimulateSettings,
+) -> Result<Vec<Measured>> {
     if let Some(path) = &arguments.curves {
-        return of_file(path, gel, import);
+        let gel = Gel::new(Arc::clone(&sensor.sensor), settings.clone());
+        return Ok(curves_of_file(path, &gel, sensor.import())?);
     }
+    let indenter = arguments.indenter.clone();
     let place = CsvPlace {
-        indenter: arguments
-            .indenter
-            .clone()
-            .context("give the indenter's name with --indenter")?,
+        indenter: indenter.context("give the indenter's name with --indenter")?,
         x_mm: arguments.x_mm,
         y_mm: arguments.y_mm,
     };
     let files = super::files::expand(&arguments.csv)?;
-    files
+    let curves = files
         .iter()
-        .map(|file| of_csv(file, &place, gel.sensor()))
-        .collect()
+        .map(|file| curve_of_csv(file, &place, &sensor.sensor));
+    Ok(curves.collect::<Result<_, _>>()?)
 }
 
 /// The unknowns with their intervals, and what to doubt, for people.

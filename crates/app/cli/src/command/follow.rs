@@ -3,59 +3,25 @@
 use std::io::Write;
 use std::path::Path;
 
-use anyhow::{Context, Result};
-use serde::Serialize;
-use twintac_protocol::PressPath;
-use twintac_recording::Provenance;
-use twintac_run::sensor_file::indenter;
+use anyhow::Result;
+use twintac_run::simulated::SimulatedPath;
 use twintac_simulate::{Followed, FollowedFrame, Gel};
 
-use twintac_run::progress;
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Answer<'a> {
-    provenance: Provenance,
-    sensor: &'a str,
-    path: &'a PressPath,
-    #[serde(flatten)]
-    followed: &'a Followed,
-}
+use crate::progress::Bars;
 
 /// Follows a path and prints what came of it.
 pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> Result<()> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
-    let press = PressPath::parse(&path.display().to_string(), &text)?;
-    let shape = indenter(gel.sensor(), &press.indenter)?;
-    for point in &press.points {
-        if gel.sensor().taxels.iter().any(|taxel| taxel.name == point.name) {
-            anyhow::bail!(
-                "{}: the point `{}` is called like a taxel; give it another name",
-                path.display(),
-                point.name
-            );
-        }
-    }
-    let bar = progress::bar("simulating", press.frames().len() as u64);
-    let followed = gel
-        .follow(shape, &press, &mut || bar.inc(1))
-        .with_context(|| format!("{}", path.display()))?;
-    bar.finish_and_clear();
+    let simulated = SimulatedPath::follow(gel, path, &Bars::default())?;
+    let followed = &simulated.followed;
     let mut out = std::io::stdout().lock();
     if as_json {
-        let answer = Answer {
-            provenance: Provenance::Simulated,
-            sensor: &gel.sensor().name,
-            path: &press,
-            followed: &followed,
-        };
-        serde_json::to_writer_pretty(&mut out, &answer)?;
+        serde_json::to_writer_pretty(&mut out, &simulated)?;
         writeln!(out)?;
     } else {
-        write_table(&mut out, &followed)?;
+        write_table(&mut out, followed)?;
     }
     if with_profile {
-        write_profile(&mut std::io::stderr().lock(), &followed)?;
+        write_profile(&mut std::io::stderr().lock(), followed)?;
     }
     match &followed.failure {
         Some(failure) => anyhow::bail!(

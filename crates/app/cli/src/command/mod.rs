@@ -14,9 +14,13 @@ mod simulate;
 mod stages;
 mod stream;
 
-use anyhow::Result;
+use std::sync::Arc;
+
+use anyhow::{Context, Result};
+use twintac_run::{Caller, sha256_of_file};
 
 use crate::arguments::{Command, SensorCommand};
+use crate::progress::Bars;
 
 pub(crate) use record::Stopped;
 
@@ -50,7 +54,12 @@ pub(crate) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// How this program was called, for the report.
-pub(crate) fn command_line() -> String {
-    std::env::args().collect::<Vec<_>>().join(" ")
+/// This program, for runs: its own file is what tells one build from another.
+pub(crate) fn caller() -> Result<Caller> {
+    let program = std::env::current_exe().context("finding this program's own file")?;
+    Ok(Caller {
+        program: sha256_of_file(&program)?,
+        command: std::env::args().collect::<Vec<_>>().join(" "),
+        progress: Arc::new(Bars::default()),
+    })
 }

@@ -3,12 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use twintac_run::{Run, RunSettings, SensorFile};
 
 use super::files::expand;
 use crate::arguments::{Import, Recorded, Reproduce, Start};
-use twintac_run::run::Run;
-use twintac_run::sensor_file::read_sensor;
-use twintac_run::settings::RunSettings;
 
 /// Runs every stage on recordings.
 pub(crate) fn run(arguments: &Reproduce) -> Result<()> {
@@ -22,7 +20,7 @@ pub(crate) fn import(arguments: &Import) -> Result<()> {
 }
 
 fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> {
-    let sensor = read_sensor(&recorded.sensor)?;
+    let sensor = SensorFile::read(&recorded.sensor)?;
     let settings = RunSettings::read(start.settings.as_deref())?;
     let files = expand(&recorded.recordings)?;
     let import = recorded
@@ -41,7 +39,7 @@ fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> 
         .filter_map(|file| file.file_name())
         .map(|name| name.to_string_lossy());
     let source = names.collect::<Vec<_>>().join(", ");
-    let run = Run::start(&folder, sensor, source, start.seed, settings)?;
+    let run = Run::start(&folder, sensor, &source, start.seed, settings, super::caller()?)?;
     run.import(&import, &files)?;
     Ok(run)
 }

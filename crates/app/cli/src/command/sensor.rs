@@ -1,13 +1,13 @@
 //! `twintac sensor show`.
 
 use anyhow::Result;
+use twintac_run::SensorFile;
 
 use crate::arguments::SensorShow;
-use twintac_run::sensor_file::read_sensor;
 
 /// Prints a description with units, and draws it.
 pub(crate) fn show(arguments: &SensorShow) -> Result<()> {
-    let sensor = read_sensor(&arguments.file)?.sensor;
+    let sensor = SensorFile::read(&arguments.file)?.sensor;
     super::print(sensor.describe().trim_end())?;
     if let Some(path) = &arguments.draw {
         twintac_drawing::drawing(&sensor).write(path)?;

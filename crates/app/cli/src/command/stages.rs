@@ -1,59 +1,48 @@
 //! The stages as commands of their own.
 
 use anyhow::{Context, Result};
-use twintac_recording::Recording;
+use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files, read_recordings};
 
 use super::files::expand;
 use crate::arguments::{Align, Evaluate, Report, Train};
-use twintac_run::metrics::Metrics;
-use twintac_run::run::Run;
-use twintac_run::stages::evaluation::{UnseenEvaluation, evaluate_elsewhere};
-use twintac_run::stages::recordings::import_files;
+use crate::progress::Bars;
 
 /// Everything after the recordings; prints the headline.
 pub(crate) fn finish(run: &Run) -> Result<()> {
-    run.mesh()?;
-    run.simulate()?;
-    run.pair()?;
-    run.train()?;
-    run.evaluate()?;
-    run.report(&super::command_line())?;
-    print_headline(run)
+    let metrics = run.finish()?;
+    print_headline(run, &metrics)
 }
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
 pub(crate) fn align(arguments: &Align) -> Result<()> {
-    let run = Run::open(&arguments.run)?;
+    let run = Run::open(&arguments.run, super::caller()?)?;
     run.simulate()?;
-    run.pair()
+    Ok(run.pair()?)
 }
 
 /// `twintac train`.
 pub(crate) fn train(arguments: &Train) -> Result<()> {
-    Run::open(&arguments.run)?.train()
+    Ok(Run::open(&arguments.run, super::caller()?)?.train()?)
 }
 
 /// `twintac evaluate`: a run's held-out presses, or a model on recordings from elsewhere.
 pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
     if let Some(folder) = &arguments.run {
-        let run = Run::open(folder)?;
-        run.evaluate()?;
+        let run = Run::open(folder, super::caller()?)?;
+        let metrics = run.evaluate()?;
         if arguments.json {
-            let (_, metrics) = run.evaluation()?;
             return super::print(&serde_json::to_string_pretty(&metrics)?);
         }
-        return print_headline(&run);
+        return print_headline(&run, &metrics);
     }
-    let model = arguments
-        .model
-        .as_ref()
-        .context("give a model with --model, or a run with --run")?;
+    let model = arguments.model.as_ref();
+    let model = model.context("give a model with --model, or a run with --run")?;
     let files = expand(&arguments.recordings)?;
     let recording = match &arguments.import {
         Some(import) => import_files(import, &files)?.0,
-        None => read_presses(&files)?,
+        None => read_recordings(&files)?,
     };
-    let found = evaluate_elsewhere(model, &recording)?;
+    let found = evaluate_elsewhere(model, &recording, &Bars::default())?;
     if arguments.json {
         return super::print(&serde_json::to_string_pretty(&found)?);
     }
@@ -62,32 +51,13 @@ pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
 
 /// `twintac report`.
 pub(crate) fn report(arguments: &Report) -> Result<()> {
-    Run::open(&arguments.run)?.report(&super::command_line())
+    Ok(Run::open(&arguments.run, super::caller()?)?.report()?)
 }
 
-fn read_presses(files: &[std::path::PathBuf]) -> Result<Recording> {
-    let mut all: Option<Recording> = None;
-    for file in files {
-        if file.extension().is_none_or(|extension| extension != "parquet") {
-            anyhow::bail!(
-                "{} is no Parquet file; say with --import how to read it",
-                file.display()
-            );
-        }
-        let next = Recording::read_parquet(file)?;
-        match &mut all {
-            None => all = Some(next),
-            Some(all) => all.append(next).with_context(|| file.display().to_string())?,
-        }
-    }
-    all.context("there are no recordings")
-}
-
-fn print_headline(run: &Run) -> Result<()> {
-    let (_, metrics) = run.evaluation()?;
-    super::print(&headline(&metrics))?;
-    super::print(&format!("report  {}", run.folder.join("report.html").display()))?;
-    super::print(&format!("model   {}", run.folder.join("model").display()))
+fn print_headline(run: &Run, metrics: &Metrics) -> Result<()> {
+    super::print(&headline(metrics))?;
+    super::print(&format!("report  {}", run.report_path().display()))?;
+    super::print(&format!("model   {}", run.model_folder().display()))
 }
 
 fn headline(metrics: &Metrics) -> String {

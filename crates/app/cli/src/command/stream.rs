@@ -6,8 +6,8 @@ use anyhow::Result;
 use twintac_live::{Format, Known, Live, StopAfter, Tally, dashboard, stream_rows};
 
 use crate::arguments::{RowFormat, Stream};
-use twintac_run::progress::say;
-use twintac_run::sensor_file::SensorFile;
+use crate::progress::say;
+use twintac_run::SensorFile;
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
     let sensor = SensorFile::or_phystac(arguments.sensor.as_deref())?;

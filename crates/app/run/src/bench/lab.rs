@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
 use glam::DVec3;
 use phystac::PhysTac;
 use phystac::recovery::{free_bus, reset_switch};
@@ -19,76 +18,86 @@ use twintac_rig::{BenchClock, netft};
 use twintac_shape::Pose;
 
 use super::{Addresses, OpenBench, connect};
-use crate::run::Run;
+use crate::error::At;
+use crate::{Run, RunError};
 
-/// What `--faults FILE` holds.
+/// What a file of faults holds.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FaultsFile {
     faults: Vec<ScheduledFault>,
 }
 
-/// Reads what is to go wrong, from a file.
-pub fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>> {
+/// Reads what is to go wrong on the emulated bench, from a TOML file with tables `[[faults]]`.
+///
+/// # Errors
+/// A file that cannot be read or is wrong; a fault that makes no sense.
+pub fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>, RunError> {
     let faults = twintac_config::read::<FaultsFile>(file)?.value.faults;
-    check_faults(&faults).with_context(|| file.display().to_string())?;
+    check_faults(&faults).at(|| file.display().to_string())?;
     Ok(faults)
 }
 
-/// Computes what the gel answers at the places of the plans, and switches the emulated devices on.
-pub fn open(
-    run: &Run,
-    reality: &Reality,
-    plans: &[PressPlan],
-    settings: &PressSettings,
-    faults: Vec<ScheduledFault>,
-) -> Result<OpenBench> {
-    let sensor = &run.sensor.sensor;
-    let lab = Lab::new(Arc::clone(sensor), reality.clone());
-    let tables = run.live_tables(&lab, reality, plans)?;
-    let placement = &settings.placement;
-    let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);
+impl OpenBench {
+    /// Computes what the emulated gel answers at the places of the plans, kept in the run's folder, and switches the emulated devices on,
+    /// with faults.
+    ///
+    /// # Errors
+    /// A place that the gel cannot be pressed at; a sensor that is not read this way.
+    pub fn emulate(
+        run: &Run,
+        reality: &Reality,
+        plans: &[PressPlan],
+        settings: &PressSettings,
+        faults: Vec<ScheduledFault>,
+    ) -> Result<Self, RunError> {
+        let sensor = &run.sensor.sensor;
+        let lab = Lab::new(Arc::clone(sensor), reality.clone());
+        let tables = run.live_tables(&lab, reality, plans)?;
+        let placement = &settings.placement;
+        let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);
 
-    let board = emulated_board(sensor);
-    let mut devices = EmulatedBenchSettings {
-        board,
-        faults,
-        ..EmulatedBenchSettings::default()
-    };
-    devices.board.barometer.noise_pa = 1e3 * reality.readout.noise_kpa;
-    devices.board.seed = reality.seed;
-    devices.force.noise_n = reality.robot.force_noise_n;
-    devices.force.seed = reality.seed;
-    devices.robot.first_pose = placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
-    let lab_clock = LabClock::real();
-    let devices = EmulatedBench::start(lab_clock.clone(), gel, &devices)?;
+        let board = emulated_board(sensor);
+        let mut devices = EmulatedBenchSettings {
+            board,
+            faults,
+            ..EmulatedBenchSettings::default()
+        };
+        devices.board.barometer.noise_pa = 1e3 * reality.readout.noise_kpa;
+        devices.board.seed = reality.seed;
+        devices.force.noise_n = reality.robot.force_noise_n;
+        devices.force.seed = reality.seed;
+        devices.robot.first_pose = placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
+        let lab_clock = LabClock::real();
+        let devices = EmulatedBench::start(lab_clock.clone(), gel, &devices)?;
 
-    let configuration = netft::Client::read_configuration(&devices.force.page().to_string())?;
-    let addresses = Addresses {
-        commands: devices.robot.commands(),
-        reports: devices.robot.reports(ReportPort::Development),
-        force: (devices.force.requests(), configuration),
-    };
-    let clock = BenchClock::start();
-    let mut driver = twintac_live::driver_settings(sensor)?;
-    driver.conversion_us = settings.conversion_us;
-    let taxels = PhysTac::new(devices.board.bus(), lab_clock, move || clock.now_us(), driver);
-    let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
-    let free = move |_: &mut _, delay: &mut LabClock| {
-        // A bus that stays hung fails the next frame as well.
-        let _ = reset_switch(&mut reset, delay);
-        let _ = free_bus(&mut scl, &mut sda, delay);
-    };
-    let known = Known::default().or_emulated(sensor);
-    let (bench, transfer, notes) = connect(&addresses, taxels, free, sensor, &known, clock)
-        .context("connecting to the emulated bench")?;
-    Ok(OpenBench {
-        devices: bench,
-        transfer,
-        provenance: Provenance::Emulated,
-        notes,
-        robot: addresses.commands,
-        selector: Some(selector),
-        _emulated: Some(devices),
-    })
+        let configuration = netft::Client::read_configuration(&devices.force.page().to_string())?;
+        let addresses = Addresses {
+            commands: devices.robot.commands(),
+            reports: devices.robot.reports(ReportPort::Development),
+            force: (devices.force.requests(), configuration),
+        };
+        let clock = BenchClock::start();
+        let mut driver = twintac_live::driver_settings(sensor)?;
+        driver.conversion_us = settings.conversion_us;
+        let taxels = PhysTac::new(devices.board.bus(), lab_clock, move || clock.now_us(), driver);
+        let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
+        let free = move |_: &mut _, delay: &mut LabClock| {
+            // A bus that stays hung fails the next frame as well.
+            let _ = reset_switch(&mut reset, delay);
+            let _ = free_bus(&mut scl, &mut sda, delay);
+        };
+        let known = Known::default().or_emulated(sensor);
+        let connected = connect(&addresses, taxels, free, sensor, &known, clock)
+            .at(|| "connecting to the emulated bench".to_owned())?;
+        Ok(Self {
+            devices: connected.bench,
+            transfer: connected.transfer,
+            provenance: Provenance::Emulated,
+            notes: connected.notes,
+            robot: addresses.commands,
+            selector: Some(selector),
+            _emulated: Some(devices),
+        })
+    }
 }

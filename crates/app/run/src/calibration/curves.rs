@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
 use glam::DQuat;
 use serde::Deserialize;
 use twintac_calibrate::{Curve, Quantity, Signal};
@@ -10,6 +9,9 @@ use twintac_recording::{Control, Import, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
+use crate::RunError;
+use crate::error::At;
+use crate::files::read_text;
 use crate::sensor_file::indenter;
 
 /// Recorded frames before and after the press are kept up to this far above the gel, mm.
@@ -79,8 +81,16 @@ enum Signals {
     Both,
 }
 
-/// The curves that a file names; paths in it are relative to it.
-pub fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result<Vec<Measured>> {
+/// The curves that a TOML file names, in tables `[[curves]]` and `[[recordings]]`; paths in it are relative to it. `sensor_import` says how
+/// to read CSV recordings for which the file does not.
+///
+/// # Errors
+/// A file that cannot be read or is wrong; one that names no curves.
+pub fn curves_of_file(
+    path: &Path,
+    gel: &Gel,
+    sensor_import: Option<PathBuf>,
+) -> Result<Vec<Measured>, RunError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let file = twintac_config::read::<CurvesFile>(path)?.value;
     let mut curves = Vec::new();
@@ -90,35 +100,36 @@ pub fn of_file(path: &Path, gel: &Gel, sensor_import: Option<PathBuf>) -> Result
             x_mm: curve.x_mm,
             y_mm: curve.y_mm,
         };
-        curves.push(of_csv(&folder.join(&curve.file), &place, gel.sensor())?);
+        curves.push(curve_of_csv(&folder.join(&curve.file), &place, gel.sensor())?);
     }
     for recorded in &file.recordings {
         let import = recorded.import.as_ref().map(|import| folder.join(import));
         let import = import.or_else(|| sensor_import.clone());
         let found = of_recording(recorded, &folder.join(&recorded.file), import.as_deref(), gel);
-        curves.extend(found.with_context(|| path.display().to_string())?);
+        curves.extend(found.at(|| path.display().to_string())?);
     }
     if curves.is_empty() {
-        bail!(
-            "{}: names no curves; give [[curves]] or [[recordings]]",
-            path.display()
-        );
+        return Err(wrong(path, "names no curves; give [[curves]] or [[recordings]]"));
     }
     Ok(curves)
 }
 
-/// One curve from a CSV file, which is taken to be measured on hardware.
-pub fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured> {
-    let at = || path.display().to_string();
-    let mut reader = csv::Reader::from_path(path).with_context(|| format!("reading {}", at()))?;
-    let headers = reader.headers().with_context(at)?.clone();
+/// One curve from a CSV file with columns `time_s`, `depth_mm`, and `force_n` or `<taxel>_kpa`. It is taken to be measured on hardware.
+///
+/// # Errors
+/// A file that cannot be read, a missing column, a cell that is no finite number, an indenter that the sensor does not have.
+pub fn curve_of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured, RunError> {
+    let unreadable = |source: csv::Error| RunError::Csv {
+        path: path.to_owned(),
+        source,
+    };
+    let mut reader = csv::Reader::from_path(path).map_err(unreadable)?;
+    let headers = reader.headers().map_err(unreadable)?.clone();
     let column = |name: &str| headers.iter().position(|header| header.trim() == name);
     let needed = |name: &str| {
-        column(name).with_context(|| {
-            format!(
-                "{}: there is no column `{name}`; expected time_s, depth_mm, and force_n or <taxel>_kpa",
-                at()
-            )
+        column(name).ok_or_else(|| {
+            let expected = "expected time_s, depth_mm, and force_n or <taxel>_kpa";
+            wrong(path, &format!("there is no column `{name}`; {expected}"))
         })
     };
     let (time, depth) = (needed("time_s")?, needed("depth_mm")?);
@@ -135,7 +146,9 @@ pub fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured
         name: path
             .file_stem()
             .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
-        shape: indenter(sensor, &place.indenter).with_context(at)?.clone(),
+        shape: indenter(sensor, &place.indenter)
+            .at(|| path.display().to_string())?
+            .clone(),
         x_mm: place.x_mm,
         y_mm: place.y_mm,
         rotation: DQuat::IDENTITY,
@@ -152,16 +165,16 @@ pub fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured
     for (row, record) in reader.records().enumerate() {
         // The header is the first line.
         let line = row + 2;
-        let record = record.with_context(at)?;
-        let number = |column: usize| -> Result<f64> {
+        let record = record.map_err(unreadable)?;
+        let number = |column: usize| -> Result<f64, RunError> {
             let text = record.get(column).unwrap_or_default().trim();
             let parsed: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite());
-            parsed.with_context(|| {
-                format!(
+            parsed.ok_or_else(|| {
+                RunError::Input(format!(
                     "{}:{line}: `{}` is `{text}`, expected a finite number",
-                    at(),
+                    path.display(),
                     &headers[column]
-                )
+                ))
             })
         };
         curve.time_s.push(number(time)?);
@@ -173,27 +186,35 @@ pub fn of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured
     Ok((curve, Provenance::Real))
 }
 
-fn of_recording(recorded: &Recorded, path: &Path, import: Option<&Path>, gel: &Gel) -> Result<Vec<Measured>> {
+/// A file that is not as it should be.
+fn wrong(path: &Path, problem: &str) -> RunError {
+    RunError::Input(format!("{}: {problem}", path.display()))
+}
+
+fn of_recording(
+    recorded: &Recorded,
+    path: &Path,
+    import: Option<&Path>,
+    gel: &Gel,
+) -> Result<Vec<Measured>, RunError> {
     let sensor = gel.sensor();
     let is_parquet = path.extension().is_some_and(|extension| extension == "parquet");
     let recording = if is_parquet {
         Recording::read_parquet(path)?
     } else {
-        let import = import
-            .with_context(|| format!("{}: nothing says how to read it; give `import`", path.display()))?;
-        let text =
-            std::fs::read_to_string(import).with_context(|| format!("reading {}", import.display()))?;
-        Import::parse(&import.display().to_string(), &text)?
+        let import = import.ok_or_else(|| wrong(path, "nothing says how to read it; give `import`"))?;
+        Import::parse(&import.display().to_string(), &read_text(import)?)?
             .read_csv(path)?
             .0
     };
     if recording.sensor != sensor.name {
-        bail!(
-            "{}: is a recording of `{}`, expected `{}`",
-            path.display(),
-            recording.sensor,
-            sensor.name
-        );
+        return Err(wrong(
+            path,
+            &format!(
+                "is a recording of `{}`, expected `{}`",
+                recording.sensor, sensor.name
+            ),
+        ));
     }
     let named: Vec<&Press> = if recorded.presses.is_empty() {
         recording.presses.iter().collect()
@@ -203,34 +224,37 @@ fn of_recording(recorded: &Recorded, path: &Path, import: Option<&Path>, gel: &G
             .iter()
             .map(|name| {
                 let found = recording.presses.iter().find(|press| press.name == *name);
-                found.with_context(|| format!("{}: there is no press `{name}`", path.display()))
+                found.ok_or_else(|| wrong(path, &format!("there is no press `{name}`")))
             })
-            .collect::<Result<_>>()?
+            .collect::<Result<_, RunError>>()?
     };
     let chosen: Vec<usize> = recorded
         .taxels
         .iter()
         .map(|name| {
             let found = recording.taxels.iter().position(|taxel| taxel == name);
-            found.with_context(|| format!("{}: there is no taxel `{name}`", path.display()))
+            found.ok_or_else(|| wrong(path, &format!("there is no taxel `{name}`")))
         })
-        .collect::<Result<_>>()?;
+        .collect::<Result<_, RunError>>()?;
     named
         .into_iter()
         .map(|press| {
             let curve = of_press(press, recorded.signals, &chosen, gel);
-            Ok((curve.with_context(|| press.name.clone())?, recording.provenance))
+            Ok((curve.at(|| press.name.clone())?, recording.provenance))
         })
         .collect()
 }
 
-fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Result<Curve> {
+fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Result<Curve, RunError> {
     if press.control != Control::Pose {
-        bail!("was made with a prescribed force: how deep it went is not known, and a curve needs that");
+        return Err(RunError::Input(
+            "was made with a prescribed force: how deep it went is not known, and a curve needs that"
+                .to_owned(),
+        ));
     }
     let shape = indenter(gel.sensor(), &press.indenter)?;
     let Some(first) = press.gel_from_indenter.first() else {
-        bail!("has no frames");
+        return Err(RunError::Input("has no frames".to_owned()));
     };
     let touch_mm = gel.touch(shape, first)?.position_mm.z;
     let depth = |frame: usize| touch_mm - press.gel_from_indenter[frame].position_mm.z;
@@ -238,15 +262,14 @@ fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Res
         .filter(|&frame| depth(frame) > -ABOVE_MM)
         .collect();
     let (Some(&from), Some(&to)) = (near.first(), near.last()) else {
-        bail!("never comes near the gel");
+        return Err(RunError::Input("never comes near the gel".to_owned()));
     };
     let frames = from..=to;
     let mut found = Vec::new();
     if signals != Signals::Readings {
-        let force_n = press
-            .force_n
-            .as_ref()
-            .context("no force was recorded; ask for readings")?;
+        let force_n = press.force_n.as_ref();
+        let force_n =
+            force_n.ok_or_else(|| RunError::Input("no force was recorded; ask for readings".to_owned()))?;
         found.push(Signal {
             quantity: Quantity::Force,
             values: force_n[frames.clone()].to_vec(),
@@ -296,6 +319,8 @@ fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Res
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::print_stdout)] // a test that cannot set itself up has failed
+    use std::error::Error;
+
     use super::*;
 
     #[test]
@@ -336,8 +361,14 @@ mod tests {
         assert!((deepest_mm - 1.92).abs() < 0.02, "{deepest_mm}");
         assert!(curve.depth_mm.iter().all(|depth_mm| *depth_mm > -0.3));
         let no_force = read(&recorded(&[name], Signals::Force)).unwrap_err();
-        assert!(format!("{no_force:#}").contains("no force was recorded"));
+        assert!(
+            no_force
+                .source()
+                .unwrap()
+                .to_string()
+                .contains("no force was recorded")
+        );
         let no_press = read(&recorded(&["nothing"], Signals::Readings)).unwrap_err();
-        assert!(format!("{no_press:#}").contains("there is no press `nothing`"));
+        assert!(no_press.to_string().contains("there is no press `nothing`"));
     }
 }

@@ -1,11 +1,10 @@
 //! A fitted material as a file that sensor descriptions can name.
 
-use anyhow::Result;
 use toml::{Table, Value};
 use twintac_calibrate::Fit;
 
 /// The file; `measured` says what it was fitted to.
-pub fn material_file(fit: &Fit, measured: &str) -> Result<String> {
+pub(crate) fn material_file(fit: &Fit, measured: &str) -> Result<String, toml::ser::Error> {
     let of_material = || {
         fit.unknowns
             .iter()
@@ -39,7 +38,7 @@ pub fn material_file(fit: &Fit, measured: &str) -> Result<String> {
     if let Value::Table(table) = &mut file {
         table.insert("source".into(), source.into());
     }
-    Ok(toml::to_string(&file)?)
+    toml::to_string(&file)
 }
 
 /// Leaves six significant digits of all numbers.

@@ -9,7 +9,7 @@ use twintac_sensor::Sensor;
 const MOST_SHOWN: usize = 6;
 
 /// The plot of a fit to curves of some kinds of provenance: a panel of each signal, and one of its residuals below.
-pub fn scene(fit: &Fit, sensor: &Sensor, kinds: &str) -> Scene {
+pub(crate) fn scene(fit: &Fit, sensor: &Sensor, kinds: &str) -> Scene {
     let rises = |signal: &FittedSignal| signal.depth_mm.windows(2).all(|pair| pair[1] > pair[0]);
     let over_depth = fit.material.prony.is_empty() && fit.signals.iter().all(rises);
     let mut panels = Vec::new();

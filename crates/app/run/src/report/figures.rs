@@ -45,7 +45,7 @@ fn three(evaluation: &Evaluation) -> Vec<(&'static str, &PressEvaluation)> {
 }
 
 /// Readings over time of the best, the median and the worst press.
-pub fn series(evaluation: &Evaluation, presses: &[PairedPress]) -> Vec<PressSeries> {
+pub(crate) fn series(evaluation: &Evaluation, presses: &[PairedPress]) -> Vec<PressSeries> {
     three(evaluation)
         .into_iter()
         .filter(|(_, press)| press.time_s.len() > 1)
@@ -70,7 +70,7 @@ pub fn series(evaluation: &Evaluation, presses: &[PairedPress]) -> Vec<PressSeri
 }
 
 /// Pressure maps at the peaks of the same presses.
-pub fn peaks(evaluation: &Evaluation, sensor: &Sensor) -> Vec<PressPeak> {
+pub(crate) fn peaks(evaluation: &Evaluation, sensor: &Sensor) -> Vec<PressPeak> {
     three(evaluation)
         .into_iter()
         .filter_map(|(label, press)| {
@@ -117,7 +117,7 @@ fn taxels_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
 }
 
 /// Errors over the gel, for static presses.
-pub fn places(evaluation: &Evaluation, sensor: &Sensor) -> Option<PlaceErrors> {
+pub(crate) fn places(evaluation: &Evaluation, sensor: &Sensor) -> Option<PlaceErrors> {
     let is_static = evaluation.presses.iter().all(|press| press.time_s.len() == 1);
     let touched = ranked(evaluation);
     (is_static && !touched.is_empty()).then(|| PlaceErrors {
@@ -129,7 +129,7 @@ pub fn places(evaluation: &Evaluation, sensor: &Sensor) -> Option<PlaceErrors> {
 }
 
 /// Usable readings, measured and predicted, thinned evenly.
-pub fn agreement(evaluation: &Evaluation) -> Agreement {
+pub(crate) fn agreement(evaluation: &Evaluation) -> Agreement {
     let mut agreement = Agreement::default();
     for press in &evaluation.presses {
         for ((measured, predicted), valid) in press
@@ -151,7 +151,7 @@ pub fn agreement(evaluation: &Evaluation) -> Agreement {
 }
 
 /// Mean signed error of a taxel, % of the largest reading of all presses shown.
-pub fn bias_percent(evaluation: &Evaluation, taxel: usize) -> f64 {
+pub(crate) fn bias_percent(evaluation: &Evaluation, taxel: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0_f64);
     for press in &evaluation.presses {
         for ((measured, predicted), valid) in press
@@ -178,7 +178,7 @@ fn largest_kpa(evaluation: &Evaluation) -> f64 {
 }
 
 /// Errors of the nearest taxel by depth, % of the largest reading of all presses shown.
-pub fn depths(evaluation: &Evaluation, left_out: &BTreeSet<usize>) -> Vec<DepthError> {
+pub(crate) fn depths(evaluation: &Evaluation, left_out: &BTreeSet<usize>) -> Vec<DepthError> {
     let deepest_mm = evaluation
         .presses
         .iter()

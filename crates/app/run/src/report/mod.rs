@@ -2,7 +2,6 @@
 
 mod figures;
 
-use anyhow::Result;
 use digitac::{Bench, PairedPress};
 use twintac_depth_table::DepthTable;
 use twintac_plot::page::Fact;
@@ -14,10 +13,11 @@ use twintac_report::data::{
 };
 use twintac_report::{Provenance as Badge, ReportData};
 
-use crate::cache::{read_json, read_record, write_file};
+use crate::cache::read_record;
+use crate::files::{read_json, write_file};
 use crate::metrics::{Figures, Metrics};
-use crate::run::Run;
 use crate::stages::training::VariantRecord;
+use crate::{Run, RunError};
 
 /// Stages in the order in which they run.
 const STAGES: [&str; 6] = [
@@ -30,9 +30,12 @@ const STAGES: [&str; 6] = [
 ];
 
 impl Run {
-    /// Writes `report.html` and `metrics.json`; the report names the command that made it.
-    pub fn report(&self, command: &str) -> Result<()> {
-        let (held_out, metrics) = self.evaluation()?;
+    /// Writes `report.html`, and `metrics.json` beside it.
+    ///
+    /// # Errors
+    /// The run is not evaluated yet; a file that cannot be written.
+    pub fn report(&self) -> Result<(), RunError> {
+        let (held_out, metrics) = (self.held_out()?, self.metrics()?);
         let recording = self.recording()?;
         let simulation = self.simulation(&recording)?;
         let presses = self.pairs()?;
@@ -41,7 +44,7 @@ impl Run {
         let data = ReportData {
             title: format!("Digital twin of {}", sensor.name),
             provenance: badge(metrics.provenance),
-            command: command.to_owned(),
+            command: self.caller.command.clone(),
             versions: vec![
                 Fact::new("twintac", env!("CARGO_PKG_VERSION")),
                 Fact::new("presses", &self.record.source),
@@ -66,11 +69,17 @@ impl Run {
             bench: Some(bench(&simulation.bench, &recording.taxels)),
             warps: some_warps(&presses, &simulation.split.test),
             simulation: Some(quality(&simulation.tables)),
-            settings: serde_json::to_string_pretty(&self.record.settings)?,
+            settings: serde_json::to_string_pretty(&self.record.settings).map_err(|source| {
+                RunError::Json {
+                    what: "the settings".to_owned(),
+                    source,
+                }
+            })?,
             stages: self.stages(),
         };
-        twintac_report::page(&data).write(&self.folder.join("report.html"))?;
-        let figures = std::fs::read(self.stage("evaluation").join("metrics.json"))?;
+        twintac_report::page(&data).write(&self.report_path())?;
+        let figures = self.stage("evaluation").join("metrics.json");
+        let figures = std::fs::read(&figures).map_err(RunError::file("reading", &figures))?;
         write_file(&self.folder.join("metrics.json"), &figures)
     }
 
@@ -109,7 +118,7 @@ impl Run {
 }
 
 /// Alignment of presses, as the report shows it.
-pub fn warps(presses: &[PairedPress]) -> Vec<WarpPath> {
+pub(crate) fn warps(presses: &[PairedPress]) -> Vec<WarpPath> {
     presses
         .iter()
         .map(|press| WarpPath {
@@ -138,7 +147,7 @@ fn shift_s(press: &PairedPress) -> Vec<f64> {
 }
 
 /// The alignment of all presses as a picture.
-pub fn warp_plot(warps: &[WarpPath]) -> Scene {
+pub(crate) fn warp_plot(warps: &[WarpPath]) -> Scene {
     let series = warps.iter().map(|warp| Series {
         name: String::new(),
         points: warp

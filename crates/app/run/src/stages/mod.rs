@@ -1,7 +1,7 @@
 //! The stages of a run, a file each.
 
-pub mod evaluation;
+mod evaluation;
 mod pairs;
-pub mod recordings;
-pub mod simulation;
-pub mod training;
+pub(crate) mod recordings;
+mod simulation;
+pub(crate) mod training;

@@ -1,15 +1,19 @@
 //! Stage `pairs`: measured and simulated frames on one clock.
 
-use anyhow::{Context, Result};
 use digitac::{PairedPress, pair};
 
-use crate::cache::{Inputs, read_json, write_json};
-use crate::run::Run;
+use crate::error::At;
+use crate::files::{read_json, write_json};
+use crate::{Run, RunError};
 
 impl Run {
     /// Aligns every press with its simulation, and pairs their frames.
-    pub fn pair(&self) -> Result<()> {
-        let inputs = Inputs::new()?
+    ///
+    /// # Errors
+    /// The recordings or their simulations are not there yet.
+    pub fn pair(&self) -> Result<(), RunError> {
+        let inputs = self
+            .inputs()
             .settings("pair", &self.record.settings.pair)?
             .stage(&self.stage("recordings"))?
             .stage(&self.stage("simulation"))?;
@@ -31,7 +35,7 @@ impl Run {
     }
 
     /// The paired presses.
-    pub fn pairs(&self) -> Result<Vec<PairedPress>> {
-        read_json(&self.stage("pairs").join("paired.json")).context("run `twintac align` first")
+    pub(crate) fn pairs(&self) -> Result<Vec<PairedPress>, RunError> {
+        read_json(&self.stage("pairs").join("paired.json")).at(|| "run `twintac align` first".to_owned())
     }
 }

@@ -3,24 +3,27 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use twintac_lab::{Lab, LabError, LiveTable, Reality};
 use twintac_log::ReadOptions;
-use twintac_protocol::{LoadPlan, PressPlan, Protocol, Target};
+use twintac_protocol::PressPlan;
 use twintac_recording::{Import, ImportSummary, Recording};
-use twintac_sensor::Sensor;
 
-use crate::cache::{Inputs, read_json, write_json};
-use crate::progress;
-use crate::run::Run;
+use crate::error::At;
+use crate::files::{read_json, read_text, write_json};
+use crate::progress::Work;
+use crate::{Planned, Progress, Run, RunError};
 
 impl Run {
-    /// Imports files; all of them must belong to the run's sensor.
-    pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<()> {
-        let mut inputs = Inputs::new()?.file(import)?;
+    /// Makes the run's recordings of files of any laboratory, which the description `import` says how to read. All of them must belong to
+    /// the run's sensor.
+    ///
+    /// # Errors
+    /// A file that cannot be read as described, or that is of another sensor.
+    pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<(), RunError> {
+        let mut inputs = self.inputs().file(import)?;
         for file in files {
             inputs = inputs.file(file)?;
         }
@@ -32,9 +35,18 @@ impl Run {
         })
     }
 
-    /// Records planned presses and weights on the emulated bench, each kept as soon as it is done.
-    pub fn record(&self, reality: &Reality, plans: &[PressPlan], loads: &[LoadPlan]) -> Result<()> {
-        let inputs = Inputs::new()?
+    /// Computes what the emulated bench would record of planned presses and weights, without devices and without waiting. Each is kept as
+    /// soon as it is done.
+    ///
+    /// # Errors
+    /// A press that the gel cannot carry out.
+    pub fn emulate(&self, reality: &Reality, planned: &Planned) -> Result<(), RunError> {
+        let Planned {
+            presses: plans,
+            loads,
+        } = planned;
+        let inputs = self
+            .inputs()
             .settings("reality", reality)?
             .settings("plans", &plans)?
             .settings("loads", &loads)?
@@ -43,6 +55,7 @@ impl Run {
             let lab = Lab::new(Arc::clone(&self.sensor.sensor), reality.clone());
             let keep = folder.join("presses");
             let mut presses = kept(
+                self.progress(),
                 "recording",
                 plans,
                 |plan| &plan.name,
@@ -50,6 +63,7 @@ impl Run {
                 |plan| lab.press(plan),
             )?;
             presses.extend(kept(
+                self.progress(),
                 "weighing",
                 loads,
                 |load| &load.name,
@@ -67,13 +81,20 @@ impl Run {
     }
 
     /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
-    pub fn live_tables(&self, lab: &Lab, reality: &Reality, plans: &[PressPlan]) -> Result<Vec<LiveTable>> {
-        let inputs = Inputs::new()?
+    pub(crate) fn live_tables(
+        &self,
+        lab: &Lab,
+        reality: &Reality,
+        plans: &[PressPlan],
+    ) -> Result<Vec<LiveTable>, RunError> {
+        let inputs = self
+            .inputs()
             .settings("reality", reality)?
             .settings("plans", &plans)?
             .file(&self.folder.join("sensor.toml"))?;
         self.run_stage("lab", inputs, |folder| {
             kept(
+                self.progress(),
                 "computing",
                 plans,
                 |plan| &plan.name,
@@ -88,9 +109,12 @@ impl Run {
     }
 
     /// Makes the run's recordings of the logs of its presses, as far as they are done.
-    pub fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<()> {
+    ///
+    /// # Errors
+    /// Logs that cannot be read or are of another sensor; none at all.
+    pub fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<(), RunError> {
         let files = twintac_press::done_logs(logs, plans)?;
-        let mut inputs = Inputs::new()?;
+        let mut inputs = self.inputs();
         for file in &files {
             inputs = inputs.file(file)?;
         }
@@ -108,10 +132,10 @@ impl Run {
                     None => recording = Some(read.recording),
                     Some(recording) => recording
                         .append(read.recording)
-                        .with_context(|| file.display().to_string())?,
+                        .at(|| file.display().to_string())?,
                 }
             }
-            let recording = recording.context("no press is done")?;
+            let recording = recording.ok_or_else(|| RunError::Input("no press is done".to_owned()))?;
             self.check_sensor(&recording)?;
             recording.write_parquet(&folder.join("presses.parquet"))?;
             write_json(&folder.join("plans.json"), &plans)?;
@@ -119,46 +143,70 @@ impl Run {
         })
     }
 
-    fn check_sensor(&self, recording: &Recording) -> Result<()> {
+    fn check_sensor(&self, recording: &Recording) -> Result<(), RunError> {
         let sensor = &self.sensor.sensor;
         if recording.sensor != sensor.name {
-            bail!(
+            return Err(RunError::Input(format!(
                 "the recordings are of sensor `{}`, the description is of `{}`",
-                recording.sensor,
-                sensor.name
-            );
+                recording.sensor, sensor.name
+            )));
         }
         let taxels: Vec<&String> = sensor.taxels.iter().map(|taxel| &taxel.name).collect();
         if !recording.taxels.iter().eq(taxels.iter().copied()) {
-            bail!(
+            return Err(RunError::Input(format!(
                 "the recordings have taxels {:?}, the description has {taxels:?}",
                 recording.taxels
-            );
+            )));
         }
         Ok(())
     }
 }
 
-/// Reads files through an import description.
-pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary)> {
-    let text = std::fs::read_to_string(import).with_context(|| format!("reading {}", import.display()))?;
-    let import = Import::parse(&import.display().to_string(), &text)?;
+/// Reads files of a laboratory as the description `import` says.
+///
+/// # Errors
+/// A file that cannot be read as described.
+pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary), RunError> {
+    let import = Import::parse(&import.display().to_string(), &read_text(import)?)?;
     Ok(import.read_all(files)?)
 }
 
-/// Makes something of each of `plans` over all cores, with a bar; what `folder` already holds is not made again.
+/// Reads `presses.parquet` files of runs as one recording.
+///
+/// # Errors
+/// A file of another kind, or that cannot be read; recordings that do not belong together.
+pub fn read_recordings(files: &[PathBuf]) -> Result<Recording, RunError> {
+    let mut all: Option<Recording> = None;
+    for file in files {
+        if file.extension().is_none_or(|extension| extension != "parquet") {
+            return Err(RunError::Input(format!(
+                "{} is no Parquet file; say with --import how to read it",
+                file.display()
+            )));
+        }
+        let next = Recording::read_parquet(file)?;
+        match &mut all {
+            None => all = Some(next),
+            Some(all) => all.append(next).at(|| file.display().to_string())?,
+        }
+    }
+    all.ok_or_else(|| RunError::Input("there are no recordings".to_owned()))
+}
+
+/// Makes something of each of `plans` over all cores; what `folder` already holds is not made again.
 fn kept<P: Sync, T: Serialize + DeserializeOwned + Send>(
-    what: &'static str,
+    progress: &dyn Progress,
+    work: &str,
     plans: &[P],
     name: impl Fn(&P) -> &String + Sync,
     folder: &Path,
     make: impl Fn(&P) -> Result<T, LabError> + Sync,
-) -> Result<Vec<T>> {
-    let bar = progress::bar(what, plans.len() as u64);
-    let made = plans
+) -> Result<Vec<T>, RunError> {
+    let work = Work::start(progress, work, plans.len());
+    plans
         .par_iter()
         .with_max_len(1)
-        .map(|plan| -> Result<T> {
+        .map(|plan| -> Result<T, RunError> {
             let path = kept_in(folder, name(plan));
             let made = match read_json(&path) {
                 Ok(made) => made,
@@ -168,47 +216,12 @@ fn kept<P: Sync, T: Serialize + DeserializeOwned + Send>(
                     made
                 }
             };
-            bar.inc(1);
+            work.step("");
             Ok(made)
         })
-        .collect();
-    bar.finish_and_clear();
-    made
+        .collect()
 }
 
 fn kept_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{}.json", name.replace('#', "-")))
-}
-
-/// The presses that a protocol plans for a sensor.
-pub fn plan(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
-    let protocol = read_protocol(protocol)?;
-    Ok(protocol.plan(&target(sensor), seed)?)
-}
-
-/// The weights that a protocol puts on a sensor.
-pub fn plan_loads(protocol: &Path, sensor: &Sensor, seed: u64) -> Result<Vec<LoadPlan>> {
-    let protocol = read_protocol(protocol)?;
-    Ok(protocol.loads(&target(sensor), seed)?)
-}
-
-fn read_protocol(path: &Path) -> Result<Protocol> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("reading {}", path.display()))?;
-    Ok(Protocol::parse(&path.display().to_string(), &text)?)
-}
-
-/// The presses that a protocol's text plans for a sensor.
-pub fn plan_text(file: &str, text: &str, sensor: &Sensor, seed: u64) -> Result<Vec<PressPlan>> {
-    Ok(Protocol::parse(file, text)?.plan(&target(sensor), seed)?)
-}
-
-fn target(sensor: &Sensor) -> Target {
-    let indenters = sensor.indenters.iter().map(|indenter| indenter.name.clone());
-    let taxels = sensor.taxels.iter();
-    Target {
-        indenters: indenters.collect(),
-        taxels: taxels
-            .map(|taxel| (taxel.name.clone(), [taxel.position_mm.x, taxel.position_mm.y]))
-            .collect(),
-    }
 }

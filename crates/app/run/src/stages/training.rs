@@ -1,140 +1,190 @@
 //! Stage `training`: every variant of the twin, the one that validation presses choose, and that one again on all presses.
 
-use std::collections::BTreeMap;
+use std::path::Path;
 
-use anyhow::{Context, Result};
 use digitac::{
-    Epoch, Model, Origin, Progress, Scale, Score, Split, StaticPolynomial, TrainSettings, Trained, Variant,
+    Epoch, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split, StaticPolynomial,
+    TrainSettings, Trained, Variant,
 };
 use serde::{Deserialize, Serialize};
+use twintac_recording::Recording;
 
-use crate::cache::{Inputs, write_json};
-use crate::progress;
-use crate::run::Run;
+use super::simulation::Simulation;
+use crate::files::write_json;
+use crate::progress::Work;
+use crate::{Run, RunError};
 
 /// How each variant did: `variants.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct VariantRecord {
+pub(crate) struct VariantRecord {
     /// Which.
-    pub variant: Variant,
+    pub(crate) variant: Variant,
     /// Whether it was chosen.
-    pub chosen: bool,
+    pub(crate) chosen: bool,
     /// Its errors on validation presses, by which the choice was made.
-    pub validation: Score,
+    pub(crate) validation: Score,
     /// Its errors on test presses, which nothing was chosen by.
-    pub test: Score,
+    pub(crate) test: Score,
     /// Its losses.
-    pub history: Vec<Epoch>,
+    pub(crate) history: Vec<Epoch>,
 }
 
 impl Run {
-    /// Trains the variants without the test presses, then the chosen one with them.
-    pub fn train(&self) -> Result<()> {
-        let inputs = Inputs::new()?
+    /// Trains every variant of the twin without the test presses, then the one that did best on validation presses with them. That one is
+    /// left in [`model_folder`](Self::model_folder).
+    ///
+    /// # Errors
+    /// The pairs are not there yet.
+    pub fn train(&self) -> Result<(), RunError> {
+        let inputs = self
+            .inputs()
             .settings("settings", &self.record.settings)?
             .settings("seed", &self.record.seed)?
             .file(&self.folder.join("sensor.toml"))?
             .stage(&self.stage("simulation"))?
             .stage(&self.stage("pairs"))?;
         self.run_stage("training", inputs, |folder| {
-            let recording = self.recording()?;
-            let simulation = self.simulation(&recording)?;
-            let presses = self.pairs()?;
-            let settings = self.resolved(&recording, &simulation.places).train;
-            let scale = Scale::of(&presses, self.left_out());
-            let n_steps = settings.epochs * (settings.variants.len() + 1);
-            let bar = progress::bar("training", n_steps as u64);
-            let mut done: BTreeMap<Variant, usize> = BTreeMap::new();
-            let mut follow = |step: Progress| {
-                done.insert(step.variant, step.epoch);
-                bar.set_message(format!("{} {:.2} %", step.variant, 100.0 * step.validation_loss));
-                bar.set_position(done.values().sum::<usize>() as u64);
-            };
-            let fit = |split: &Split, settings: &TrainSettings, follow: &mut dyn FnMut(Progress)| {
-                digitac::train(&presses, &recording.taxels, split, &scale, settings, follow)
-            };
-            let trained = fit(&simulation.split, &settings, &mut follow)?;
-            let chosen = digitac::choose(&trained).context("no variant was trained")?;
+            let training = Training::open(self)?;
+            let work = Work::start(self.progress(), "training", training.n_epochs());
+            let split = &training.simulation.split;
+            let trained = training.train(split, &training.settings, &work)?;
+            let chosen = digitac::choose(&trained).ok_or_else(nothing_trained)?;
+            write_json(
+                &folder.join("variants.json"),
+                &training.variants(&trained, chosen),
+            )?;
+            training.keep(chosen, split.clone(), &folder.join("held-out"))?;
 
-            let test: Vec<_> = simulation
-                .split
-                .test
-                .iter()
-                .map(|&index| &presses[index])
-                .collect();
-            let teaching: Vec<_> = simulation
-                .split
-                .train
-                .iter()
-                .map(|&index| &presses[index])
-                .collect();
-            let polynomial = StaticPolynomial::fit(&teaching);
-            let mut variants = Vec::new();
-            for candidate in &trained {
-                variants.push(VariantRecord {
-                    variant: candidate.twin.variant(),
-                    chosen: std::ptr::eq(candidate, chosen),
-                    validation: candidate.validation.clone(),
-                    test: digitac::evaluate(&candidate.twin, &test, &scale, None).twin,
-                    history: candidate.history.clone(),
-                });
-            }
-            write_json(&folder.join("variants.json"), &variants)?;
-
-            let keep = |trained: &Trained, split: Split, name: &str| -> Result<()> {
-                let origin = Origin {
-                    sensor: self.sensor.text.clone(),
-                    simulation: serde_json::to_value(&self.record.settings.simulate)?,
-                    bench: simulation.bench.clone(),
-                    settings: settings.clone(),
-                    provenance: recording.provenance,
-                    files: files(&recording),
-                    split: split.clone(),
-                };
-                let judged = (!split.test.is_empty())
-                    .then(|| digitac::evaluate(&trained.twin, &test, &scale, Some(&polynomial)));
-                let model = Model::new(
-                    trained.twin.clone(),
-                    origin,
-                    trained.validation.clone(),
-                    judged.as_ref(),
-                );
-                model.save(&folder.join(name))?;
-                Ok(())
-            };
-            keep(chosen, simulation.split.clone(), "held-out")?;
-
-            let mut everything = simulation.split.clone();
+            let mut everything = split.clone();
             everything.train.append(&mut everything.test);
             everything.train.sort_unstable();
             let again = TrainSettings {
                 variants: vec![chosen.twin.variant()],
-                ..settings.clone()
+                ..training.settings.clone()
             };
-            let complete = fit(&everything, &again, &mut |_| bar.inc(1))?;
-            keep(
-                complete.first().context("no variant was trained")?,
-                everything,
-                "complete",
-            )?;
-            bar.finish_and_clear();
-            Ok(())
+            let complete = training.train(&everything, &again, &work)?;
+            let complete = complete.first().ok_or_else(nothing_trained)?;
+            training.keep(complete, everything, &folder.join("complete"))
         })?;
         self.publish_model()
     }
 
     /// Puts the twin of all presses where people look for it.
-    fn publish_model(&self) -> Result<()> {
-        let target = self.folder.join("model");
+    fn publish_model(&self) -> Result<(), RunError> {
+        let target = self.model_folder();
         let model = Model::load(&self.stage("training").join("complete"))?;
         if Model::load(&target).is_ok_and(|there| there.record == model.record) {
             return Ok(());
         }
-        model.save(&target).map_err(Into::into)
+        Ok(model.save(&target)?)
     }
 }
 
-fn files(recording: &twintac_recording::Recording) -> Vec<String> {
+fn nothing_trained() -> RunError {
+    RunError::Input("no variant was trained; `train.variants` in the settings names none".to_owned())
+}
+
+/// All that twins are trained with.
+struct Training<'a> {
+    run: &'a Run,
+    recording: Recording,
+    simulation: Simulation,
+    presses: Vec<PairedPress>,
+    settings: TrainSettings,
+    scale: Scale,
+}
+
+impl<'a> Training<'a> {
+    fn open(run: &'a Run) -> Result<Self, RunError> {
+        let recording = run.recording()?;
+        let simulation = run.simulation(&recording)?;
+        let presses = run.pairs()?;
+        let settings = run.resolved(&recording, &simulation.places).train;
+        let scale = Scale::of(&presses, run.left_out());
+        Ok(Self {
+            run,
+            recording,
+            simulation,
+            presses,
+            settings,
+            scale,
+        })
+    }
+
+    /// Epochs of all variants, and of the chosen one once more.
+    fn n_epochs(&self) -> usize {
+        self.settings.epochs * (self.settings.variants.len() + 1)
+    }
+
+    fn presses(&self, indices: &[usize]) -> Vec<&PairedPress> {
+        indices.iter().map(|&index| &self.presses[index]).collect()
+    }
+
+    fn train(
+        &self,
+        split: &Split,
+        settings: &TrainSettings,
+        work: &Work<'_>,
+    ) -> Result<Vec<Trained>, RunError> {
+        let mut follow = |step: Step| {
+            work.step(&format!("{} {:.2} %", step.variant, 100.0 * step.validation_loss));
+        };
+        let taxels = &self.recording.taxels;
+        Ok(digitac::train(
+            &self.presses,
+            taxels,
+            split,
+            &self.scale,
+            settings,
+            &mut follow,
+        )?)
+    }
+
+    /// How each variant did, on presses that it never saw.
+    fn variants(&self, trained: &[Trained], chosen: &Trained) -> Vec<VariantRecord> {
+        let test = self.presses(&self.simulation.split.test);
+        let record = |candidate: &Trained| VariantRecord {
+            variant: candidate.twin.variant(),
+            chosen: std::ptr::eq(candidate, chosen),
+            validation: candidate.validation.clone(),
+            test: digitac::evaluate(&candidate.twin, &test, &self.scale, None).twin,
+            history: candidate.history.clone(),
+        };
+        trained.iter().map(record).collect()
+    }
+
+    /// Leaves a twin, which `split` says what it was taught with, in a folder.
+    fn keep(&self, trained: &Trained, split: Split, folder: &Path) -> Result<(), RunError> {
+        let judged = (!split.test.is_empty()).then(|| {
+            let held_out = &self.simulation.split;
+            let polynomial = StaticPolynomial::fit(&self.presses(&held_out.train));
+            let test = self.presses(&held_out.test);
+            digitac::evaluate(&trained.twin, &test, &self.scale, Some(&polynomial))
+        });
+        let settings = &self.run.record.settings;
+        let origin = Origin {
+            sensor: self.run.sensor.text.clone(),
+            simulation: serde_json::to_value(&settings.simulate).map_err(|source| RunError::Json {
+                what: "the settings of the simulation".to_owned(),
+                source,
+            })?,
+            bench: self.simulation.bench.clone(),
+            settings: self.settings.clone(),
+            provenance: self.recording.provenance,
+            files: files(&self.recording),
+            split,
+        };
+        let model = Model::new(
+            trained.twin.clone(),
+            origin,
+            trained.validation.clone(),
+            judged.as_ref(),
+        );
+        Ok(model.save(folder)?)
+    }
+}
+
+fn files(recording: &Recording) -> Vec<String> {
     let mut files: Vec<String> = recording
         .presses
         .iter()

@@ -1,9 +1,8 @@
 //! What a run would do: its places, its motion and its time.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
 use glam::DVec3;
 use serde::Serialize;
 use twintac_plot::{Ink, svg};
@@ -13,51 +12,56 @@ use twintac_protocol::PressPlan;
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
-use twintac_run::cache::write_file;
+use crate::RunError;
+use crate::files::write_file;
 
-/// The last line with `--json`.
-#[derive(Debug, Serialize)]
-struct Preview {
-    presses: usize,
-    indenters: usize,
-    duration_s: f64,
-    drawings: Vec<String>,
+/// What a protocol would do on a bench, and how long it would take.
+#[derive(Clone, Debug, Serialize)]
+pub struct Preview {
+    /// How many presses.
+    pub presses: usize,
+    /// With how many different indenters.
+    pub indenters: usize,
+    /// How long, s, without the time to change indenters.
+    pub duration_s: f64,
+    /// Pictures of places and motion (SVG).
+    pub drawings: Vec<PathBuf>,
 }
 
-pub(super) fn run(
+impl Preview {
+    /// The duration in minutes and seconds, for people.
+    #[must_use]
+    pub fn duration(&self) -> String {
+        minutes(self.duration_s)
+    }
+}
+
+/// Says and draws what presses would do on a bench, without one. The pictures go into `folder`.
+///
+/// # Errors
+/// A press that cannot be carried out; a file that cannot be written.
+pub fn preview(
     settings: &PressSettings,
     plans: &[PressPlan],
     sensor: &Sensor,
-    out: &Path,
-    json: bool,
-) -> Result<()> {
+    folder: &Path,
+) -> Result<Preview, RunError> {
     let start = settings
         .placement
         .tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
     let dry = dry_run(settings, plans, &start)?;
-    let folder = out.join("plan");
     let drawings = [folder.join("places.svg"), folder.join("motion.svg")];
     let scenes = [places(plans, sensor).scene(), motion(&dry, settings).scene()];
     for (path, scene) in drawings.iter().zip(scenes) {
         write_file(path, svg(&scene).as_bytes())?;
     }
     let indenters: BTreeSet<&str> = plans.iter().map(|plan| plan.indenter.as_str()).collect();
-    let preview = Preview {
+    Ok(Preview {
         presses: plans.len(),
         indenters: indenters.len(),
         duration_s: dry.duration_s,
-        drawings: drawings.map(|path| path.display().to_string()).into(),
-    };
-    if json {
-        return super::super::print(&serde_json::to_string(&preview)?);
-    }
-    super::super::print(&format!(
-        "{} presses with {} indenters take {}, without the time to change indenters",
-        preview.presses,
-        preview.indenters,
-        minutes(preview.duration_s)
-    ))?;
-    super::super::print(&format!("drawings {}", preview.drawings.join(" ")))
+        drawings: drawings.into(),
+    })
 }
 
 fn minutes(seconds: f64) -> String {

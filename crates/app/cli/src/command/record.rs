@@ -1,0 +1,216 @@
+//! `twintac record`: presses on a bench, over its wires.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+use twintac_lab::Reality;
+use twintac_live::Known;
+use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_limits};
+use twintac_protocol::PressPlan;
+use twintac_recording::Provenance;
+use twintac_run::bench::{OpenBench, preview, read_faults};
+use twintac_run::built_in::{LAB_RIG, REALITY};
+use twintac_run::{Caller, Planned, Progress, Run, RunSettings, SensorFile};
+
+use crate::arguments::Record;
+use crate::progress::say;
+
+/// Set by Ctrl-C: the bench stops.
+static INTERRUPT: AtomicBool = AtomicBool::new(false);
+
+/// A run was stopped before its end, safely and for a reason; what was recorded is kept.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub(crate) struct Stopped(String);
+
+/// The last line with `--json`.
+#[derive(Debug, Serialize)]
+struct Summary {
+    rate_hz: f64,
+    frames: u64,
+    lost_unmarked: u64,
+    presses: usize,
+    presses_done: usize,
+    stopped: Option<String>,
+    stop_latency_periods: Option<f64>,
+    provenance: Provenance,
+}
+
+pub(super) fn run(arguments: &Record) -> Result<()> {
+    let sensor = SensorFile::or_phystac(arguments.sensor.as_deref())?;
+    let planned = Planned::read(&arguments.protocol, &sensor.sensor, arguments.start.seed)?;
+    let reality = arguments.lab.as_ref().map(|file| read_reality(file.as_deref()));
+    let reality = reality.transpose()?;
+    if let (Some(reality), true) = (&reality, arguments.at_once) {
+        let n_presses = planned.presses.len() + planned.loads.len();
+        let source = format!("{n_presses} presses on the emulated bench");
+        let run = start(arguments, sensor, &source, super::caller()?)?;
+        return Ok(run.emulate(reality, &planned)?);
+    }
+    let n_loads = planned.loads.len();
+    if n_loads > 0 {
+        say(&format!(
+            "{n_loads} loads of the protocol are left out: no robot puts weights on"
+        ));
+    }
+    let settings = press_settings(arguments.bench.as_deref())?;
+    let plans = planned.presses;
+    if arguments.dry_run {
+        return dry_run(arguments, &settings, &plans, &sensor);
+    }
+    sensor_limits(&sensor.sensor)?;
+    press(arguments, sensor, reality.as_ref(), settings, &plans)
+}
+
+/// Folder of the run.
+fn out(arguments: &Record) -> PathBuf {
+    let usual = || Path::new("runs").join(arguments.protocol.file_stem().unwrap_or_default());
+    arguments.out.clone().unwrap_or_else(usual)
+}
+
+fn start(arguments: &Record, sensor: SensorFile, source: &str, caller: Caller) -> Result<Run> {
+    let settings = RunSettings::read(arguments.start.settings.as_deref())?;
+    let seed = arguments.start.seed;
+    Ok(Run::start(
+        &out(arguments),
+        sensor,
+        source,
+        seed,
+        settings,
+        caller,
+    )?)
+}
+
+/// Says and draws what would be done.
+fn dry_run(
+    arguments: &Record,
+    settings: &PressSettings,
+    plans: &[PressPlan],
+    sensor: &SensorFile,
+) -> Result<()> {
+    let preview = preview(settings, plans, &sensor.sensor, &out(arguments).join("plan"))?;
+    if arguments.json {
+        return super::print(&serde_json::to_string(&preview)?);
+    }
+    super::print(&format!(
+        "{} presses with {} indenters take {}, without the time to change indenters",
+        preview.presses,
+        preview.indenters,
+        preview.duration()
+    ))?;
+    let drawings: Vec<String> = preview
+        .drawings
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
+    super::print(&format!("drawings {}", drawings.join(" ")))
+}
+
+/// Carries the presses out, and stops on Ctrl-C.
+fn press(
+    arguments: &Record,
+    sensor: SensorFile,
+    reality: Option<&Reality>,
+    settings: PressSettings,
+    plans: &[PressPlan],
+) -> Result<()> {
+    let faults = arguments.faults.as_deref().map(read_faults).transpose()?;
+    let whose = if reality.is_some() {
+        "the emulated"
+    } else {
+        settings.real_devices()?;
+        "a real"
+    };
+    check_folder(&out(arguments).join("logs"), plans)?;
+    let source = format!("{} presses on {whose} bench, over its wires", plans.len());
+    let caller = super::caller()?;
+    let run = start(arguments, sensor, &source, caller.clone())?;
+    let mut bench = match reality {
+        Some(reality) => OpenBench::emulate(&run, reality, plans, &settings, faults.unwrap_or_default())?,
+        None => {
+            let known = Known {
+                counts_per_pa: arguments.scale,
+                altitude_m: arguments.altitude_m,
+            };
+            OpenBench::connect(&run.sensor().sensor, &settings, &known)?
+        }
+    };
+    for note in bench.notes() {
+        say(note);
+    }
+    ctrlc::set_handler(|| INTERRUPT.store(true, Ordering::Relaxed)).context("listening to Ctrl-C")?;
+    let mut answer = None;
+    let mut mount = |indenter: &str| mount(indenter, &mut answer, &*caller.progress);
+    let summary = run.press(&mut bench, settings, plans, &INTERRUPT, &mut mount)?;
+    tell(&summary, plans.len(), &run, bench.provenance(), arguments.json)
+}
+
+/// Has a person mount an indenter. `answer` is where that person's answer comes, once asked.
+fn mount(indenter: &str, answer: &mut Option<Receiver<bool>>, progress: &dyn Progress) -> Mounting {
+    let asked = answer.get_or_insert_with(|| ask_for(indenter, progress));
+    let mounting = match asked.try_recv() {
+        Ok(true) => Mounting::Mounted,
+        Err(TryRecvError::Empty) => return Mounting::Waiting,
+        Ok(false) | Err(TryRecvError::Disconnected) => {
+            progress.note("nobody answers on standard input, so the indenter counts as not mounted");
+            Mounting::Refused
+        }
+    };
+    *answer = None;
+    mounting
+}
+
+/// Asks a person to mount an indenter; `true` comes with an answer, or `false` if nobody can answer any more.
+fn ask_for(indenter: &str, progress: &dyn Progress) -> Receiver<bool> {
+    progress.note(&format!(
+        "The robot is switched on and stands. Mount the indenter `{indenter}`, step back, and press Enter: it will move. Ctrl-C ends the run."
+    ));
+    let (sender, answer) = channel();
+    std::thread::spawn(move || {
+        let read = std::io::stdin().read_line(&mut String::new());
+        let _ = sender.send(matches!(read, Ok(bytes) if bytes > 0)); // nobody listens any more after Ctrl-C
+    });
+    answer
+}
+
+fn tell(summary: &RunSummary, presses: usize, run: &Run, provenance: Provenance, json: bool) -> Result<()> {
+    let stopped = summary.stopped.as_ref().map(ToString::to_string);
+    if json {
+        super::print(&serde_json::to_string(&Summary {
+            rate_hz: summary.rate_hz,
+            frames: summary.frames,
+            lost_unmarked: summary.lost_unmarked,
+            presses,
+            presses_done: summary.presses_done,
+            stopped: stopped.clone(),
+            stop_latency_periods: summary.stop_latency_periods,
+            provenance,
+        })?)?;
+    } else {
+        super::print(&format!(
+            "{} of {presses} presses are done ({} data): {} frames at {:.1} Hz, {} lost without a mark",
+            summary.presses_done, provenance, summary.frames, summary.rate_hz, summary.lost_unmarked
+        ))?;
+        super::print(&format!("logs    {}", run.logs_folder().display()))?;
+    }
+    match stopped {
+        None => Ok(()),
+        Some(cause) => Err(Stopped(format!(
+            "the bench was stopped: {cause}. What was recorded is kept; the same command goes on with the next press"
+        ))
+        .into()),
+    }
+}
+
+fn press_settings(file: Option<&Path>) -> Result<PressSettings> {
+    let (name, text) = LAB_RIG.unless(file)?;
+    Ok(PressSettings::parse(&name, &text)?)
+}
+
+fn read_reality(file: Option<&Path>) -> Result<Reality> {
+    let (name, text) = REALITY.unless(file)?;
+    Ok(Reality::parse(&name, &text)?)
+}

@@ -1,0 +1,46 @@
+//! The run that needs neither hardware nor data.
+
+use std::path::Path;
+
+use digitac::TrainSettings;
+use twintac_lab::Reality;
+use twintac_simulate::SimulateSettings;
+
+use crate::built_in::{DEMO_PROTOCOL, REALITY};
+use crate::files::write_file;
+use crate::{Caller, Planned, Run, RunError, RunSettings, SensorFile};
+
+impl Run {
+    /// Starts the demo, and has its recordings made: PhysTac, pressed along the built-in protocol on the emulated bench.
+    /// [`finish`](Self::finish) does the rest. All of it takes minutes.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn demo(folder: &Path, seed: u64, caller: Caller) -> Result<Self, RunError> {
+        let sensor = SensorFile::phystac()?;
+        let reality = Reality::parse(REALITY.name, REALITY.text)?;
+        let planned = Planned::parse(DEMO_PROTOCOL.name, DEMO_PROTOCOL.text, &sensor.sensor, seed)?;
+        let source = format!("{} presses on the emulated bench", planned.presses.len());
+        let run = Self::start(folder, sensor, &source, seed, settings(), caller)?;
+        write_file(&folder.join("protocol.toml"), DEMO_PROTOCOL.text.as_bytes())?;
+        write_file(&folder.join("reality.toml"), REALITY.text.as_bytes())?;
+        run.emulate(&reality, &planned)?;
+        Ok(run)
+    }
+}
+
+/// Coarser and shorter than usual: the demo has minutes.
+fn settings() -> RunSettings {
+    RunSettings {
+        simulate: SimulateSettings {
+            edges_per_height: 6.0,
+            edges_per_contact_radius: 5.0,
+            ..SimulateSettings::default()
+        },
+        train: TrainSettings {
+            epochs: 120,
+            ..TrainSettings::default()
+        },
+        ..RunSettings::default()
+    }
+}
