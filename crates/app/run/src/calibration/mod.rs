@@ -11,8 +11,8 @@ use std::path::Path;
 
 use serde::Serialize;
 use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, fit};
-use twintac_recording::Provenance;
 use twintac_plot::{png, svg};
+use twintac_recording::Provenance;
 use twintac_simulate::{Gel, SimulateSettings};
 
 pub use curves::{CsvPlace, Measured, curve_of_csv, curves_of_file};
