@@ -27,6 +27,7 @@ mod emulated_bench;
 mod error;
 mod fault;
 mod hertz;
+mod mix;
 mod physics;
 mod schedule;
 mod workcell;

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-use glam::DQuat;
 use twintac_rig::TcpPose;
 
 use crate::clock::{nanoseconds, seconds};
+use crate::mix::mix_poses;
 use crate::robot::{Arm, ArmSettings};
 use crate::worker::locked;
 use crate::{LabClock, Physics, Sensed};
@@ -124,19 +124,6 @@ impl Situation {
             sensed: self.sensed.mix(&other.sensed, fraction),
         }
     }
-}
-
-/// What lies between two poses, by a fraction from 0 to 1, along the line and the shorter turn.
-pub(crate) fn mix_poses(one: &TcpPose, other: &TcpPose, fraction: f64) -> TcpPose {
-    let position_mm = one.position_mm.lerp(other.position_mm, fraction);
-    if one.roll_pitch_yaw_rad == other.roll_pitch_yaw_rad {
-        return TcpPose {
-            position_mm,
-            roll_pitch_yaw_rad: one.roll_pitch_yaw_rad, // bit for bit
-        };
-    }
-    let turn: DQuat = one.base_from_tool().slerp(other.base_from_tool(), fraction);
-    TcpPose::new(position_mm, turn)
 }
 
 impl fmt::Debug for Workcell {

@@ -10,11 +10,14 @@ use twintac_rig::netft;
 use twintac_rig::xarm::Client;
 use twintac_rig::{BenchClock, NetFtSource, WrenchSource};
 
-const SOON: Duration = Duration::from_secs(10);
+/// Whatever takes longer never happens, however busy the machine is.
+const LATEST: Duration = Duration::from_secs(60);
 
 fn force_client(bench: &EmulatedBench) -> netft::Client {
-    let configuration = netft::Client::read_configuration(&bench.force.page().to_string()).unwrap();
-    netft::Client::connect(bench.force.requests(), configuration).unwrap()
+    let configuration = bench.force.with_sensor(|sensor| sensor.configuration().clone());
+    let mut client = netft::Client::connect(bench.force.requests(), configuration).unwrap();
+    client.set_patience(LATEST);
+    client
 }
 
 fn sensor(
@@ -32,28 +35,31 @@ fn sensor(
 
 #[test]
 fn a_press_shows_on_all_wires() {
-    let clock = LabClock::real();
+    let clock = LabClock::virtual_time();
     let mut settings = EmulatedBenchSettings::default();
     settings.robot.first_pose.position_mm.z = 101.0;
     let bench = EmulatedBench::start(clock.clone(), Hertz::default(), &settings).unwrap();
     let mut sensor = sensor(&clock, &bench);
     let mut robot = Client::connect(bench.robot.commands()).unwrap();
+    robot.set_answer_within(LATEST);
     robot.enable().unwrap();
     let mut pose = robot.begin_servo().unwrap();
     for _ in 0..60 {
         pose.position_mm.z -= 0.05;
         robot.servo(&pose).unwrap();
     }
-    std::thread::sleep(Duration::from_millis(300));
+    robot.state().unwrap(); // it has heard the poses
+    clock.wait_s(0.5);
     let depth_mm = 100.0 - robot.pose().unwrap().position_mm.z;
     assert!((depth_mm - 2.0).abs() < 0.01, "{depth_mm}");
 
     let hertz = Hertz::default();
     let mut client = force_client(&bench);
     client.start(true).unwrap();
+    clock.wait_s(0.3);
     let mut source = NetFtSource::new(client, BenchClock::start());
     let mean_n = (0..200)
-        .map(|_| source.next_sample(SOON).unwrap().unwrap().wrench.force_n.z)
+        .map(|_| source.next_sample(LATEST).unwrap().unwrap().wrench.force_n.z)
         .sum::<f64>()
         / 200.0;
     assert!((mean_n + hertz.force_n(depth_mm)).abs() < 0.03, "{mean_n} N");
@@ -74,9 +80,6 @@ fn in_virtual_time_the_wires_wait_for_whoever_moves_the_clock() {
         EmulatedBench::start(clock.clone(), Hertz::default(), &EmulatedBenchSettings::default()).unwrap();
     let mut client = force_client(&bench);
     client.start(false).unwrap();
-    // A server that is held up is asked twice, and sends its first record twice.
-    let mut is_silent = || client.receive(Duration::from_millis(20)).unwrap().is_empty();
-    assert!((0..10).any(|_| is_silent()));
     let mut sensor = sensor(&clock, &bench);
     while clock.now_s() < 0.1 {
         sensor.frame().unwrap();
@@ -84,7 +87,7 @@ fn in_virtual_time_the_wires_wait_for_whoever_moves_the_clock() {
     let expected = (clock.now_s() * 1000.0) as usize;
     let mut received = 0;
     while received < expected {
-        let records = client.receive(SOON).unwrap();
+        let records = client.receive(LATEST).unwrap();
         assert!(!records.is_empty(), "{received} of {expected}");
         received += records.len();
     }

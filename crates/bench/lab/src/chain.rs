@@ -2,20 +2,26 @@
 
 use twintac_emulate::Chance;
 
-use crate::lab::Lab;
+use crate::ReadoutReality;
+use crate::port::Port;
 
 /// The read-out of one press: its offsets walk from where the cast put them.
 pub(crate) struct Chain<'a> {
-    lab: &'a Lab,
+    readout: &'a ReadoutReality,
+    /// Of each taxel.
+    ports: &'a [Port],
+    resolution_kpa: f64,
     walk_kpa: Vec<f64>,
     previous_s: f64,
 }
 
 impl<'a> Chain<'a> {
-    pub(crate) fn new(lab: &'a Lab) -> Self {
+    pub(crate) fn new(readout: &'a ReadoutReality, ports: &'a [Port], resolution_kpa: f64) -> Self {
         Self {
-            lab,
-            walk_kpa: vec![0.0; lab.ports.len()],
+            readout,
+            ports,
+            resolution_kpa,
+            walk_kpa: vec![0.0; ports.len()],
             previous_s: 0.0,
         }
     }
@@ -27,7 +33,7 @@ impl<'a> Chain<'a> {
         chance: &mut Chance,
         port_kpa: impl Fn(usize, f64) -> f64,
     ) -> (f64, Vec<f64>) {
-        let readout = &self.lab.reality().readout;
+        let readout = self.readout;
         let jitter_s = chance.normal(readout.jitter_s);
         let time_s = scheduled_s + jitter_s.clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
         let step_s = (time_s - self.previous_s).max(0.0);
@@ -37,8 +43,9 @@ impl<'a> Chain<'a> {
                 let late_s = readout.lag_s + taxel as f64 * readout.lag_per_taxel_s;
                 self.walk_kpa[taxel] += chance.normal(readout.drift_kpa_per_sqrt_s * step_s.sqrt());
                 let gel_kpa = port_kpa(taxel, time_s + late_s);
-                let clean_kpa = self.lab.ports[taxel].absolute_kpa(gel_kpa, 0.0) + self.walk_kpa[taxel];
-                self.lab.quantize(clean_kpa + chance.normal(readout.noise_kpa))
+                let clean_kpa = self.ports[taxel].absolute_kpa(gel_kpa, 0.0) + self.walk_kpa[taxel];
+                let noisy_kpa = clean_kpa + chance.normal(readout.noise_kpa);
+                (noisy_kpa / self.resolution_kpa).round() * self.resolution_kpa
             })
             .collect();
         (time_s, readings_kpa)

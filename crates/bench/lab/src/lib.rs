@@ -5,14 +5,21 @@
 //! differently from the drawing, noise, quantization, late and jittery clocks, a robot that misses its place. All of that is in a
 //! [`Reality`], read from a TOML file. What it records is marked `emulated`.
 //!
-//! [`Lab::press`] records a planned press at once, [`Lab::load`] a weight put on the gel; [`Lab::live`] is felt by emulated devices (`twintac-emulate`) while a robot moves.
+//! [`Lab::press`] records a planned press at once, [`Lab::load`] a weight put on the gel. [`Lab::live`] is the physics of emulated devices
+//! (`twintac-emulate`) while a robot moves.
 
 mod chain;
+mod course;
+mod error;
+mod frames;
+mod keyframes;
 mod lab;
 mod live;
 mod load;
+mod port;
 mod reality;
 
-pub use lab::{Lab, LabError};
+pub use error::LabError;
+pub use lab::Lab;
 pub use live::{LiveGel, LiveTable, Selector};
-pub use reality::{ClimateReality, GelReality, ReadoutReality, Reality, RobotReality};
+pub use reality::{ClimateReality, GelReality, ReadoutReality, Reality, Relaxation, RobotReality};

@@ -15,9 +15,8 @@ use twintac_protocol::PressPlan;
 use twintac_rig::{TcpPose, Wrench};
 use twintac_shape::Pose;
 
-use crate::ClimateReality;
-use crate::lab::{Lab, LabError, Port};
-use crate::reality::Relaxation;
+use crate::port::Port;
+use crate::{ClimateReality, Lab, LabError, Relaxation};
 
 /// How much deeper than planned the tables go, mm.
 const SPARE_MM: f64 = 0.5;

@@ -7,8 +7,8 @@ use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::{Control, Press};
 use twintac_simulate::PressPlace;
 
-use crate::chain::Chain;
-use crate::lab::{Frames, Lab, LabError, Moment};
+use crate::frames::{Frames, Moment};
+use crate::{Lab, LabError};
 
 /// The depth that is tried first for a weight, mm.
 const FIRST_DEPTH_MM: f64 = 0.1;
@@ -56,7 +56,7 @@ impl Lab {
         );
         let force_n = |time_s: f64| force.as_ref().map_or(0.0, |force| force.at(time_s));
 
-        let mut chain = Chain::new(self);
+        let mut chain = self.chain();
         let mut frames = Frames::default();
         for &(scheduled_s, weight_n) in &course {
             let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use phystac::{PhysTac, SCALES_PER_PA};
+use phystac::PhysTac;
 use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{Hertz, LabClock, Physics, ScheduledFault, Sensed, Workcell};
@@ -11,7 +11,7 @@ use twintac_rig::TcpPose;
 use twintac_sensor::Sensor;
 
 use crate::about::driver_settings;
-use crate::scale::full_scale_kpa;
+use crate::full_scale::{emulated_scale, full_scale_kpa};
 use crate::{BoxedClock, LiveError, TAXELS};
 
 /// A ball that wanders around over the taxels and presses every few seconds. It is a function of time alone.
@@ -100,7 +100,8 @@ pub fn emulated_phystac(
     Ok(PhysTac::new(board.bus(), clock, now, settings))
 }
 
-/// The board of a sensor that nobody has soldered: its barometers count as the description confirms, else by [`emulated_scale`].
+/// The board of a sensor that nobody has soldered: its barometers count as the description confirms, else by the finest scale that reaches the
+/// description's range.
 #[must_use]
 pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
     let readout = &sensor.readout;
@@ -123,12 +124,4 @@ pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
         barometer,
         ..BoardSettings::default()
     }
-}
-
-/// The scale of emulated barometers of which the description confirms none, counts per Pa: the finest that reaches the description's range.
-#[must_use]
-pub fn emulated_scale(sensor: &Sensor) -> u16 {
-    let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= sensor.readout.max_kpa;
-    let finest = SCALES_PER_PA.into_iter().rev().find(reaches);
-    finest.unwrap_or(SCALES_PER_PA[0])
 }

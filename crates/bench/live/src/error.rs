@@ -74,3 +74,9 @@ pub enum LiveError {
     #[error(transparent)]
     Map(#[from] MapError),
 }
+
+pub(crate) fn bus_error<E: std::fmt::Debug>(error: phystac::Error<E>) -> LiveError {
+    LiveError::Bus {
+        problem: error.to_string(),
+    }
+}

@@ -24,6 +24,7 @@ mod about;
 pub mod dashboard;
 mod emulated;
 mod error;
+mod full_scale;
 #[cfg(target_os = "linux")]
 mod linux;
 mod live;
@@ -36,7 +37,7 @@ mod stream;
 mod tare;
 
 pub use about::{About, driver_settings};
-pub use emulated::{EmulatedPhysTac, WanderingBall, emulated_board, emulated_phystac, emulated_scale};
+pub use emulated::{EmulatedPhysTac, WanderingBall, emulated_board, emulated_phystac};
 pub use error::LiveError;
 #[cfg(target_os = "linux")]
 pub use linux::{LinuxBus, LinuxPhysTac, open_linux};

@@ -5,6 +5,7 @@ use embedded_hal::i2c::I2c;
 use phystac::{Clock, PhysTac};
 use twintac_log::TactileFrame;
 
+use crate::error::bus_error;
 use crate::{LiveError, PowerOn, Screening};
 
 /// A frame as it is handed out.
@@ -58,11 +59,5 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> FrameReader<I2C, D, C, N> {
     /// [`LiveError::Bus`].
     pub fn stop(&mut self) -> Result<(), LiveError> {
         self.phystac.stop().map_err(bus_error)
-    }
-}
-
-pub(crate) fn bus_error<E: std::fmt::Debug>(error: phystac::Error<E>) -> LiveError {
-    LiveError::Bus {
-        problem: error.to_string(),
     }
 }

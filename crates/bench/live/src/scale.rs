@@ -5,17 +5,9 @@ use embedded_hal::i2c::I2c;
 use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, scale_hint};
 use twintac_sensor::Sensor;
 
-use crate::reader::bus_error;
-use crate::{LiveError, Screening, emulated_scale};
-
-/// The largest pressure that counts of a scale can say, kPa.
-pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
-    let transfer = Transfer {
-        signed,
-        ..Transfer::per_pa(counts_per_pa)
-    };
-    1e-3 * f64::from(transfer.full_scale_pa())
-}
+use crate::error::bus_error;
+use crate::full_scale::{emulated_scale, full_scale_kpa};
+use crate::{LiveError, Screening};
 
 /// What a person knows of the parts and the place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -38,19 +38,19 @@ mod recorder;
 mod recover;
 mod ros;
 mod sink;
+mod stream;
 mod table;
 mod writer;
 
 pub use description::{CountTransfer, Description};
 pub use error::LogError;
 pub use event::Event;
-pub use message::{
-    Body, Message, PoseReading, Stream, TactileFrame, TaxelReading, TaxelState, WrenchReading,
-};
+pub use message::{Body, Message, PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 pub use press::{ReadBack, ReadOptions, presses, read_presses};
 pub use reader::{Ending, LogReader};
 pub use recorder::{LogSender, Recorded, Recorder};
 pub use recover::{Recovered, recover};
 pub use sink::{LogFile, Sink};
+pub use stream::Stream;
 pub use table::{Exported, export_frames};
 pub use writer::LogWriter;

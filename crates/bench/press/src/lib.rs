@@ -16,6 +16,7 @@ mod motion;
 mod operator;
 mod placement;
 mod press;
+mod rest;
 mod runner;
 mod safety;
 mod settings;

@@ -4,19 +4,16 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use glam::DVec3;
 use twintac_log::{Description, Event, Recorder};
 use twintac_protocol::PressPlan;
-use twintac_rig::{Cause, SensorLimits, Start, Wrench};
+use twintac_rig::{Cause, SensorLimits};
 
-use crate::audit::audit;
+use crate::audit::{Audit, audit};
 use crate::folder::Folder;
 use crate::journal::Journal;
 use crate::press::{Press, Standing};
-use crate::{Arm, Heard, Mounting, Operator, PressError, PressSettings, Source, StreamEvent, Streams};
-
-/// How long devices may take to be heard at all, before a press, s.
-const FIRST_WORDS_S: f64 = 2.0;
+use crate::rest::{Rest, rest};
+use crate::{Arm, Mounting, Operator, PressError, PressSettings, Streams};
 
 /// How long to wait before asking again whether an indenter is mounted.
 const MOUNTING: Duration = Duration::from_millis(20);
@@ -59,10 +56,12 @@ pub struct RunSummary {
     pub stop_latency_periods: Option<f64>,
 }
 
-/// The bench at rest before a press.
-struct Rest {
-    start: Start,
-    tare: Wrench,
+/// A run under way.
+struct Progress {
+    summary: RunSummary,
+    /// Time from the first tactile frame to the last, of all logs, s; and the intervals between frames in it.
+    frames_s: f64,
+    intervals: u64,
 }
 
 impl Runner {
@@ -117,21 +116,11 @@ impl Runner {
         let mut folder = Folder::open(out, plans)?;
         let _ = bench.streams.heard().count(); // what is older than this run
         let description = self.describe(&bench.streams);
-        let mut summary = RunSummary {
-            rate_hz: 0.0,
-            frames: 0,
-            lost_unmarked: 0,
-            presses_done: 0,
-            stopped: None,
-            remarks: Vec::new(),
-            is_stop_confirmed: true,
-            stop_latency_periods: None,
-        };
-        let (mut frames_s, mut intervals) = (0.0, 0);
+        let mut progress = Progress::new();
         let mut mounted = None;
         for (index, plan) in plans.iter().enumerate() {
             if folder.is_done(index) {
-                summary.presses_done += 1;
+                progress.summary.presses_done += 1;
                 continue;
             }
             let is_mounted = mounted.replace(&plan.indenter) == Some(&plan.indenter);
@@ -140,57 +129,56 @@ impl Runner {
                 false => mount(&bench.streams, operator, &plan.indenter, interrupt),
             };
             if trouble.is_some() {
-                summary.is_stop_confirmed = bench.arm.stop().is_ok();
-                summary.remarks.extend(bench.arm.error());
-                summary.stopped = trouble;
+                progress.stop_at_rest(&mut bench.arm);
+                progress.summary.stopped = trouble;
                 break;
             }
             operator.begin(index, plan);
             let log = folder.log(index)?;
             let recorder = Recorder::create(&log, &description)?;
-            let settings = &self.settings;
-            let begun_s = bench.streams.clock().now_s();
-            let mut journal = Journal::new(
-                recorder.sender(),
-                begun_s,
-                settings.frame_gap_s,
-                settings.report_gap_s,
-            );
-            let stopped = match self.rest(&bench.streams, &mut journal, interrupt)? {
-                Ok(rest) => self.press(bench, plan, &mut journal, rest, interrupt, &mut summary)?,
-                Err(cause) => {
-                    let event = Event::Stopped {
-                        cause: cause.to_string(),
-                    };
-                    journal.event(bench.streams.clock().now_s(), event)?;
-                    // Nothing moves: the robot was not sent a pose since the last press.
-                    summary.is_stop_confirmed = bench.arm.stop().is_ok();
-                    summary.remarks.extend(bench.arm.error());
-                    Some(cause)
-                }
-            };
-            journal.end(bench.streams.clock().now_s())?;
-            let handed = journal.handed;
-            let recorded = recorder.finish()?;
-            let found = audit(&log, settings.frame_gap_s, settings.report_gap_s)?;
-            summary.frames += found.frames;
-            // What the log refused, it has marked.
-            summary.lost_unmarked +=
-                found.lost_unmarked + handed.saturating_sub(found.readings + recorded.lost);
-            frames_s += found.frames_s;
-            intervals += found.frames.saturating_sub(1);
+            let stopped = self.record(bench, plan, recorder, &log, interrupt, &mut progress)?;
             if stopped.is_some() {
                 folder.set_aside(&log)?;
-                summary.stopped = stopped;
+                progress.summary.stopped = stopped;
                 break;
             }
             folder.set_done(index)?;
-            summary.presses_done += 1;
+            progress.summary.presses_done += 1;
         }
-        if frames_s > 0.0 {
-            summary.rate_hz = intervals as f64 / frames_s;
-        }
-        Ok(summary)
+        Ok(progress.finish())
+    }
+
+    /// One press with its log, which is read again afterwards; why the press was stopped.
+    fn record<A: Arm>(
+        &self,
+        bench: &mut Bench<A>,
+        plan: &PressPlan,
+        recorder: Recorder,
+        log: &Path,
+        interrupt: &AtomicBool,
+        progress: &mut Progress,
+    ) -> Result<Option<Cause>, PressError> {
+        let settings = &self.settings;
+        let clock = bench.streams.clock();
+        let (frame_gap_s, report_gap_s) = (settings.frame_gap_s, settings.report_gap_s);
+        let mut journal = Journal::new(recorder.sender(), clock.now_s(), frame_gap_s, report_gap_s);
+        let stopped = match rest(settings, &bench.streams, &mut journal, interrupt)? {
+            Ok(rest) => self.press(bench, plan, &mut journal, rest, interrupt, &mut progress.summary)?,
+            Err(cause) => {
+                let event = Event::Stopped {
+                    cause: cause.to_string(),
+                };
+                journal.event(clock.now_s(), event)?;
+                progress.stop_at_rest(&mut bench.arm);
+                Some(cause)
+            }
+        };
+        journal.end(clock.now_s())?;
+        let handed = journal.handed;
+        let recorded = recorder.finish()?;
+        let found = audit(log, frame_gap_s, report_gap_s)?;
+        progress.count(&found, handed.saturating_sub(found.readings + recorded.lost));
+        Ok(stopped)
     }
 
     /// The description of this run's logs.
@@ -206,104 +194,6 @@ impl Runner {
             force_axis: placement.force_axis,
             start_unix_ns: unix_ns.saturating_sub(bench_ns),
             ..self.description.clone()
-        }
-    }
-
-    /// Listens while nothing moves: where the robot is, and the mean wrench, which is no load.
-    fn rest(
-        &self,
-        streams: &Streams,
-        journal: &mut Journal,
-        interrupt: &AtomicBool,
-    ) -> Result<Result<Rest, Cause>, PressError> {
-        let settings = &self.settings;
-        let begun_s = streams.clock().now_s();
-        let (mut sum, mut n) = (Wrench::ZERO, 0_u32);
-        let (mut pose, mut frames, mut last_n) = (None, 0_u32, DVec3::ZERO);
-        loop {
-            std::thread::sleep(Duration::from_secs_f64(settings.servo_period_s));
-            for Heard { bench_s, event } in streams.heard() {
-                match event {
-                    StreamEvent::Wrench(sample) => {
-                        journal.wrench(&sample)?;
-                        last_n = sample.wrench.force_n;
-                        sum.force_n += sample.wrench.force_n;
-                        sum.torque_n_mm += sample.wrench.torque_n_mm;
-                        n += 1;
-                    }
-                    StreamEvent::Robot { in_error: true, .. } => return Ok(Err(Cause::RobotInError)),
-                    StreamEvent::Robot { pose: now, .. } => {
-                        journal.pose(bench_s, &now)?;
-                        pose = Some(now);
-                    }
-                    StreamEvent::Frame(frame) => {
-                        journal.frame(bench_s, frame)?;
-                        frames += 1;
-                    }
-                    StreamEvent::NoFrame { problem } => journal.no_frame(problem),
-                    StreamEvent::Failed { source, problem } => {
-                        let stream = source.to_string();
-                        return Ok(Err(Cause::DeviceError { stream, problem }));
-                    }
-                }
-            }
-            if interrupt.load(Ordering::Relaxed) {
-                return Ok(Err(Cause::Operator));
-            }
-            let now_s = streams.clock().now_s();
-            let silent = [
-                (n == 0, Source::Force),
-                (pose.is_none(), Source::Robot),
-                (frames == 0, Source::Tactile),
-            ];
-            let silent = silent.iter().find(|(is_silent, _)| *is_silent);
-            if let Some((_, source)) = silent
-                && now_s - begun_s > FIRST_WORDS_S
-            {
-                return Ok(Err(Cause::StreamSilent {
-                    stream: source.to_string(),
-                    silence_s: now_s - begun_s,
-                    longest_silence_s: FIRST_WORDS_S,
-                }));
-            }
-            let (Some(pose), None, true) = (pose, silent, now_s - begun_s >= settings.tare_s) else {
-                continue;
-            };
-            let tare = Wrench {
-                force_n: sum.force_n / f64::from(n),
-                torque_n_mm: sum.torque_n_mm / f64::from(n),
-            };
-            let found_n = tare.force_n.length();
-            let is_small = found_n <= settings.largest_tare_n;
-            if !is_small {
-                return Ok(Err(Cause::LimitExceeded {
-                    limit: "force without load",
-                    found: found_n,
-                    allowed: settings.largest_tare_n,
-                    unit: "N",
-                }));
-            }
-            let height_mm = settings.placement.indenter(&pose).position_mm.z;
-            if height_mm < settings.approach_height_mm {
-                return Ok(Err(Cause::DeviceError {
-                    stream: Source::Robot.to_string(),
-                    problem: format!(
-                        "the indenter stands {height_mm:.2} mm above the gel and may touch it: raise it to {} mm or more",
-                        settings.approach_height_mm
-                    ),
-                }));
-            }
-            let event = Event::Tare {
-                force_n: tare.force_n,
-                torque_n_mm: tare.torque_n_mm,
-            };
-            journal.event(now_s, event)?;
-            let start = Start {
-                now_s,
-                pose,
-                force_n: last_n - tare.force_n,
-            };
-            return Ok(Ok(Rest { start, tare }));
         }
     }
 
@@ -338,6 +228,48 @@ impl Runner {
                 }
             }
         }
+    }
+}
+
+impl Progress {
+    fn new() -> Self {
+        let summary = RunSummary {
+            rate_hz: 0.0,
+            frames: 0,
+            lost_unmarked: 0,
+            presses_done: 0,
+            stopped: None,
+            remarks: Vec::new(),
+            is_stop_confirmed: true,
+            stop_latency_periods: None,
+        };
+        Self {
+            summary,
+            frames_s: 0.0,
+            intervals: 0,
+        }
+    }
+
+    /// Stops a robot that was not sent a pose since the last press.
+    fn stop_at_rest(&mut self, arm: &mut impl Arm) {
+        self.summary.is_stop_confirmed = arm.stop().is_ok();
+        self.summary.remarks.extend(arm.error());
+    }
+
+    /// Adds what a log holds; `vanished` are readings that were handed over, that the log lacks, and that it did not refuse. What it
+    /// refused, it has marked.
+    fn count(&mut self, found: &Audit, vanished: u64) {
+        self.summary.frames += found.frames;
+        self.summary.lost_unmarked += found.lost_unmarked + vanished;
+        self.frames_s += found.frames_s;
+        self.intervals += found.frames.saturating_sub(1);
+    }
+
+    fn finish(mut self) -> RunSummary {
+        if self.frames_s > 0.0 {
+            self.summary.rate_hz = self.intervals as f64 / self.frames_s;
+        }
+        self.summary
     }
 }
 

@@ -6,17 +6,14 @@ use std::sync::{Arc, Mutex};
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, Operation};
 
 use super::barometer::Barometer;
-use super::switch::Switch;
+use super::parts::Parts;
 use super::transaction::Transaction;
 use super::{BoardSettings, ClockLine, DataLine, ResetLine};
-use crate::clock::{nanoseconds, seconds};
+use crate::clock::nanoseconds;
 use crate::fault::FaultWire;
 use crate::schedule::Schedule;
 use crate::worker::locked;
 use crate::{CHANNELS, EmulateError, FaultKind, ScheduledFault, Workcell};
-
-/// Clocks after which whoever holds the data line has sent its byte.
-const HELD_CLOCKS: u8 = 9;
 
 /// Lateness beyond which the bus does not catch up.
 const MOST_LATE_NS: u64 = 5_000_000;
@@ -36,19 +33,6 @@ pub struct Board {
 #[derive(Clone)]
 pub struct Bus(Board);
 
-/// What is on the bus.
-#[derive(Debug)]
-pub(super) struct Parts {
-    pub(super) switch_address: u8,
-    pub(super) switch: Switch,
-    pub(super) barometers: [Option<Barometer>; CHANNELS],
-    pub(super) schedule: Schedule,
-    /// Who holds the data line, and for how many clocks more: each channel, and at the end the switch.
-    held_clocks: [u8; CHANNELS + 1],
-    /// How much later than it should have ended the last transaction did, ns.
-    late_ns: u64,
-}
-
 impl Board {
     /// A board in a workcell, with the faults that show on its bus.
     ///
@@ -66,14 +50,11 @@ impl Board {
             is_there.then(|| Barometer::new(channel, settings.barometer, settings.seed))
         };
         Ok(Self {
-            parts: Arc::new(Mutex::new(Parts {
-                switch_address: settings.switch_address,
-                switch: Switch::default(),
-                barometers: std::array::from_fn(barometer),
-                schedule: Schedule::new(faults, FaultWire::I2c),
-                held_clocks: [0; CHANNELS + 1],
-                late_ns: 0,
-            })),
+            parts: Arc::new(Mutex::new(Parts::new(
+                settings.switch_address,
+                std::array::from_fn(barometer),
+                Schedule::new(faults, FaultWire::I2c),
+            ))),
             workcell,
             period_ns: 1e9 / settings.bus_hz,
             timeout_ns: nanoseconds(settings.timeout_s),
@@ -153,55 +134,6 @@ impl Board {
         let due_ns = ends_ns.saturating_sub(locked(&self.parts).late_ns);
         clock.wait_until_ns(due_ns);
         locked(&self.parts).late_ns = (clock.now_ns() - due_ns).min(MOST_LATE_NS);
-    }
-}
-
-impl Parts {
-    /// Whether somebody holds the data line on the controller's side of the switch.
-    pub(super) fn is_held(&self) -> bool {
-        self.holders().next().is_some()
-            || self.schedule.active().any(
-                |what| matches!(what, FaultKind::Short { channel } if self.switch.mask() >> channel & 1 == 1),
-            )
-    }
-
-    /// Those who hold the data line until they get their clocks, and whom clocks reach.
-    fn holders(&self) -> impl Iterator<Item = usize> + use<> {
-        let reached = u16::from(self.switch.mask()) | 1 << CHANNELS;
-        let held_clocks = self.held_clocks;
-        (0..=CHANNELS).filter(move |part| reached >> part & 1 == 1 && held_clocks[*part] > 0)
-    }
-
-    /// A clock, outside any transaction.
-    pub(super) fn clock(&mut self) {
-        for part in self.holders() {
-            self.held_clocks[part] -= 1;
-        }
-    }
-
-    /// The switch's RESET: it closes its channels and lets go of the bus.
-    pub(super) fn reset(&mut self) {
-        self.switch.reset();
-        self.held_clocks[CHANNELS] = 0;
-    }
-
-    /// What goes wrong before the next transaction.
-    fn misbehave(&mut self, now_ns: u64) {
-        let happened = self.schedule.next_event(seconds(now_ns));
-        for what in happened {
-            match what {
-                FaultKind::StuckBus { channel } => {
-                    self.held_clocks[channel.map_or(CHANNELS, usize::from)] = HELD_CLOCKS;
-                }
-                FaultKind::SwitchBrownOut => self.switch.reset(),
-                FaultKind::BarometerBrownOut { channel } => {
-                    self.barometers[usize::from(channel)]
-                        .iter_mut()
-                        .for_each(Barometer::wake_up);
-                }
-                _ => {}
-            }
-        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-use super::board::Parts;
+use super::parts::Parts;
 use crate::worker::locked;
 
 /// The bus's clock line as an open-drain pin: each of its rising edges is a clock.

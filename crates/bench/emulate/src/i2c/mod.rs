@@ -7,6 +7,7 @@
 mod barometer;
 mod board;
 mod lines;
+mod parts;
 mod settings;
 mod switch;
 mod transaction;

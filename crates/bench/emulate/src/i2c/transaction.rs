@@ -3,7 +3,7 @@
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 
 use super::barometer::Barometer;
-use super::board::Parts;
+use super::parts::Parts;
 use crate::{FaultKind, Workcell};
 
 /// Every barometer's 7-bit address.

@@ -7,7 +7,7 @@ use twintac_rig::TcpPose;
 
 use crate::EmulateError;
 use crate::error::{check_not_negative, check_positive};
-use crate::workcell::mix_poses;
+use crate::mix::mix_poses;
 
 /// How near the goal counts as there, mm and radians.
 const THERE_MM: f64 = 0.01;

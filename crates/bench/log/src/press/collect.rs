@@ -6,7 +6,7 @@ use glam::DVec3;
 use twintac_recording::Control;
 use twintac_shape::Pose;
 
-use super::ReadOptions;
+use super::options::ReadOptions;
 use super::track::Track;
 use crate::{
     Body, Description, Event, LogError, LogReader, PoseReading, Stream, TactileFrame, WrenchReading,

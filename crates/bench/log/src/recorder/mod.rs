@@ -1,5 +1,6 @@
 //! A log that is written while the bench runs.
 
+mod recorded;
 mod shared;
 mod thread;
 
@@ -13,6 +14,8 @@ use crate::sink::LogFile;
 use crate::{Description, LogError, LogWriter, Message, Sink, Stream};
 use shared::Shared;
 use thread::Command;
+
+pub use recorded::Recorded;
 
 /// Room for events beyond the usual capacity: a press must not lose its end because the disk is slow.
 const EVENT_ROOM: usize = 256;
@@ -34,17 +37,6 @@ pub struct LogSender {
     shared: Arc<Shared>,
     accepts: Accepts,
     capacity: usize,
-}
-
-/// What became of a log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Recorded {
-    /// Messages that were written.
-    pub messages: u64,
-    /// Messages that were refused because the disk did not keep up; the log has their gaps.
-    pub lost: u64,
-    /// Size of the log.
-    pub bytes: u64,
 }
 
 impl Recorder {

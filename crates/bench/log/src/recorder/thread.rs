@@ -3,7 +3,8 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use super::{Recorded, Shared};
+use super::recorded::Recorded;
+use super::shared::Shared;
 use crate::writer::FLUSH_NS;
 use crate::{LogError, LogWriter, Message, Sink};
 

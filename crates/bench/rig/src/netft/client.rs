@@ -4,16 +4,28 @@ use std::io::ErrorKind;
 use std::net::{ToSocketAddrs, UdpSocket};
 use std::time::{Duration, Instant};
 
-use super::{Command, Configuration, Health, PORT, Record, Request, decode_records, page};
+use super::{Command, Configuration, Health, Record, Request, decode_records, page};
 use crate::{Device, RigError, Wrench};
 
-/// Requests are never acknowledged: one that shows no effect is sent again, this often at most.
-const MOST_TRIES: u32 = 10;
-const START_WITHIN: Duration = Duration::from_millis(200);
+/// Requests are never acknowledged: one that shows no effect is sent again.
+#[derive(Clone, Copy, Debug)]
+struct Patience {
+    /// How often it is sent at most.
+    most_tries: u32,
+    /// How long after a request to start the first record may come.
+    start: Duration,
+    /// How long after a request for a bias the records that it is judged by may take.
+    bias: Duration,
+}
+
+const PATIENCE: Patience = Patience {
+    most_tries: 10,
+    start: Duration::from_millis(200),
+    bias: Duration::from_secs(1),
+};
 const PAGE_WITHIN: Duration = Duration::from_secs(2);
 /// Time after which a bias shows in the records that arrive.
 const BIAS_SETTLES: Duration = Duration::from_millis(20);
-const BIAS_WITHIN: Duration = Duration::from_secs(1);
 /// Records that a bias is judged by.
 const BIAS_RECORDS: usize = 50;
 /// Largest datagram that UDP can carry.
@@ -34,17 +46,10 @@ pub struct Client {
     socket: UdpSocket,
     configuration: Configuration,
     datagram: Vec<u8>,
+    patience: Patience,
 }
 
 impl Client {
-    /// Reads the configuration of the sensor at a host from its web server, and opens a socket to its usual port.
-    ///
-    /// # Errors
-    /// A sensor that cannot be reached within two seconds, a page without what is needed.
-    pub fn open(host: &str) -> Result<Self, RigError> {
-        Self::connect((host, PORT), page::fetch(host, PAGE_WITHIN)?)
-    }
-
     /// Opens a socket to a sensor whose configuration is known.
     ///
     /// # Errors
@@ -57,7 +62,13 @@ impl Client {
             socket,
             configuration,
             datagram: vec![0; LARGEST_DATAGRAM],
+            patience: PATIENCE,
         })
+    }
+
+    /// Waits for so long before a request is sent again or given up; by default 0.2 s for the start, and 1 s for a bias.
+    pub fn set_patience(&mut self, patience: Duration) {
+        (self.patience.start, self.patience.bias) = (patience, patience);
     }
 
     /// Reads a sensor's configuration from its web server, `host` or `host:port`.
@@ -84,16 +95,19 @@ impl Client {
         } else {
             Command::StartRealTime
         };
-        for _ in 0..MOST_TRIES {
+        let Patience {
+            most_tries, start, ..
+        } = self.patience;
+        for _ in 0..most_tries {
             self.send(command)?;
-            if let Some(record) = self.receive(START_WITHIN)?.first() {
+            if let Some(record) = self.receive(start)?.first() {
                 return trusted(record);
             }
         }
         Err(RigError::Timeout {
             device: Device::ForceSensor,
-            what: format!("{MOST_TRIES} requests to start"),
-            after: START_WITHIN * MOST_TRIES,
+            what: format!("{most_tries} requests to start"),
+            after: start * most_tries,
         })
     }
 
@@ -104,7 +118,8 @@ impl Client {
     /// A mean beyond the tolerance after ten requests; silence; an error in a record's status.
     pub fn bias(&mut self, tolerance: &BiasTolerance) -> Result<Wrench, RigError> {
         let mut mean = Wrench::ZERO;
-        for _ in 0..MOST_TRIES {
+        let most_tries = self.patience.most_tries;
+        for _ in 0..most_tries {
             self.send(Command::Bias)?;
             mean = self.mean_after(BIAS_SETTLES)?;
             let force_n = mean.force_n.abs().max_element();
@@ -115,7 +130,7 @@ impl Client {
         }
         Err(RigError::ForceSensor {
             problem: format!(
-                "after {MOST_TRIES} requests for a bias it reads {:.3} N and {:.3} N mm",
+                "after {most_tries} requests for a bias it reads {:.3} N and {:.3} N mm",
                 mean.force_n, mean.torque_n_mm
             ),
             hint: "let the load rest, or allow a larger tolerance",
@@ -135,7 +150,8 @@ impl Client {
     /// # Errors
     /// A sensor that streams on after ten requests.
     pub fn stop(&mut self) -> Result<(), RigError> {
-        for _ in 0..MOST_TRIES {
+        let most_tries = self.patience.most_tries;
+        for _ in 0..most_tries {
             self.send(Command::Stop)?;
             let asked = Instant::now();
             while asked.elapsed() < BIAS_SETTLES {
@@ -145,7 +161,7 @@ impl Client {
             }
         }
         Err(RigError::ForceSensor {
-            problem: format!("it streams on after {MOST_TRIES} requests to stop"),
+            problem: format!("it streams on after {most_tries} requests to stop"),
             hint: "another client may have started it: the sensor serves one only",
         })
     }
@@ -179,11 +195,11 @@ impl Client {
         let asked = Instant::now();
         let (mut sum, mut n_records) = (Wrench::ZERO, 0);
         while n_records < BIAS_RECORDS {
-            let Some(left) = BIAS_WITHIN.checked_sub(asked.elapsed()) else {
+            let Some(left) = self.patience.bias.checked_sub(asked.elapsed()) else {
                 return Err(RigError::Timeout {
                     device: Device::ForceSensor,
                     what: format!("a bias, with {BIAS_RECORDS} records"),
-                    after: BIAS_WITHIN,
+                    after: self.patience.bias,
                 });
             };
             let records = self.receive(left)?;

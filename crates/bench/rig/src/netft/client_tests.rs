@@ -31,6 +31,8 @@ struct Habits {
     lost: Option<u32>,
     doubled: Option<u32>,
     last: Option<u32>,
+    /// Records that it sends at most: as many as fit into the socket of a client that is held up.
+    most: u32,
     status: Status,
 }
 
@@ -39,6 +41,7 @@ const WELL: Habits = Habits {
     lost: None,
     doubled: None,
     last: None,
+    most: u32::MAX,
     status: Status::HEALTHY,
 };
 
@@ -66,7 +69,9 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
                     _ => {}
                 }
             }
-            let Some(client) = client else { continue };
+            let Some(client) = client.filter(|_| sequence < habits.most) else {
+                continue;
+            };
             let mut records = Vec::new();
             for _ in 0..5 {
                 sequence += 1;
@@ -103,6 +108,16 @@ fn sensor(habits: Habits) -> (SocketAddr, impl FnOnce() -> Vec<Command>) {
     (address, stop)
 }
 
+/// Whatever takes longer never happens, however busy the machine is.
+const LATEST: Duration = Duration::from_secs(60);
+
+/// A client that waits for as long as a busy machine may take.
+fn connected(address: SocketAddr) -> Client {
+    let mut client = Client::connect(address, configuration()).unwrap();
+    client.set_patience(LATEST);
+    client
+}
+
 const TOLERANCE: BiasTolerance = BiasTolerance {
     force_n: 0.01,
     torque_n_mm: 5.0,
@@ -111,7 +126,9 @@ const TOLERANCE: BiasTolerance = BiasTolerance {
 #[test]
 fn requests_that_get_lost_are_repeated_until_the_data_show_them() {
     let (address, stop) = sensor(Habits { deaf: 2, ..WELL });
-    let mut client = Client::connect(address, configuration()).unwrap();
+    let mut client = connected(address);
+    client.patience.start = Duration::from_millis(200);
+    client.patience.most_tries = 300;
     client.start(true).unwrap();
     let mean = client.bias(&TOLERANCE).unwrap();
     assert!(mean.force_n.length() < 1e-12 && (mean.torque_n_mm.z - 1.0).abs() < 1e-9);
@@ -144,7 +161,7 @@ fn a_bias_that_never_shows_is_an_error() {
     );
     stop();
     let (address, stop) = sensor(WELL);
-    let mut client = Client::connect(address, configuration()).unwrap();
+    let mut client = connected(address);
     client.start(false).unwrap();
     let strict = BiasTolerance {
         torque_n_mm: 0.5,
@@ -160,13 +177,14 @@ fn readings_keep_the_sensors_clock_and_mark_gaps() {
     let (address, stop) = sensor(Habits {
         lost: Some(43),
         doubled: Some(30),
+        most: 100,
         ..WELL
     });
-    let mut client = Client::connect(address, configuration()).unwrap();
+    let mut client = connected(address);
     client.start(true).unwrap();
     let clock = BenchClock::start();
     let mut source = NetFtSource::new(client, clock);
-    let mut next = || source.next_sample(Duration::from_secs(2)).unwrap().unwrap();
+    let mut next = || source.next_sample(LATEST).unwrap().unwrap();
     let samples: Vec<_> = (0..60).map(|_| next()).collect();
     for pair in samples.windows(2) {
         let ticks = (pair[1].stamp.source_s.unwrap() - pair[0].stamp.source_s.unwrap()) * 7000.0;
@@ -191,11 +209,11 @@ fn untrustworthy_records_are_errors() {
         status: saturated,
         ..WELL
     });
-    let mut client = Client::connect(address, configuration()).unwrap();
+    let mut client = connected(address);
     let error = client.start(true).unwrap_err().to_string();
     assert_eq!(error, "force sensor: status 0x80020000 (saturation or A/D)");
     let mut source = NetFtSource::new(client, BenchClock::start());
-    assert!(source.next_sample(Duration::from_secs(2)).is_err());
+    assert!(source.next_sample(LATEST).is_err());
     stop();
 }
 
@@ -203,12 +221,13 @@ fn untrustworthy_records_are_errors() {
 fn a_stream_that_begins_anew_is_an_error() {
     let (address, stop) = sensor(Habits {
         last: Some(20),
+        most: 100,
         ..WELL
     });
-    let mut client = Client::connect(address, configuration()).unwrap();
+    let mut client = connected(address);
     client.start(true).unwrap();
     let mut source = NetFtSource::new(client, BenchClock::start());
-    let error = (0..40).find_map(|_| source.next_sample(Duration::from_secs(2)).err());
+    let error = (0..40).find_map(|_| source.next_sample(LATEST).err());
     assert!(error.unwrap().to_string().contains("its stream began anew"));
     stop();
 }
@@ -247,7 +266,7 @@ fn web_server(status: &'static str, body: String) -> (String, JoinHandle<String>
 #[test]
 fn the_configuration_is_read_from_the_web_server() {
     let (host, server) = web_server("200 OK", configuration().to_xml());
-    assert_eq!(Client::read_configuration(&host).unwrap(), configuration());
+    assert_eq!(page::fetch(&host, LATEST).unwrap(), configuration());
     assert!(
         server
             .join()
@@ -260,7 +279,7 @@ fn the_configuration_is_read_from_the_web_server() {
         ("200 OK", "x".repeat(100_000), "limit"),
     ] {
         let (host, server) = web_server(status, body);
-        let error = Client::read_configuration(&host).unwrap_err().to_string();
+        let error = page::fetch(&host, LATEST).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
         assert!(error.contains(&host), "{error}");
         server.join().unwrap();

@@ -3,7 +3,6 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::Retreat;
 use crate::{RigError, TcpPose};
 
 /// What a sensor stands, from its description. A bench can set lower limits, never higher ones.
@@ -42,6 +41,18 @@ pub struct Workspace {
     pub min_mm: DVec3,
     /// Corner with the largest coordinates, mm.
     pub max_mm: DVec3,
+}
+
+/// How to go back after a stop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Retreat {
+    /// How far against the approach, mm; 0 for staying where it stopped.
+    pub distance_mm: f64,
+    /// How fast, mm/s.
+    pub speed_mm_per_s: f64,
+    /// By how much the force may seem to rise without rising, N: a few times the noise of one reading.
+    pub force_noise_n: f64,
 }
 
 /// What a supervisor is set up with.

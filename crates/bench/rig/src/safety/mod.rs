@@ -8,7 +8,6 @@ mod supervisor;
 mod watchdog;
 
 pub use cause::Cause;
-pub use limits::{Limits, SensorLimits, Setup, Workspace};
-pub use retreat::Retreat;
+pub use limits::{Limits, Retreat, SensorLimits, Setup, Workspace};
 pub use supervisor::{Decision, Observation, Start, Supervisor};
 pub use watchdog::StreamId;

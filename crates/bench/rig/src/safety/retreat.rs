@@ -1,22 +1,9 @@
 //! Straight back up after a stop, while that is safe.
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
 use super::Setup;
 use crate::TcpPose;
-
-/// How to go back after a stop.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Retreat {
-    /// How far against the approach, mm; 0 for staying where it stopped.
-    pub distance_mm: f64,
-    /// How fast, mm/s.
-    pub speed_mm_per_s: f64,
-    /// By how much the force may seem to rise without rising, N: a few times the noise of one reading.
-    pub force_noise_n: f64,
-}
 
 /// How far a retreat has got.
 #[derive(Clone, Debug)]

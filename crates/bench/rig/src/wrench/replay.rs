@@ -98,11 +98,12 @@ impl WrenchSource for Replay {
         let due_s = self.rows.get(self.played).map_or(f64::INFINITY, |(time_s, _)| {
             self.begun_s + time_s - self.rows[0].0
         });
-        let wait_s = (due_s - now_s).clamp(0.0, within.as_secs_f64());
-        std::thread::sleep(Duration::from_secs_f64(wait_s));
-        if now_s + wait_s < due_s {
+        let wait_s = (due_s - now_s).max(0.0);
+        if wait_s > within.as_secs_f64() {
+            std::thread::sleep(within);
             return Ok(None);
         }
+        std::thread::sleep(Duration::from_secs_f64(wait_s));
         let (time_s, wrench) = self.rows[self.played];
         self.played += 1;
         Ok(Some(WrenchSample {
@@ -134,8 +135,9 @@ mod tests {
         let first = replay.next_sample(Duration::ZERO).unwrap().unwrap();
         assert_eq!(first.wrench.force_n, DVec3::new(0.1, 0.0, -1.5));
         assert_eq!(first.stamp.source_s, Some(10.0));
-        let second = replay.next_sample(Duration::from_secs(5)).unwrap().unwrap();
-        assert!(second.stamp.bench_s >= 0.02 && second.stamp.bench_s <= clock.now_s());
+        let second = replay.next_sample(Duration::from_secs(60)).unwrap().unwrap();
+        let due_s = replay.begun_s + 0.02;
+        assert!(second.stamp.bench_s >= due_s - 1e-6 && second.stamp.bench_s <= clock.now_s());
         assert_eq!(second.wrench.torque_n_mm, DVec3::new(0.0, 2.0, 0.0));
         assert_eq!(
             replay.next_sample(Duration::from_millis(1)).unwrap(),

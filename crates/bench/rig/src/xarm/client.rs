@@ -5,14 +5,14 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
 use super::frame_reader::{FrameReader, transport};
-use super::servo::Servo;
+use super::pose_stream::PoseStream;
 use super::{
     Answer, Command, ControllerCode, Incoming, Mode, MotionState, MoveTo, PROTOCOL, Request, Response,
     ResponseState, SetState, Wire, splitter,
 };
 use crate::{Device, RigError, TcpPose};
 
-pub(super) const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Motors take their time.
 const ENABLE_WITHIN: Duration = Duration::from_secs(5);
 const POLL: Duration = Duration::from_millis(20);
@@ -34,7 +34,8 @@ pub struct Client<W: Wire> {
     pub(super) unanswered: VecDeque<Unanswered>,
     /// The byte that firmware from 1.10 on wants beside a mode.
     detection: Option<u8>,
-    pub(super) servo: Option<Servo>,
+    pub(super) servo: Option<PoseStream>,
+    pub(super) answer_within: Duration,
 }
 
 /// A request that was sent.
@@ -94,7 +95,13 @@ impl<W: Wire> Client<W> {
             unanswered: VecDeque::new(),
             detection: Some(0),
             servo: None,
+            answer_within: ANSWER_WITHIN,
         }
+    }
+
+    /// Waits for answers for so long; by default two seconds. Motors may take five all the same.
+    pub fn set_answer_within(&mut self, within: Duration) {
+        self.answer_within = within;
     }
 
     /// Cleans error and warning, switches the motors on, and makes the robot ready for moves to positions.
@@ -232,7 +239,7 @@ impl<W: Wire> Client<W> {
         })
     }
 
-    /// Sends any command and waits for its answer, two seconds, or five for switching motors on. Answers to requests that were
+    /// Sends any command and waits for its answer ([`Client::set_answer_within`]). Answers to requests that were
     /// given up are passed over, as is what the robot says unasked.
     ///
     /// # Errors
@@ -241,8 +248,8 @@ impl<W: Wire> Client<W> {
     /// cleaning and stopping put up with all but the last.
     pub fn call(&mut self, command: Command) -> Result<Answer, RigError> {
         let within = match command {
-            Command::MotionEnable { .. } => ENABLE_WITHIN,
-            _ => ANSWER_WITHIN,
+            Command::MotionEnable { .. } => self.answer_within.max(ENABLE_WITHIN),
+            _ => self.answer_within,
         };
         self.call_within(command, within)
     }
@@ -251,7 +258,7 @@ impl<W: Wire> Client<W> {
         let request = self.send(command)?;
         let response = self.response_to(&request, within)?;
         let answer = response.answer(&request)?;
-        self.check(response.state, &request.command, ANSWER_WITHIN)?;
+        self.check(response.state, &request.command, self.answer_within)?;
         Ok(answer)
     }
 

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use glam::DVec3;
 
 use super::*;
+use crate::xarm::pose_stream::{PERIOD, PoseStream};
 use crate::xarm::{FEEDBACK, Pair, Report, ReportPort, ReportReader};
 
 /// Where the arm is and how it answers.
@@ -111,9 +112,15 @@ fn to(pose: TcpPose) -> MoveTo {
     }
 }
 
-const SOON: Duration = Duration::from_secs(5);
-/// Whatever takes longer never happens, on a machine that holds threads up.
-const LATEST: Duration = Duration::from_secs(20);
+/// Whatever takes longer never happens, however busy the machine is.
+const LATEST: Duration = Duration::from_secs(60);
+
+/// A client that waits for as long as a busy machine may take.
+fn connected(address: SocketAddr) -> Client<TcpStream> {
+    let mut client = Client::connect(address).unwrap();
+    client.set_answer_within(LATEST);
+    client
+}
 
 /// Serves one connection; answers come in two pieces, each after a frame of feedback.
 fn controller(arm: Arm) -> (SocketAddr, Arc<Mutex<Arm>>, JoinHandle<()>) {
@@ -149,17 +156,20 @@ fn a_session_from_enabling_to_stopping() {
         error: 22,
         ..Arm::new()
     });
-    let mut client = Client::connect(address).unwrap();
+    let mut client = connected(address);
     client.enable().unwrap();
-    client.move_to(&to(at(250.0)), SOON).unwrap();
+    client.move_to(&to(at(250.0)), LATEST).unwrap();
     let start = client.begin_servo().unwrap();
     assert_eq!(start, at(250.0));
-    let begun = Instant::now();
+    let first_due = client.servo.unwrap().due;
     for step in 1..=50 {
         client.servo(&at(250.0 - 0.2 * f64::from(step))).unwrap();
     }
-    let rate_hz = 50.0 / begun.elapsed().as_secs_f64();
-    assert!(rate_hz <= 250.0, "{rate_hz} Hz");
+    assert!(client.servo.unwrap().due >= first_due + 50 * PERIOD);
+    assert!(
+        Instant::now() >= first_due + 49 * PERIOD,
+        "none went out before it was due"
+    );
     assert!(client.pose().unwrap().distance_mm(&at(240.0)) < 1e-4);
     client.stop().unwrap();
     assert!(client.servo(&at(240.0)).is_err(), "the stream has ended");
@@ -218,10 +228,10 @@ fn errors_have_names_and_end_the_stream() {
             fault: Some((function, fault)),
             ..Arm::new()
         });
-        let mut client = Client::connect(address).unwrap();
+        let mut client = connected(address);
         let mut session = || {
             client.enable()?;
-            client.move_to(&to(at(250.0)), SOON)?;
+            client.move_to(&to(at(250.0)), LATEST)?;
             client.begin_servo()?;
             // The first pose's error comes with one of the next.
             let begun = Instant::now();
@@ -257,7 +267,7 @@ fn an_emergency_stop_cannot_be_cleaned() {
         error: 1,
         ..Arm::new()
     });
-    let mut client = Client::connect(address).unwrap();
+    let mut client = connected(address);
     let error = client.enable().unwrap_err().to_string();
     assert!(
         error.contains("emergency stop") && error.ends_with("after enable motion"),
@@ -271,7 +281,7 @@ fn an_emergency_stop_cannot_be_cleaned() {
 fn steps_are_limited() {
     for (height_mm, is_sent) in [(295.0, true), (289.9, false), (f64::NAN, false)] {
         let (address, arm, server) = controller(Arm::new());
-        let mut client = Client::connect(address).unwrap();
+        let mut client = connected(address);
         client.enable().unwrap();
         client.begin_servo().unwrap();
         std::thread::sleep(Duration::from_millis(15));
@@ -298,12 +308,12 @@ fn silence_is_noticed_and_late_answers_are_passed_over() {
         fault: Some((13, Fault::Silence)),
         ..Arm::new()
     });
-    let mut client = Client::connect(address).unwrap();
-    let asked = Instant::now();
+    let mut client = connected(address);
+    client.set_answer_within(Duration::from_millis(50));
     let error = client.state().unwrap_err().to_string();
-    assert_eq!(error, "robot: no answer to get state within 2 s");
-    assert!((1.9..10.0).contains(&asked.elapsed().as_secs_f64()));
+    assert_eq!(error, "robot: no answer to get state within 0.05 s");
     arm.lock().unwrap().fault = None;
+    client.set_answer_within(LATEST);
     assert_eq!(client.state().unwrap(), MotionState::Stopped);
     drop(client);
     server.join().unwrap();
@@ -343,15 +353,18 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
         fault: Some((30, Fault::Silence)),
         ..Arm::new()
     });
-    let mut client = Client::connect(address).unwrap();
+    let mut client = connected(address);
     client.enable().unwrap();
     client.begin_servo().unwrap();
     let begun = Instant::now();
     for step in 1..=20 {
         client.servo(&at(300.0 - 0.1 * f64::from(step))).unwrap();
     }
-    assert!(begun.elapsed() < ANSWER_WITHIN, "{:?}", begun.elapsed());
-    assert!(client.hear().unwrap() >= Duration::from_millis(30));
+    assert!(begun.elapsed() < LATEST, "it waits for answers");
+    assert!(
+        client.hear().unwrap() >= 19 * PERIOD / 2,
+        "poses are at least half a period apart"
+    );
     client.stop().unwrap();
     assert_eq!(
         client.hear().unwrap(),
@@ -362,6 +375,7 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
     // A stream whose answers do not come ends.
     client.enable().unwrap();
     client.begin_servo().unwrap();
+    client.set_answer_within(Duration::from_millis(50));
     let begun = Instant::now();
     let error = loop {
         assert!(begun.elapsed() < LATEST);
@@ -369,7 +383,7 @@ fn poses_wait_for_no_answer_and_a_stop_goes_out_before_any() {
             break error.to_string();
         }
     };
-    assert_eq!(error, "robot: no answer to servo within 2 s");
+    assert_eq!(error, "robot: no answer to servo within 0.05 s");
     assert!(client.servo(&at(298.0)).is_err(), "the stream has ended");
     drop(client);
     server.join().unwrap();
@@ -421,7 +435,7 @@ fn an_error_passed_over_ends_the_stream() {
     });
     client.transaction = 1;
     client.remember(&pose, true);
-    client.servo = Some(crate::xarm::servo::Servo::at(at(300.0)));
+    client.servo = Some(PoseStream::at(at(300.0)));
     assert_eq!(client.state().unwrap(), MotionState::Ready);
     assert!(client.servo.is_none());
 }
@@ -456,7 +470,7 @@ fn old_firmware_is_not_told_how_to_detect_collisions() {
         version: "v1.8.4",
         ..Arm::new()
     });
-    let mut client = Client::connect(address).unwrap();
+    let mut client = connected(address);
     client.enable().unwrap();
     drop(client);
     server.join().unwrap();
@@ -473,7 +487,7 @@ fn a_move_that_does_not_arrive_is_stopped() {
         fault: Some((21, Fault::Ignored)),
         ..Arm::new()
     });
-    let mut client = Client::connect(address).unwrap();
+    let mut client = connected(address);
     client.enable().unwrap();
     let error = client
         .move_to(&to(at(250.0)), Duration::from_millis(50))
@@ -515,8 +529,8 @@ fn reports_are_read_from_a_stream() {
         port,
     );
     for height_mm in [300.0, 299.0] {
-        let found = reader.next_report(SOON).unwrap().unwrap();
+        let found = reader.next_report(LATEST).unwrap().unwrap();
         assert_eq!(found.pose, at(height_mm));
     }
-    assert!(reader.next_report(SOON).is_err(), "the stream has ended");
+    assert!(reader.next_report(LATEST).is_err(), "the stream has ended");
 }

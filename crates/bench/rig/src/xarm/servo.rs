@@ -1,40 +1,18 @@
 //! Streams poses that the robot follows at once.
 //!
-//! The limits are the manufacturer's for its servo mode: at most 250 poses a second, steps of at most 10 mm, at most 1000 mm/s. The
-//! robot keeps no queue: only the latest pose counts. Nobody waits for answers to poses: they are taken in as they come.
+//! The robot keeps no queue: only the latest pose counts. Nobody waits for answers to poses: they are taken in as they come.
 
 use std::time::{Duration, Instant};
 
-use super::client::{ANSWER_WITHIN, late};
+use super::client::late;
+use super::pose_stream::{PERIOD, PoseStream, longest_step_mm};
 use super::{Client, Command, Incoming, Mode, MotionState, MoveTo, SetState, Wire};
 use crate::{Device, RigError, TcpPose};
 
-/// Longest way from one pose to the next, mm.
-pub const LONGEST_STEP_MM: f64 = 10.0;
-const PERIOD: Duration = Duration::from_millis(4);
-const FASTEST_MM_PER_S: f64 = 1000.0;
 /// Frames that are taken in at once: many periods' answers, and no end of feedback.
 const MOST_FRAMES: usize = 256;
 /// Time that the robot needs to change to servo mode.
 const SETTLES: Duration = Duration::from_millis(100);
-
-/// What a stream of poses remembers.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Servo {
-    last: TcpPose,
-    sent: Instant,
-    /// When the next pose may go out.
-    due: Instant,
-}
-
-impl Servo {
-    /// A stream that begins now, at a pose.
-    pub(super) fn at(last: TcpPose) -> Self {
-        let sent = Instant::now();
-        let due = sent + PERIOD;
-        Self { last, sent, due }
-    }
-}
 
 impl<W: Wire> Client<W> {
     /// Puts the robot, which was enabled, into servo mode where it is, and returns its pose: the first pose must be near it.
@@ -50,7 +28,7 @@ impl<W: Wire> Client<W> {
             return Err(refused(format!("the robot is {state}"), "enable it anew"));
         }
         let last = self.pose()?;
-        self.servo = Some(Servo::at(last));
+        self.servo = Some(PoseStream::at(last));
         Ok(last)
     }
 
@@ -87,7 +65,7 @@ impl<W: Wire> Client<W> {
         })?;
         self.remember(&request, true);
         let due = (servo.due + PERIOD).max(sent + PERIOD / 2);
-        self.servo = Some(Servo {
+        self.servo = Some(PoseStream {
             last: *pose,
             sent,
             due,
@@ -99,7 +77,7 @@ impl<W: Wire> Client<W> {
     /// An error's code is asked for, and waited for 4 ms. After any error the stream has ended.
     ///
     /// # Errors
-    /// A connection that fails, answers to something else or with state bits of an error, an answer missing for two seconds.
+    /// A connection that fails, answers to something else or with state bits of an error, an answer missing for too long ([`Client::set_answer_within`]).
     pub fn hear(&mut self) -> Result<Duration, RigError> {
         let heard = self.take_answers();
         if heard.is_err() {
@@ -134,8 +112,8 @@ impl<W: Wire> Client<W> {
             return Ok(Duration::ZERO);
         };
         let missing = oldest.sent.elapsed();
-        if missing > ANSWER_WITHIN {
-            return Err(late(&oldest.request, ANSWER_WITHIN));
+        if missing > self.answer_within {
+            return Err(late(&oldest.request, self.answer_within));
         }
         Ok(missing)
     }
@@ -149,27 +127,10 @@ impl<W: Wire> Client<W> {
     }
 }
 
-/// Longest step after so long a time, mm: the speed counts over a period at least.
-fn longest_step_mm(elapsed: Duration) -> f64 {
-    LONGEST_STEP_MM.min(FASTEST_MM_PER_S * elapsed.max(PERIOD).as_secs_f64())
-}
-
 fn refused(problem: String, hint: &'static str) -> RigError {
     RigError::Robot {
         command: "servo",
         problem,
         hint,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_are_limited_by_speed_and_then_by_length() {
-        assert!((longest_step_mm(Duration::from_millis(2)) - 4.0).abs() < 1e-9);
-        assert!((longest_step_mm(Duration::from_millis(6)) - 6.0).abs() < 1e-9);
-        assert_eq!(longest_step_mm(Duration::from_secs(1)), 10.0);
     }
 }
