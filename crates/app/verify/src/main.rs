@@ -11,6 +11,7 @@ mod files;
 mod ladder;
 mod peers;
 mod recording;
+mod rung;
 mod scaling;
 
 #[derive(Parser)]

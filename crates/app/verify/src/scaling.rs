@@ -10,7 +10,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
-use crate::ladder::plots;
+use crate::rung::plots;
 use crate::{bench, cases, files};
 
 /// Where the results go.

@@ -7,13 +7,11 @@ use twintac_simulate::{Followed, Gel, SimulateSettings};
 use twintac_softbody::Element;
 
 use super::case::{Case, line_mm, taxels_mm};
+use super::difference::{percent, pressure_percent};
 use super::reference::{Reference, ReferenceFrame};
 
 /// How deep quadratic elements are pressed, which take long, mm.
 const QUADRATIC_MM: f64 = 1.0;
-
-/// Part of the largest pressure at a taxel above which errors are relative to the taxel's own pressure.
-const MEANINGFUL: f64 = 0.05;
 
 /// A press as two codes, or two kinds of element, see it.
 pub(super) struct Compared {
@@ -156,17 +154,6 @@ impl ComparedFrame {
             .fold(0.0, |largest: f64, pair| largest.max(pair[1].abs()));
         100.0 * (squares / self.line_kpa.len() as f64).sqrt() / largest_kpa
     }
-}
-
-/// Difference of two pressures, %: relative to the second one where that is meaningful, else to the largest of all taxels.
-pub(super) fn pressure_percent(pair: [f64; 2], largest_kpa: f64) -> f64 {
-    let is_meaningful = pair[1].abs() > MEANINGFUL * largest_kpa;
-    percent(pair, if is_meaningful { pair[1].abs() } else { largest_kpa })
-}
-
-/// Difference of two values as part of a whole, %.
-pub(super) fn percent([ours, theirs]: [f64; 2], whole: f64) -> f64 {
-    100.0 * (ours - theirs) / whole
 }
 
 #[cfg(test)]

@@ -23,6 +23,15 @@ const RESIDUAL: f64 = 0.1;
 pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
     let skin = Skin::of(&case.shape).context("there is no skin of this indenter")?;
     let mut deck = String::new();
+    write_nodes(&mut deck, case, gel, &skin)?;
+    write_elements(&mut deck, gel, &skin)?;
+    write_materials(&mut deck, case)?;
+    write_contact(&mut deck, gel)?;
+    write_steps(&mut deck, case)?;
+    Ok(deck)
+}
+
+fn write_nodes(deck: &mut String, case: &Case, gel: &Bricks, skin: &Skin) -> Result<()> {
     let lift = case.place_mm.extend(SIZE_MM.z);
     writeln!(deck, "*NODE, NSET=GEL")?;
     for (index, node) in gel.nodes_mm.iter().enumerate() {
@@ -49,6 +58,10 @@ pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
             }
         }
     }
+    Ok(())
+}
+
+fn write_elements(deck: &mut String, gel: &Bricks, skin: &Skin) -> Result<()> {
     writeln!(deck, "*ELEMENT, TYPE=C3D20R, ELSET=GEL")?;
     for (index, brick) in gel.bricks.iter().enumerate() {
         let nodes = brick.map(|node| (node + 1).to_string());
@@ -60,6 +73,7 @@ pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
             nodes[10..].join(", ")
         )?;
     }
+    let first_node = gel.nodes_mm.len() + 1;
     let first_facet = gel.bricks.len() + 1;
     for (corners, kind) in [(15, "C3D15"), (20, "C3D20")] {
         writeln!(deck, "*ELEMENT, TYPE={kind}, ELSET=INDENTER")?;
@@ -79,6 +93,10 @@ pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
             )?;
         }
     }
+    Ok(())
+}
+
+fn write_materials(deck: &mut String, case: &Case) -> Result<()> {
     // C10 = μ/2, D1 = 2/K, in a strain energy C10 (J^(-2/3) I1 - 3) + (J - 1)²/D1.
     let c10_mpa = 0.5e-3 * case.shear_modulus_kpa();
     let d1_per_mpa = 2.0 / (1e-3 * case.bulk_modulus_kpa());
@@ -90,6 +108,10 @@ pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
     writeln!(deck, "*MATERIAL, NAME=INDENTER\n*ELASTIC\n1., 0.")?;
     writeln!(deck, "*SOLID SECTION, ELSET=GEL, MATERIAL=GEL")?;
     writeln!(deck, "*SOLID SECTION, ELSET=INDENTER, MATERIAL=INDENTER")?;
+    Ok(())
+}
+
+fn write_contact(deck: &mut String, gel: &Bricks) -> Result<()> {
     writeln!(deck, "*SURFACE, NAME=TOP, TYPE=ELEMENT")?;
     for element in gel.bricks.len() - gel.n_layer..gel.bricks.len() {
         writeln!(deck, "{}, S2", element + 1)?;
@@ -104,6 +126,10 @@ pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
         deck,
         "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE\nTOP, SKIN"
     )?;
+    Ok(())
+}
+
+fn write_steps(deck: &mut String, case: &Case) -> Result<()> {
     writeln!(deck, "*BOUNDARY\nBOTTOM, 1, 3, 0.\nINDENTER, 1, 2, 0.")?;
     if case.is_quarter() {
         writeln!(deck, "SIDEX, 1, 1, 0.\nSIDEY, 2, 2, 0.")?;
@@ -126,5 +152,5 @@ pub(super) fn write(case: &Case, gel: &Bricks) -> Result<String> {
         writeln!(deck, "*EL FILE, NSET=BOTTOM, FREQUENCY=1000\nS")?;
         writeln!(deck, "*CONTACT FILE, FREQUENCY=1000\nCDIS\n*END STEP")?;
     }
-    Ok(deck)
+    Ok(())
 }

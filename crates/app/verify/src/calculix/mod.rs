@@ -4,6 +4,7 @@ mod bricks;
 mod case;
 mod compare;
 mod deck;
+mod difference;
 mod face;
 mod output;
 mod plan;
@@ -16,8 +17,7 @@ use anyhow::{Result, ensure};
 use twintac_plot::{Ink, Scene};
 use twintac_plot::{Panel, Panels};
 
-use crate::ladder::outcome::{Figure, Outcome, Plot};
-use crate::ladder::{Effort, plots};
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 use case::{Case, LINE_Y_MM, Level, line_mm};
 use compare::Compared;
 use reference::Reference;

@@ -10,7 +10,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::case::{Case, Level, PORT_RADIUS_MM, line_mm, taxels_mm};
-use super::compare::{percent, pressure_percent};
+use super::difference::{percent, pressure_percent};
 use super::face::Faces;
 use super::{deck, output};
 

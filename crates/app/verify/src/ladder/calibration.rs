@@ -8,7 +8,7 @@ use glam::DQuat;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use twintac_calibrate::{Curve, Fit, FitSettings, Parameter, Quantity, Signal, fit};
+use twintac_calibrate::{Curve, Fit, FitSettings, FittedSignal, Parameter, Quantity, Signal, fit};
 use twintac_depth_table::MonotoneCubic;
 use twintac_material::{Material, Ogden, OgdenTerm, PronyTerm, Yeoh};
 use twintac_plot::{Panel, Panels};
@@ -16,9 +16,7 @@ use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};
 
-use super::Effort;
-use super::outcome::{Figure, Outcome, Plot};
-use super::plots;
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 /// Largest error, and largest half width of a 95 % interval, %.
 const LIMIT: f64 = 2.0;
@@ -125,29 +123,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         figures.push(Figure::told(of("samples"), found.n_samples as f64, ""));
         figures.push(Figure::told(of("residuals"), found.noise_percent, "%"));
         figures.push(Figure::told(of("condition"), found.condition, ""));
-        let residuals = found.signals.iter().enumerate();
-        panels.push(Panel {
-            y_label: "residual (% of force)".into(),
-            name: format!("{}", panels.len() + 1),
-            series: residuals
-                .map(|(index, signal)| {
-                    let largest = signal.measured.iter().copied().fold(0.0, f64::max);
-                    let size = signal.measured.len().div_ceil(WINDOWS);
-                    let pairs: Vec<f64> = signal
-                        .fitted
-                        .iter()
-                        .zip(&signal.measured)
-                        .map(|(a, b)| a - b)
-                        .collect();
-                    let windows = pairs.chunks(size).enumerate();
-                    let mean =
-                        |window: &[f64]| 100.0 * window.iter().sum::<f64>() / (largest * window.len() as f64);
-                    let points = windows.map(|(at, window)| [at as f64, mean(window)]).collect();
-                    plots::line(format!("press {}", index + 1), index, points)
-                })
-                .collect(),
-            ..Panel::default()
-        });
+        panels.push(residuals(panels.len() + 1, &found));
     }
     Ok(Outcome {
         done: done.trim_end().to_owned(),
@@ -165,6 +141,26 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
             .scene(),
         }],
     })
+}
+
+/// Fitted less measured force, % of the largest: means over [`WINDOWS`] parts of each press.
+fn residuals(number: usize, found: &Fit) -> Panel {
+    let line = |(index, signal): (usize, &FittedSignal)| {
+        let largest = signal.measured.iter().copied().fold(0.0, f64::max);
+        let size = signal.measured.len().div_ceil(WINDOWS);
+        let pairs = signal.fitted.iter().zip(&signal.measured);
+        let residuals: Vec<f64> = pairs.map(|(fitted, measured)| fitted - measured).collect();
+        let mean = |window: &[f64]| 100.0 * window.iter().sum::<f64>() / (largest * window.len() as f64);
+        let windows = residuals.chunks(size).enumerate();
+        let points = windows.map(|(at, window)| [at as f64, mean(window)]).collect();
+        plots::line(format!("press {}", index + 1), index, points)
+    };
+    Panel {
+        y_label: "residual (% of force)".into(),
+        name: number.to_string(),
+        series: found.signals.iter().enumerate().map(line).collect(),
+        ..Panel::default()
+    }
 }
 
 fn cases() -> Vec<Case> {

@@ -4,11 +4,9 @@ use anyhow::Result;
 use glam::{DMat3, DVec3};
 use twintac_softbody::{SoftBody, State};
 
-use super::Effort;
-use super::outcome::{Figure, Outcome, Plot};
 use super::patch_test::{ELEMENTS, TIGHT, body_of, deform, irregular_block};
-use super::plots;
 use super::rubbers::{Rubber, rubbers};
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 /// How a block is deformed by an amount, and the first Piola–Kirchhoff stress of that, kPa.
 type ClosedForm = fn(&Rubber, f64) -> (DMat3, DMat3);

@@ -8,9 +8,7 @@ use twintac_shape::{Pose, Shape, Surfaces};
 use twintac_simulate::PortReadout;
 use twintac_softbody::{Element, Material, SoftBody, SolverSettings};
 
-use super::Effort;
-use super::outcome::{Figure, Outcome, Plot};
-use super::plots;
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const BALL: Shape = Shape::Sphere { radius_mm: 12.5 };
 const DEPTH_MM: f64 = 2.0;

@@ -6,10 +6,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use twintac_mesh::bricks;
 
-use super::Effort;
-use super::outcome::{Figure, Outcome};
 use super::patch_test::{ELEMENTS, TIGHT, body_of, deform, irregular_block, linear};
 use super::rubbers::rubbers;
+use crate::rung::{Effort, Figure, Outcome};
 
 /// Tolerance where there is no load: relative to that of a light touch, so that round-off is near.
 const UNLOADED: f64 = 1e-9;

@@ -5,10 +5,8 @@ use glam::DVec3;
 use twintac_shape::{Pose, Shape, Surfaces};
 use twintac_softbody::{Material, SoftBody, SolverSettings};
 
-use super::Effort;
 use super::half_space::{HalfSpace, SIZE};
-use super::outcome::{Figure, Outcome, Plot};
-use super::plots;
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const RADIUS_MM: f64 = 200.0;
 const DEPTH_MM: f64 = 0.5;

@@ -5,9 +5,7 @@ use glam::DVec3;
 use twintac_mesh::{TetMesh, bricks};
 use twintac_softbody::{Element, Material, SoftBody, SolverSettings};
 
-use super::Effort;
-use super::outcome::{Figure, Outcome, Plot};
-use super::plots;
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const YOUNGS_KPA: f64 = 70.0;
 const NEARLY: f64 = 0.4999;

@@ -8,10 +8,8 @@ mod derivatives;
 mod half_space;
 mod hertz;
 mod locking;
-pub(crate) mod outcome;
 mod page;
 mod patch_test;
-pub(crate) mod plots;
 mod random_press;
 mod robustness;
 mod rubbers;
@@ -24,34 +22,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 
 use crate::calculix;
-use outcome::Outcome;
-
-/// A rung.
-pub(crate) struct Rung {
-    number: u8,
-    name: &'static str,
-    title: &'static str,
-    run: fn(Effort) -> Result<Outcome>,
-}
-
-/// How much work a rung may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effort {
-    /// Minutes.
-    Quick,
-    /// As much as it takes.
-    Full,
-}
-
-impl Effort {
-    /// One or the other.
-    fn choose<T>(self, quick: T, full: T) -> T {
-        match self {
-            Self::Quick => quick,
-            Self::Full => full,
-        }
-    }
-}
+use crate::rung::{Effort, Rung, number};
 
 /// From the bottom to the top.
 const RUNGS: &[Rung] = &[
@@ -166,7 +137,7 @@ pub(crate) fn run(options: &Options) -> Result<bool> {
         } else {
             writeln!(out, "{:2} {}", rung.number, rung.title)?;
             for figure in &outcome.figures {
-                let value = format!("{} {}", outcome::number(figure.value), figure.unit);
+                let value = format!("{} {}", number(figure.value), figure.unit);
                 let limit = figure.limit.to_string();
                 let verdict = if figure.holds { "" } else { "does not hold" };
                 writeln!(out, "   {:70} {value:>18}  {limit:10} {verdict}", figure.name)?;

@@ -6,9 +6,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
 
-use super::outcome::{Outcome, number};
-use super::{Effort, Rung};
 use crate::files::write_whole;
+use crate::rung::{Effort, Outcome, Rung, number};
 
 /// Writes a rung's page, plots and record, and returns the record.
 pub(crate) fn write(folder: &Path, rung: &Rung, outcome: &Outcome, effort: Effort) -> Result<Value> {

@@ -7,9 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use twintac_mesh::{TetMesh, bricks};
 use twintac_softbody::{Element, Frame, Material, SoftBody, SolverSettings, State};
 
-use super::Effort;
-use super::outcome::{Figure, Outcome};
 use super::rubbers::rubbers;
+use crate::rung::{Effort, Figure, Outcome};
 
 /// Both elements.
 pub(crate) const ELEMENTS: [(&str, Element); 2] = [

@@ -7,15 +7,14 @@ use anyhow::{Context, Result};
 use glam::DVec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use twintac_plot::Series;
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, SignedDistance};
 use twintac_simulate::{Gel, SimulateSettings};
 use twintac_softbody::{Frame, SoftBody, SolveError, State};
 
-use super::Effort;
-use super::outcome::{Figure, Outcome, Plot};
-use super::plots;
 use super::random_press::{ENOUGH_N, draw};
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const SEED: u64 = 10;
 
@@ -81,7 +80,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         ("the paper's mesh", fine, effort.choose(4, 200)),
     ];
     let mut figures = Vec::new();
-    let (mut iterations, mut ratios, mut depths) = (Vec::new(), Vec::new(), Vec::new());
+    let mut histograms = Histograms::default();
     let mut done = format!(
         "Every other press is on the sensor in its shell, the others on its gel alone. Half of the presses take an indenter of the sensor, half an invented sphere, cylinder, box or cone with rounded edges; each \
          stands anywhere above the gel, tilted by up to 20°, and goes on from first touch in frames of at most {STEP_MM} mm to a depth \
@@ -95,77 +94,102 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
             .each_ref()
             .map(|sensor| Gel::new(sensor.clone(), settings.clone()));
         let all = press_all(set, &gels, n_presses)?;
-        let count =
-            |is_it: &dyn Fn(&End) -> bool| all.iter().filter(|press| is_it(&press.end)).count() as f64;
-        let percent = 100.0 / all.len() as f64;
-        let converged = percent * count(&End::is_well);
-        let n_nodes = all.iter().map(|press| press.n_nodes).sum::<usize>() / all.len();
-        figures.push(Figure::at_least(
-            99.5,
-            format!("{set}: {n_presses} presses, {n_nodes} nodes: converged or stopped"),
-            converged,
-            "%",
-        ));
-        let mut kinds: BTreeMap<&End, usize> = BTreeMap::new();
-        for press in &all {
-            *kinds.entry(&press.end).or_default() += 1;
-        }
-        for (end, count) in kinds {
-            match end {
-                End::Stopped => {
-                    let name = format!("{set}: of these stopped by the shell or the board");
-                    figures.push(Figure::told(name, percent * count as f64, "%"));
-                }
-                End::Failed(kind) => {
-                    figures.push(Figure::told(format!("{set}: {kind}"), count as f64, ""));
-                }
-                End::Converged | End::Wrong(_) => {}
-            }
-        }
-        let wrong = count(&|end| matches!(end, End::Wrong(_)));
-        figures.push(Figure::at_most(0.0, format!("{set}: wrong answers"), wrong, ""));
+        figures.extend(figures_of(set, &all));
         done.push_str(&failures(set, &all));
-
-        let frames = all.iter().flat_map(|press| &press.iterations);
-        let per_frame: Vec<f64> = frames.map(|count| f64::from(*count)).collect();
-        iterations.push(plots::histogram(set, color, &per_frame, [0.0, 60.0], 30));
-        let smallest: Vec<f64> = all.iter().map(|press| press.smallest_volume_ratio).collect();
-        ratios.push(plots::histogram(set, color, &smallest, [0.0, 1.0], 25));
-        let reached: Vec<f64> = all.iter().map(|press| press.depth_mm).collect();
-        depths.push(plots::histogram(set, color, &reached, [0.0, 6.0], 24));
+        histograms.add(set, color, &all);
     }
-    let plot = |name, title, x_label, caption: &str, series| Plot {
-        name,
-        caption: caption.into(),
-        scene: plots::lines(title, [x_label, "how many"], true, series),
-    };
     Ok(Outcome {
         done,
         figures,
-        plots: vec![
+        plots: histograms.plots(),
+    })
+}
+
+/// How many presses of a set ended how.
+fn figures_of(set: &str, all: &[Pressed]) -> Vec<Figure> {
+    let count = |is_it: &dyn Fn(&End) -> bool| all.iter().filter(|press| is_it(&press.end)).count() as f64;
+    let percent = 100.0 / all.len() as f64;
+    let n_nodes = all.iter().map(|press| press.n_nodes).sum::<usize>() / all.len();
+    let mut figures = vec![Figure::at_least(
+        99.5,
+        format!(
+            "{set}: {} presses, {n_nodes} nodes: converged or stopped",
+            all.len()
+        ),
+        percent * count(&End::is_well),
+        "%",
+    )];
+    let mut kinds: BTreeMap<&End, usize> = BTreeMap::new();
+    for press in all {
+        *kinds.entry(&press.end).or_default() += 1;
+    }
+    for (end, count) in kinds {
+        match end {
+            End::Stopped => {
+                let name = format!("{set}: of these stopped by the shell or the board");
+                figures.push(Figure::told(name, percent * count as f64, "%"));
+            }
+            End::Failed(kind) => {
+                figures.push(Figure::told(format!("{set}: {kind}"), count as f64, ""));
+            }
+            End::Converged | End::Wrong(_) => {}
+        }
+    }
+    let wrong = count(&|end| matches!(end, End::Wrong(_)));
+    figures.push(Figure::at_most(0.0, format!("{set}: wrong answers"), wrong, ""));
+    figures
+}
+
+/// Histograms, a line for each set of presses.
+#[derive(Default)]
+struct Histograms {
+    iterations: Vec<Series>,
+    volume_ratios: Vec<Series>,
+    depths: Vec<Series>,
+}
+
+impl Histograms {
+    fn add(&mut self, set: &str, color: usize, all: &[Pressed]) {
+        let frames = all.iter().flat_map(|press| &press.iterations);
+        let per_frame: Vec<f64> = frames.map(|count| f64::from(*count)).collect();
+        let smallest: Vec<f64> = all.iter().map(|press| press.smallest_volume_ratio).collect();
+        let reached: Vec<f64> = all.iter().map(|press| press.depth_mm).collect();
+        let histogram = |values: &[f64], range, n_bins| plots::histogram(set, color, values, range, n_bins);
+        self.iterations.push(histogram(&per_frame, [0.0, 60.0], 30));
+        self.volume_ratios.push(histogram(&smallest, [0.0, 1.0], 25));
+        self.depths.push(histogram(&reached, [0.0, 6.0], 24));
+    }
+
+    fn plots(self) -> Vec<Plot> {
+        let plot = |name, title, x_label, caption: &str, series| Plot {
+            name,
+            caption: caption.into(),
+            scene: plots::lines(title, [x_label, "how many"], true, series),
+        };
+        vec![
             plot(
                 "iterations",
                 "Newton iterations of a frame",
                 "iterations, the last bin and more",
                 "Every frame of every press.",
-                iterations,
+                self.iterations,
             ),
             plot(
                 "volume-ratio",
                 "Smallest volume ratio of a press",
                 "J",
                 "Of any tetrahedron in any frame of a press; 0 would be flat.",
-                ratios,
+                self.volume_ratios,
             ),
             plot(
                 "depth",
                 "Depth reached",
                 "depth, mm",
                 "Where presses ended: at the depth drawn, at 200 N, or in an error.",
-                depths,
+                self.depths,
             ),
-        ],
-    })
+        ]
+    }
 }
 
 fn press_all(set: &str, gels: &[Gel; 2], n_presses: u64) -> Result<Vec<Pressed>> {

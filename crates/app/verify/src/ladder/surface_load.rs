@@ -6,10 +6,8 @@ use anyhow::Result;
 use glam::DVec3;
 use twintac_softbody::{Material, SoftBody, SolverSettings};
 
-use super::Effort;
 use super::half_space::{HalfSpace, SIZE};
-use super::outcome::{Figure, Outcome, Plot};
-use super::plots;
+use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const RADIUS_MM: f64 = 10.0;
 const YOUNGS_KPA: f64 = 70.0;

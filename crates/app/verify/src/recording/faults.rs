@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use serde::{Deserialize, Serialize};
 use twintac_log::Event;
 
-use super::{LabBench, Summary, WORK, read};
+use super::lab_bench::{LabBench, Summary, WORK, read};
 use crate::files::write_whole;
 
 /// Time of the bench at which a fault begins, s: the gel is pressed by then.

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use rand::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use super::{LabBench, Options, read};
+use super::lab_bench::{LabBench, read};
 
 /// Longest time from the start to the kill, s: within the second press.
 const LATEST_S: f64 = 9.0;
@@ -36,16 +36,17 @@ impl Kills {
     }
 }
 
-pub(crate) fn run(bench: &LabBench, options: &Options) -> Result<Kills> {
-    let mut chance = rand_chacha::ChaCha8Rng::seed_from_u64(options.seed);
+/// Records `count` times, and kills each recording at a moment that `seed` draws.
+pub(crate) fn run(bench: &LabBench, count: usize, seed: u64) -> Result<Kills> {
+    let mut chance = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut kills = Kills {
-        kills: options.kills,
+        kills: count,
         while_recording: 0,
         logs: 0,
         unreadable: Vec::new(),
         missing_s: Vec::new(),
     };
-    for number in 0..options.kills {
+    for number in 0..count {
         bench.clear()?;
         let mut process = bench.command(None).spawn().context("starting twintac")?;
         std::thread::sleep(Duration::from_secs_f64(chance.random_range(0.2..LATEST_S)));

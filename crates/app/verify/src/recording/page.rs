@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::Results;
 use super::faults::Outcome;
+use super::results::Results;
 
 pub(super) fn markdown(results: &Results) -> String {
     let whole = &results.whole;
