@@ -11,6 +11,8 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 
+use crate::cargo::cargo;
+
 /// What `cargo fuzz --sanitizer none` compiles with.
 const FLAGS: &str = "--cfg fuzzing -Ccodegen-units=1 -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
@@ -54,7 +56,8 @@ struct Outcome {
     crashes: usize,
 }
 
-pub(crate) fn fuzz(given: &[String]) -> Result<()> {
+/// Fuzzes the targets that `given` names, or all of them, with the options of `cargo xtask fuzz`.
+pub fn fuzz(given: &[String]) -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .context("the workspace's folder")?;
@@ -62,7 +65,7 @@ pub(crate) fn fuzz(given: &[String]) -> Result<()> {
     let options = Options::parse(given, &all)?;
     let programs = build(root)?;
     let work = programs.join("fuzz-work");
-    crate::cargo(&[
+    cargo(&[
         "run",
         "--release",
         "--quiet",

@@ -3,19 +3,19 @@
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
-mod fuzz;
-#[cfg(test)]
-mod tidy;
+use std::process::ExitCode;
 
-use std::process::{Command, ExitCode, ExitStatus};
+use anyhow::Result;
+use xtask::cargo::{cargo, run};
+use xtask::{fuzz, readme, rooms};
 
-use anyhow::{Context, Result, bail};
-
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | bench softbody [--json] | bench scaling | bench peers | bench recording |
+const USAGE: &str = "usage: cargo xtask <ci | lint | test | readme | rooms | bench softbody [--json] | bench scaling | bench peers | bench recording |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, then test, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
   test   every test, optimised
+  readme the commands of README.md, word for word; xtask/readme.toml says which are not run, and why
+  rooms  writes the tables of ARCHITECTURE.md from xtask/rooms.toml
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
@@ -30,6 +30,8 @@ fn main() -> ExitCode {
         "ci" => lint().and_then(|()| test()),
         "lint" => lint(),
         "test" => test(),
+        "readme" => readme::run(&xtask::root()),
+        "rooms" => rooms::page::write(&xtask::root()),
         "bench" => bench(),
         "fuzz" => fuzz::fuzz(&std::env::args().skip(2).collect::<Vec<_>>()),
         "verify" => return verify(),
@@ -88,20 +90,4 @@ fn of_verify(given: &[String]) -> Vec<&str> {
     let mut arguments = vec!["run", "--release", "--quiet", "--package", "twintac-verify", "--"];
     arguments.extend(given.iter().map(String::as_str));
     arguments
-}
-
-fn cargo(arguments: &[&str]) -> Result<()> {
-    if !run(arguments)?.success() {
-        bail!("`cargo {}` failed", arguments.join(" "));
-    }
-    Ok(())
-}
-
-fn run(arguments: &[&str]) -> Result<ExitStatus> {
-    eprintln!("cargo {}", arguments.join(" "));
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    Command::new(cargo)
-        .args(arguments)
-        .status()
-        .context("starting cargo")
 }

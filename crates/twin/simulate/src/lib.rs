@@ -15,7 +15,6 @@ mod readout;
 mod rounding;
 mod settings;
 mod shell;
-mod source;
 mod touch;
 
 pub use error::SimulateError;

@@ -1,0 +1,109 @@
+//! Files that import each other in a circle.
+//!
+//! A file imports another if it names something that the other defines, outside its tests: in a `use`, or by a path in its code. What counts is the
+//! file that defines the thing, not the one that a re-export passes it on through: `crate::linear::Solver` is an import of the file of `Solver`, and
+//! a `mod.rs` that does no more than `pub use` its files' names imports none of them. A module that is named only to reach something in it is no
+//! import either.
+//!
+//! Between files of different folders no circle is allowed. Files of one folder may form one where the comment `// circle: why` stands at the
+//! end of the line that closes it, or on the line above; circles are looked for without such imports.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::tree::{Crate, Target};
+
+/// Imports of files, by index: the line of the first one.
+type Imports = BTreeMap<(usize, usize), usize>;
+
+/// The circles of a library or program, one text each.
+pub fn circles(sources: &Crate) -> Vec<String> {
+    let imports = imports(sources);
+    let circles = knots(sources.files.len(), &imports);
+    circles
+        .iter()
+        .map(|knot| describe(sources, &imports, knot))
+        .collect()
+}
+
+fn imports(sources: &Crate) -> Imports {
+    let mut imports = Imports::new();
+    for (from, file) in sources.files.iter().enumerate() {
+        for mention in &file.mentions {
+            let Some(Target::Item(module, _)) = sources.resolve(&mention.module, &mention.segments) else {
+                continue;
+            };
+            let to = sources.modules[&module].file;
+            let same_folder = folder(&file.path) == folder(&sources.files[to].path);
+            if to == from || mention.is_reexport || (same_folder && says_why(&file.lines, mention.line)) {
+                continue;
+            }
+            let first = imports.entry((from, to)).or_insert(mention.line);
+            *first = mention.line.min(*first);
+        }
+    }
+    imports
+}
+
+fn folder(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(folder, _)| folder)
+}
+
+/// `line` counts from 1.
+fn says_why(lines: &[String], line: usize) -> bool {
+    let reason = |line: Option<&String>| {
+        let reason = line.and_then(|line| line.split_once("// circle: "));
+        reason.is_some_and(|(_, reason)| !reason.trim().is_empty())
+    };
+    reason(lines.get(line - 1)) || line >= 2 && reason(lines.get(line - 2))
+}
+
+/// Sets of files each of which reaches each other one.
+fn knots(files: usize, imports: &Imports) -> Vec<BTreeSet<usize>> {
+    let reached: Vec<BTreeSet<usize>> = (0..files)
+        .map(|start| {
+            let mut reached = BTreeSet::new();
+            let mut pending = vec![start];
+            while let Some(from) = pending.pop() {
+                for &(_, to) in imports.range((from, 0)..(from + 1, 0)).map(|(pair, _)| pair) {
+                    if reached.insert(to) {
+                        pending.push(to);
+                    }
+                }
+            }
+            reached
+        })
+        .collect();
+    let mut knots: Vec<BTreeSet<usize>> = (0..files)
+        .filter(|file| reached[*file].contains(file))
+        .map(|file| {
+            let back = reached[file]
+                .iter()
+                .filter(|other| reached[**other].contains(&file));
+            back.copied().collect()
+        })
+        .collect();
+    knots.sort();
+    knots.dedup();
+    knots
+}
+
+fn describe(sources: &Crate, imports: &Imports, knot: &BTreeSet<usize>) -> String {
+    let folders: BTreeSet<&str> = knot
+        .iter()
+        .map(|file| folder(&sources.files[*file].path))
+        .collect();
+    let mut text = if folders.len() > 1 {
+        "files of different folders import each other in a circle:".to_owned()
+    } else {
+        "files import each other in a circle, and none says why:".to_owned()
+    };
+    for (&(from, to), line) in imports {
+        if knot.contains(&from) && knot.contains(&to) {
+            text += &format!(
+                "\n  {}:{line} imports {}",
+                sources.files[from].path, sources.files[to].path
+            );
+        }
+    }
+    text
+}
