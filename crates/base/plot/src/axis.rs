@@ -5,6 +5,9 @@ use crate::font;
 use crate::number::{fixed, short};
 use crate::scene::{Anchor, SMALL, Scene};
 
+/// Pixels between the tick texts of a vertical axis, about.
+const LEFT_GAP: f64 = 26.0;
+
 /// A quantity's range mapped onto a range of pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
@@ -66,11 +69,17 @@ impl Axis {
 
     /// Horizontal grid lines and tick texts on the left of the box `[left, right]`.
     pub(crate) fn draw_left(&self, scene: &mut Scene, left: f64, right: f64) {
-        for (value, text) in self.ticks(26.0) {
+        for (value, text) in self.ticks(LEFT_GAP) {
             let y = self.place(value);
             scene.line([[left, y], [right, y]], Ink::Grid, 1.0);
             scene.small([left - 6.0, y + 0.35 * SMALL], text, Ink::Muted, Anchor::End);
         }
+    }
+
+    /// Room that the tick texts of [`draw_left`](Self::draw_left) take, px.
+    pub(crate) fn left_room(&self) -> f64 {
+        let ticks = self.ticks(LEFT_GAP);
+        font::widest(ticks.iter().map(|(_, text)| text.as_str()), SMALL) + 6.0
     }
 
     /// Tick texts below `bottom`, with grid lines up to `top`.
@@ -78,8 +87,7 @@ impl Axis {
         for (value, text) in self.ticks(56.0) {
             let x = self.place(value);
             scene.line([[x, top], [x, bottom]], Ink::Grid, 1.0);
-            let inside = x.min(scene.width - 2.0 - 0.5 * font::text_width(&text, SMALL));
-            scene.small([inside, bottom + 5.0 + SMALL], text, Ink::Muted, Anchor::Middle);
+            scene.centred([x, bottom + 5.0 + SMALL], &text, Ink::Muted);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Paints a scene as a PNG on white paper, anti-aliased, with the embedded font.
 
 use tiny_skia::{
-    Color, FillRule, FilterQuality, IntSize, Mask, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
+    Color, FillRule, FilterQuality, IntSize, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
     StrokeDash, Transform,
 };
 use ttf_parser::{Face, OutlineBuilder};
@@ -9,81 +9,111 @@ use ttf_parser::{Face, OutlineBuilder};
 use crate::PlotError;
 use crate::color::Ink;
 use crate::font;
-use crate::scene::{Anchor, Mark, Scene};
+use crate::scene::{Anchor, MARGIN, Mark, Scene};
 
-/// The scene as the bytes of a PNG file, `scale` pixels for each pixel of the scene (2 looks sharp on paper).
+/// The scene on white paper with a margin, as the bytes of a PNG file; `scale` pixels for each pixel of the scene (2 looks
+/// sharp on paper).
 ///
 /// # Errors
 /// [`PlotError::Raster`] if the size is zero or too large for memory.
 pub fn png(scene: &Scene, scale: f64) -> Result<Vec<u8>, PlotError> {
-    let (width_px, height_px) = ((scene.width * scale).ceil(), (scene.height * scale).ceil());
+    let [[x0, y0], [x1, y1]] = scene.painted(MARGIN);
+    let is_empty = !(scene.width > 0.0 && scene.height > 0.0);
+    let [width_px, height_px] = [x1 - x0, y1 - y0].map(|side| (side * scale).ceil());
     let failed = |reason: String| PlotError::Raster {
         width_px,
         height_px,
         reason,
     };
-    let mut pixmap = Pixmap::new(width_px as u32, height_px as u32)
-        .ok_or_else(|| failed("the size is not possible".into()))?;
-    let face = font::face().ok_or_else(|| failed("the embedded font is damaged".into()))?;
-    pixmap.fill(Color::WHITE);
-    let transform = Transform::from_scale(scale as f32, scale as f32);
+    let pixmap = Pixmap::new(width_px as u32, height_px as u32).filter(|_| !is_empty);
+    let mut canvas = Canvas {
+        pixmap: pixmap.ok_or_else(|| failed("the size is not possible".into()))?,
+        transform: Transform::from_translate(-x0 as f32, -y0 as f32).post_scale(scale as f32, scale as f32),
+        face: font::face().ok_or_else(|| failed("the embedded font is damaged".into()))?,
+    };
+    canvas.pixmap.fill(Color::WHITE);
     for mark in &scene.marks {
-        paint(&mut pixmap, mark, transform, &face);
+        canvas.paint(mark);
     }
-    pixmap.encode_png().map_err(|error| failed(error.to_string()))
+    canvas
+        .pixmap
+        .encode_png()
+        .map_err(|error| failed(error.to_string()))
 }
 
-fn paint(pixmap: &mut Pixmap, mark: &Mark, transform: Transform, face: &Face<'_>) {
-    const NO_MASK: Option<&Mask> = None;
-    let mut fill = |path: Option<Path>, ink: Ink, opacity: f64, transform: Transform| {
-        if let Some(path) = path {
-            pixmap.fill_path(&path, &solid(ink, opacity), FillRule::Winding, transform, NO_MASK);
-        }
-    };
-    match mark {
-        Mark::Line {
-            points,
-            ink,
-            width,
-            dashed,
-        } => {
-            let dash = if *dashed {
-                StrokeDash::new(vec![4.0, 3.0], 0.0)
-            } else {
-                None
-            };
-            let line_join = tiny_skia::LineJoin::Round;
-            let stroke = Stroke {
-                width: *width as f32,
-                dash,
-                line_join,
-                ..Stroke::default()
-            };
-            if let Some(path) = polygon(points, false) {
-                pixmap.stroke_path(&path, &solid(*ink, 1.0), &stroke, transform, NO_MASK);
-            }
-        }
-        Mark::Area { points, ink, opacity } => fill(polygon(points, true), *ink, *opacity, transform),
-        Mark::Circle {
-            centre: [x, y],
-            radius,
-            fill: filling,
-            stroke,
-            opacity,
-        } => {
-            let path = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32);
-            if let Some(ink) = filling {
-                fill(path.clone(), *ink, *opacity, transform);
-            }
-            if let (Some(ink), Some(path)) = (stroke, path) {
+struct Canvas {
+    pixmap: Pixmap,
+    /// From pixels of the scene to those of the pixmap.
+    transform: Transform,
+    face: Face<'static>,
+}
+
+impl Canvas {
+    fn paint(&mut self, mark: &Mark) {
+        match mark {
+            Mark::Line {
+                points,
+                ink,
+                width,
+                dashed,
+            } => {
                 let stroke = Stroke {
-                    width: 1.25,
+                    width: *width as f32,
+                    dash: dashed.then(|| StrokeDash::new(vec![4.0, 3.0], 0.0)).flatten(),
+                    line_join: tiny_skia::LineJoin::Round,
                     ..Stroke::default()
                 };
-                pixmap.stroke_path(&path, &solid(*ink, 1.0), &stroke, transform, NO_MASK);
+                self.stroke(polygon(points, false).as_ref(), *ink, &stroke, self.transform);
             }
+            Mark::Area { points, ink, opacity } => {
+                self.fill(polygon(points, true).as_ref(), *ink, *opacity, self.transform);
+            }
+            Mark::Circle {
+                centre: [x, y],
+                radius,
+                fill,
+                stroke,
+                opacity,
+            } => {
+                let path = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32);
+                if let Some(ink) = fill {
+                    self.fill(path.as_ref(), *ink, *opacity, self.transform);
+                }
+                if let Some(ink) = stroke {
+                    let stroke = Stroke {
+                        width: 1.25,
+                        ..Stroke::default()
+                    };
+                    self.stroke(path.as_ref(), *ink, &stroke, self.transform);
+                }
+            }
+            Mark::Text { .. } => self.text(mark),
+            Mark::Image {
+                at,
+                size,
+                columns,
+                pixels,
+            } => self.image(*at, *size, *columns, pixels),
         }
-        Mark::Text {
+    }
+
+    fn fill(&mut self, path: Option<&Path>, ink: Ink, opacity: f64, transform: Transform) {
+        if let Some(path) = path {
+            let paint = solid(ink, opacity);
+            self.pixmap
+                .fill_path(path, &paint, FillRule::Winding, transform, None);
+        }
+    }
+
+    fn stroke(&mut self, path: Option<&Path>, ink: Ink, stroke: &Stroke, transform: Transform) {
+        if let Some(path) = path {
+            self.pixmap
+                .stroke_path(path, &solid(ink, 1.0), stroke, transform, None);
+        }
+    }
+
+    fn text(&mut self, mark: &Mark) {
+        let Mark::Text {
             at,
             text,
             size,
@@ -91,54 +121,49 @@ fn paint(pixmap: &mut Pixmap, mark: &Mark, transform: Transform, face: &Face<'_>
             anchor,
             bold,
             upwards,
-        } => {
-            let (path, width_em) = letters(face, text);
-            let shift_em = match anchor {
-                Anchor::Start => 0.0,
-                Anchor::Middle => -0.5 * width_em,
-                Anchor::End => -width_em,
-            };
-            let size = *size as f32;
-            let turn = if *upwards {
-                Transform::from_rotate(-90.0)
-            } else {
-                Transform::identity()
-            };
-            let placed = Transform::from_translate(shift_em as f32, 0.0)
-                .post_scale(size, size)
-                .post_concat(turn)
-                .post_translate(at[0] as f32, at[1] as f32)
-                .post_concat(transform);
-            fill(path.clone(), *ink, 1.0, placed);
-            // The embedded font is a light one: an outline gives it the weight of a browser's text.
-            let weight = if *bold { 0.055 } else { 0.018 };
-            if let Some(path) = path {
-                let stroke = Stroke {
-                    width: weight,
-                    ..Stroke::default()
-                };
-                pixmap.stroke_path(&path, &solid(*ink, 1.0), &stroke, placed, NO_MASK);
-            }
-        }
-        Mark::Image {
-            at,
-            size,
-            columns,
-            pixels,
-        } => {
-            let Some(image) = pixmap_of(*columns, pixels) else {
-                return;
-            };
-            let (across, down) = (image.width() as f32, image.height() as f32);
-            let placed = Transform::from_scale(size[0] as f32 / across, size[1] as f32 / down)
-                .post_translate(at[0] as f32, at[1] as f32)
-                .post_concat(transform);
-            let style = PixmapPaint {
-                quality: FilterQuality::Bilinear,
-                ..PixmapPaint::default()
-            };
-            pixmap.draw_pixmap(0, 0, image.as_ref(), &style, placed, NO_MASK);
-        }
+        } = mark
+        else {
+            return;
+        };
+        let (path, width_em) = letters(&self.face, text);
+        let shift_em = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * width_em,
+            Anchor::End => -width_em,
+        };
+        let turn = if *upwards {
+            Transform::from_rotate(-90.0)
+        } else {
+            Transform::identity()
+        };
+        let placed = Transform::from_translate(shift_em as f32, 0.0)
+            .post_scale(*size as f32, *size as f32)
+            .post_concat(turn)
+            .post_translate(at[0] as f32, at[1] as f32)
+            .post_concat(self.transform);
+        self.fill(path.as_ref(), *ink, 1.0, placed);
+        // The embedded font is a light one: an outline gives it the weight of a browser's text.
+        let stroke = Stroke {
+            width: if *bold { 0.055 } else { 0.018 },
+            ..Stroke::default()
+        };
+        self.stroke(path.as_ref(), *ink, &stroke, placed);
+    }
+
+    fn image(&mut self, at: [f64; 2], size: [f64; 2], columns: usize, pixels: &[[u8; 3]]) {
+        let Some(image) = pixmap_of(columns, pixels) else {
+            return;
+        };
+        let (across, down) = (image.width() as f32, image.height() as f32);
+        let placed = Transform::from_scale(size[0] as f32 / across, size[1] as f32 / down)
+            .post_translate(at[0] as f32, at[1] as f32)
+            .post_concat(self.transform);
+        let style = PixmapPaint {
+            quality: FilterQuality::Bilinear,
+            ..PixmapPaint::default()
+        };
+        self.pixmap
+            .draw_pixmap(0, 0, image.as_ref(), &style, placed, None);
     }
 }
 
@@ -238,22 +263,22 @@ mod tests {
     fn sample() -> Scene {
         let mut scene = Scene::new("sample", 80.0, 40.0);
         scene.rectangle([10.0, 10.0], [20.0, 20.0], Ink::Rgb([10, 200, 30]), 1.0);
-        scene.title([40.0, 20.0], "kPa");
+        scene.small([40.0, 20.0], "kPa", Ink::Text, Anchor::Start);
         scene
     }
 
     #[test]
     fn colours_land_where_they_belong_and_letters_leave_ink() {
         let pixmap = Pixmap::decode_png(&png(&sample(), 2.0).unwrap()).unwrap();
-        assert_eq!((pixmap.width(), pixmap.height()), (160, 80));
+        assert_eq!((pixmap.width(), pixmap.height()), (208, 128));
         let at = |x, y| {
             let pixel = pixmap.pixel(x, y).unwrap();
             [pixel.red(), pixel.green(), pixel.blue()]
         };
-        assert_eq!(at(40, 40), [10, 200, 30]);
+        assert_eq!(at(64, 64), [10, 200, 30]);
         assert_eq!(at(4, 4), [255, 255, 255]);
-        let dark = (80..160)
-            .flat_map(|x| (0..80).map(move |y| (x, y)))
+        let dark = (104..184)
+            .flat_map(|x| (24..104).map(move |y| (x, y)))
             .filter(|&(x, y)| at(x, y)[0] < 100);
         assert!(dark.count() > 50);
     }

@@ -93,9 +93,11 @@ pub struct Scene {
     pub marks: Vec<Mark>,
 }
 
-/// The one size of small print in all pictures, px.
+/// Height of small print in all pictures, px.
 pub const SMALL: f64 = 11.0;
-/// The one size of titles in all pictures, px.
+/// Paper around a picture in a file of its own, px.
+pub(crate) const MARGIN: f64 = 12.0;
+/// Height of titles in all pictures, px.
 pub(crate) const TITLE: f64 = 13.0;
 
 impl Scene {
@@ -192,9 +194,26 @@ impl Scene {
         self.text(at, text, SMALL, ink, anchor, false);
     }
 
-    /// Adds a title.
-    pub fn title(&mut self, at: [f64; 2], text: impl Into<String>) {
-        self.text(at, text, TITLE, Ink::Text, Anchor::Start, true);
+    /// Adds small print centred on a point, but moved and, where it must be, shortened so that it stays in the picture.
+    pub fn centred(&mut self, [x, y]: [f64; 2], text: &str, ink: Ink) {
+        let text = font::fitted(text, SMALL, self.width);
+        let half = 0.5 * font::text_width(&text, SMALL);
+        let inside = x.clamp(
+            half.min(0.5 * self.width),
+            (self.width - half).max(0.5 * self.width),
+        );
+        self.small([inside, y], text, ink, Anchor::Middle);
+    }
+
+    /// Adds the title in the upper left corner, in as many lines as it needs; returns where it ends, px.
+    pub fn heading(&mut self, text: &str) -> f64 {
+        const LINE: f64 = 17.0;
+        let mut baseline = 14.0 - LINE;
+        for line in font::bold_lines(text, TITLE, self.width) {
+            baseline += LINE;
+            self.text([0.0, baseline], line, TITLE, Ink::Text, Anchor::Start, true);
+        }
+        baseline + 6.0
     }
 
     /// Adds a text on its baseline.
@@ -221,9 +240,15 @@ impl Scene {
         }
     }
 
-    /// Adds small print that reads upwards, centred on the point.
-    pub fn upwards(&mut self, at: [f64; 2], text: impl Into<String>) {
-        let (text, size, ink, anchor) = (text.into(), SMALL, Ink::Muted, Anchor::Middle);
+    /// Adds small print that reads upwards, centred on a point, but moved and shortened so that it stays in the picture.
+    pub fn upwards(&mut self, [x, y]: [f64; 2], text: &str) {
+        let text = font::fitted(text, SMALL, self.height);
+        let half = 0.5 * font::text_width(&text, SMALL);
+        let inside = y.clamp(
+            half.min(0.5 * self.height),
+            (self.height - half).max(0.5 * self.height),
+        );
+        let (at, size, ink, anchor) = ([x, inside], SMALL, Ink::Muted, Anchor::Middle);
         if is_finite(at) && !text.is_empty() {
             self.marks.push(Mark::Text {
                 at,
@@ -237,23 +262,135 @@ impl Scene {
         }
     }
 
-    /// Adds a row of named swatches from `at` on, wrapped at the right edge; returns the height used, px.
+    /// Adds a row of named swatches from `at` on, wrapped at the right edge; returns the height used, px. An entry is a
+    /// name, its colour, and whether its line is interrupted.
     pub fn legend(&mut self, at: [f64; 2], entries: &[(&str, Ink, bool)]) -> f64 {
         let [left, mut y] = at;
         let mut x = left;
         for &(name, ink, dashed) in entries {
-            let width = 24.0 + font::text_width(name, SMALL) + 14.0;
+            let name = font::fitted(name, SMALL, self.width - left - 24.0);
+            let width = 24.0 + font::text_width(&name, SMALL);
             if x > left && x + width > self.width {
                 (x, y) = (left, y + 16.0);
             }
             self.stroke([[x, y - 4.0], [x + 18.0, y - 4.0]], ink, 3.0, dashed);
             self.small([x + 24.0, y], name, Ink::Muted, Anchor::Start);
-            x += width;
+            x += width + 14.0;
         }
         if entries.is_empty() { 0.0 } else { y - at[1] + 16.0 }
+    }
+
+    /// Texts that reach beyond the picture. A test of every plot wants none; where there is one all the same, the picture is
+    /// painted larger, so that nothing is ever cut off.
+    pub fn overflow(&self) -> Vec<&str> {
+        let is_outside = |mark: &&Mark| {
+            text_box(mark).is_some_and(|[[x0, y0], [x1, y1]]| {
+                const ROUNDING: f64 = 1e-6;
+                x0.min(y0) < -ROUNDING || x1 > self.width + ROUNDING || y1 > self.height + ROUNDING
+            })
+        };
+        let texts = self.marks.iter().filter(is_outside);
+        texts
+            .filter_map(|mark| match mark {
+                Mark::Text { text, .. } => Some(text.as_str()),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The rectangle that is painted, upper left and lower right: the picture with all its texts, and a margin, px.
+    pub(crate) fn painted(&self, margin: f64) -> [[f64; 2]; 2] {
+        let boxes = self.marks.iter().filter_map(text_box);
+        let [[x0, y0], [x1, y1]] = boxes.fold([[0.0, 0.0], [self.width, self.height]], |all, one| {
+            [
+                [f64::min(all[0][0], one[0][0]), f64::min(all[0][1], one[0][1])],
+                [f64::max(all[1][0], one[1][0]), f64::max(all[1][1], one[1][1])],
+            ]
+        });
+        [[x0 - margin, y0 - margin], [x1 + margin, y1 + margin]]
+    }
+}
+
+/// Upper left and lower right corner of a text, px; `None` of what is no text.
+fn text_box(mark: &Mark) -> Option<[[f64; 2]; 2]> {
+    const ABOVE: f64 = 0.8;
+    const BELOW: f64 = 0.25;
+    let Mark::Text {
+        at: [x, y],
+        size,
+        anchor,
+        upwards,
+        ..
+    } = mark
+    else {
+        return None;
+    };
+    let width = mark.text_width();
+    let start = match anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => -0.5 * width,
+        Anchor::End => -width,
+    };
+    Some(if *upwards {
+        [
+            [x - ABOVE * size, y - start - width],
+            [x + BELOW * size, y - start],
+        ]
+    } else {
+        [
+            [x + start, y - ABOVE * size],
+            [x + start + width, y + BELOW * size],
+        ]
+    })
+}
+
+impl Mark {
+    /// Room that a text takes along its direction, px; 0 of what is no text.
+    pub(crate) fn text_width(&self) -> f64 {
+        match self {
+            Mark::Text {
+                text,
+                size,
+                bold: true,
+                ..
+            } => font::bold_width(text, *size),
+            Mark::Text { text, size, .. } => font::text_width(text, *size),
+            _ => 0.0,
+        }
     }
 }
 
 fn is_finite(point: [f64; 2]) -> bool {
     point[0].is_finite() && point[1].is_finite()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_beyond_the_picture_is_found_and_painted_all_the_same() {
+        let mut scene = Scene::new("narrow", 60.0, 40.0);
+        scene.small([2.0, 12.0], "inside", Ink::Text, Anchor::Start);
+        assert!(scene.overflow().is_empty());
+        scene.small([10.0, 30.0], "pressure of a taxel", Ink::Text, Anchor::End);
+        assert_eq!(scene.overflow(), ["pressure of a taxel"]);
+        let [[left, top], [right, bottom]] = scene.painted(0.0);
+        assert!(left < -50.0 && (top, right, bottom) == (0.0, 60.0, 40.0));
+    }
+
+    #[test]
+    fn labels_and_legends_stay_in_the_picture_however_long_they_are() {
+        let long = "a very long label indeed, ".repeat(9);
+        let mut scene = Scene::new("narrow", 120.0, 300.0);
+        scene.heading(&long);
+        scene.centred([0.0, 200.0], &long, Ink::Text);
+        scene.centred([118.0, 220.0], "short, kPa", Ink::Text);
+        scene.upwards([20.0, 290.0], &long);
+        scene.legend(
+            [0.0, 240.0],
+            &[(&long, Ink::Twin, false), ("b", Ink::Sensor, true)],
+        );
+        assert_eq!(scene.overflow(), Vec::<&str>::new());
+    }
 }

@@ -11,13 +11,19 @@ const FONTS: &str = "Inter,system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica 
 /// The scene as an SVG element that stretches with its surroundings; the background stays clear.
 ///
 /// Colours are plain attributes, so that any viewer shows them and a page may restyle them by their value.
+#[must_use]
 pub fn svg(scene: &Scene) -> String {
+    svg_with_margin(scene, 0.0)
+}
+
+pub(crate) fn svg_with_margin(scene: &Scene, margin: f64) -> String {
     let mut out = String::new();
-    let (width, height) = (number(scene.width), number(scene.height));
+    let [[x0, y0], [x1, y1]] = scene.painted(margin);
+    let (x, y, width, height) = (number(x0), number(y0), number(x1 - x0), number(y1 - y0));
     let name = escape(&scene.name);
     let _ = write!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{x} {y} {width} {height}\" width=\"{width}\" \
          height=\"{height}\" role=\"img\" aria-label=\"{name}\" font-family=\"{FONTS}\">",
     );
     for mark in &scene.marks {
@@ -44,13 +50,8 @@ fn paint(out: &mut String, mark: &Mark) {
             )
         }
         Mark::Area { points, ink, opacity } => {
-            write!(
-                out,
-                "<path d=\"{}Z\" fill=\"{}\"{}/>",
-                path(points),
-                ink.hex(),
-                faint(*opacity)
-            )
+            let (path, ink, faint) = (path(points), ink.hex(), faint(*opacity));
+            write!(out, "<path d=\"{path}Z\" fill=\"{ink}\"{faint}/>")
         }
         Mark::Circle {
             centre: [x, y],
@@ -70,33 +71,7 @@ fn paint(out: &mut String, mark: &Mark) {
                 "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{fill}\"{faint}{stroke}/>"
             )
         }
-        Mark::Text {
-            at: [x, y],
-            text,
-            size,
-            ink,
-            anchor,
-            bold,
-            upwards,
-        } => {
-            let anchor = match anchor {
-                Anchor::Start => "",
-                Anchor::Middle => " text-anchor=\"middle\"",
-                Anchor::End => " text-anchor=\"end\"",
-            };
-            let (x, y) = (number(*x), number(*y));
-            let weight = if *bold { " font-weight=\"600\"" } else { "" };
-            let turn = if *upwards {
-                format!(" transform=\"rotate(-90 {x} {y})\"")
-            } else {
-                String::new()
-            };
-            let (size, ink, text) = (number(*size), ink.hex(), escape(text));
-            write!(
-                out,
-                "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{ink}\"{anchor}{weight}{turn}>{text}</text>"
-            )
-        }
+        Mark::Text { .. } => text(out, mark),
         Mark::Image {
             at: [x, y],
             size: [width, height],
@@ -114,6 +89,41 @@ fn paint(out: &mut String, mark: &Mark) {
             )
         }
     };
+}
+
+fn text(out: &mut String, mark: &Mark) -> std::fmt::Result {
+    let Mark::Text {
+        at: [x, y],
+        text,
+        size,
+        ink,
+        anchor,
+        bold,
+        upwards,
+    } = mark
+    else {
+        return Ok(());
+    };
+    let anchor = match anchor {
+        Anchor::Start => "",
+        Anchor::Middle => " text-anchor=\"middle\"",
+        Anchor::End => " text-anchor=\"end\"",
+    };
+    let (x, y) = (number(*x), number(*y));
+    let weight = if *bold { " font-weight=\"600\"" } else { "" };
+    let turn = if *upwards {
+        format!(" transform=\"rotate(-90 {x} {y})\"")
+    } else {
+        String::new()
+    };
+    let (size, ink, text) = (number(*size), ink.hex(), escape(text));
+    // Whatever font the viewer has, the text takes the room that the layout gave it.
+    let room = number(mark.text_width());
+    write!(
+        out,
+        "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{ink}\" textLength=\"{room}\" \
+         lengthAdjust=\"spacingAndGlyphs\"{anchor}{weight}{turn}>{text}</text>"
+    )
 }
 
 fn faint(opacity: f64) -> String {

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use crate::{PlotError, Scene, png, svg};
+use crate::scene::MARGIN;
+use crate::svg::svg_with_margin;
+use crate::{PlotError, Scene, png};
 
 impl Scene {
     /// Writes the picture as `.svg` or `.png` (at twice the size), by the file's ending, whole or not at all.
@@ -12,7 +14,7 @@ impl Scene {
     /// [`PlotError::Write`] if the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), PlotError> {
         match path.extension().and_then(|ending| ending.to_str()) {
-            Some("svg") => PlotError::write_whole(path, svg(self).as_bytes()),
+            Some("svg") => PlotError::write_whole(path, svg_with_margin(self, MARGIN).as_bytes()),
             Some("png") => PlotError::write_whole(path, &png(self, 2.0)?),
             _ => Err(PlotError::Format {
                 path: path.to_owned(),

@@ -83,26 +83,25 @@ pub(crate) struct Sheet {
 
 const WIDTH: f64 = 920.0;
 const DIMENSION_ROW: f64 = 24.0;
-const UPRIGHT_ROW: f64 = 54.0;
 
 impl Sheet {
     /// Draws all views, 920 px wide at most.
     pub(crate) fn scene(&self) -> Scene {
-        let upright = |view: &View| {
-            view.dimensions
-                .iter()
-                .filter(|dimension| dimension.is_upright())
-                .count()
-        };
-        let left = 16.0 + UPRIGHT_ROW * self.views.iter().map(upright).max().unwrap_or(0) as f64;
+        let uprights = |view: &View| view.dimensions.iter().filter(|one| one.is_upright()).count();
+        let most_uprights = self.views.iter().map(uprights).max().unwrap_or(0);
+        let dimensions = self.views.iter().flat_map(|view| &view.dimensions);
+        let labels = dimensions.map(|dimension| text_width(&dimension.label(), SMALL));
+        let upright_row = 20.0 + labels.fold(0.0, f64::max);
+        let left = 4.0 + upright_row * most_uprights as f64;
         let boxes: Vec<[[f64; 2]; 2]> = self.views.iter().map(View::bounds_mm).collect();
         let widest = boxes.iter().map(|[x, _]| x[1] - x[0]).fold(1e-6, f64::max);
         let highest = boxes.iter().map(|[_, y]| y[1] - y[0]).fold(1e-6, f64::max);
         let scale = ((WIDTH - left - 16.0) / widest).min(360.0 / highest);
 
-        let mut scene = Scene::new(&self.title, WIDTH, 0.0);
-        scene.title([0.0, 14.0], &self.title);
-        let mut top = 48.0 + scene.legend([0.0, 36.0], &self.legend());
+        let width = (left + scale * widest + 16.0).clamp(560.0, WIDTH);
+        let mut scene = Scene::new(&self.title, width, 0.0);
+        let below_title = scene.heading(&self.title);
+        let mut top = below_title + 28.0 + scene.legend([0.0, below_title + 16.0], &self.legend());
         for (view, [x_mm, y_mm]) in self.views.iter().zip(boxes) {
             scene.small([0.0, top], &view.name, Ink::Muted, Anchor::Start);
             top += 14.0;
@@ -111,6 +110,7 @@ impl Sheet {
                 x_low_mm: x_mm[0],
                 y_high_mm: y_mm[1],
                 scale,
+                upright_row,
             };
             let bottom = top + scale * (y_mm[1] - y_mm[0]);
             view.shapes
@@ -120,7 +120,6 @@ impl Sheet {
             top = bottom + DIMENSION_ROW * level as f64 + 30.0;
         }
         scene.height = top;
-        scene.width = (left + scale * widest + 16.0).clamp(560.0, WIDTH);
         scene
     }
 
@@ -176,6 +175,8 @@ struct Frame {
     x_low_mm: f64,
     y_high_mm: f64,
     scale: f64,
+    /// Room of an upright dimension with its label, px.
+    upright_row: f64,
 }
 
 impl Frame {
@@ -233,23 +234,29 @@ impl Shape {
         let middle = 0.5 * (x[0] + x[1]);
         let fits = text_width(name, SMALL) < x[1] - x[0] - 2.0 && y[1] - y[0] > SMALL + 4.0;
         let dark = matches!(self.part, Part::Chip | Part::Board);
-        match (fits, dark) {
-            // In the upper part of the shape, where no port is.
-            (true, true) => scene.small(
-                [middle, y[0] + SMALL + 3.0],
-                name,
-                Ink::Rgb([255; 3]),
-                Anchor::Middle,
-            ),
-            (true, false) => scene.small([x[0] + 5.0, y[0] + SMALL + 3.0], name, Ink::Text, Anchor::Start),
-            (false, _) => scene.small([middle, y[0] - 4.0], name, Ink::Text, Anchor::Middle),
-        }
+        let ink = if fits && dark {
+            Ink::Rgb([255; 3])
+        } else {
+            Ink::Text
+        };
+        let baseline = if fits {
+            0.5 * (y[0] + y[1]) + 0.35 * SMALL
+        } else {
+            y[0] - 4.0
+        };
+        scene.small([middle, baseline], name, ink, Anchor::Middle);
     }
 }
 
 impl Dimension {
     fn is_upright(&self) -> bool {
         (self.to_mm[1] - self.from_mm[1]).abs() > (self.to_mm[0] - self.from_mm[0]).abs()
+    }
+
+    fn label(&self) -> String {
+        let axis = usize::from(self.is_upright());
+        let distance_mm = (self.to_mm[axis] - self.from_mm[axis]).abs();
+        format!("{} mm", short(distance_mm))
     }
 }
 
@@ -266,13 +273,13 @@ impl View {
             let (from, to) = (frame.place(dimension.from_mm), frame.place(dimension.to_mm));
             if dimension.is_upright() {
                 upright += 1;
-                let x = left - UPRIGHT_ROW * upright as f64 + 34.0;
+                let x = left - frame.upright_row * (upright - 1) as f64 - 12.0;
                 let (top, low) = (from[1].min(to[1]), from[1].max(to[1]));
                 for point in [from, to] {
                     scene.line([[x - 4.0, point[1]], [point[0] - 2.0, point[1]]], Ink::Muted, 0.6);
                 }
                 arrow(scene, [x, top], [x, low]);
-                let text = label((dimension.to_mm[1] - dimension.from_mm[1]).abs());
+                let text = dimension.label();
                 scene.small([x - 6.0, 0.5 * (top + low) + 4.0], text, Ink::Text, Anchor::End);
             } else {
                 level += 1;
@@ -282,7 +289,7 @@ impl View {
                     scene.line([[point[0], point[1] + 2.0], [point[0], y + 4.0]], Ink::Muted, 0.6);
                 }
                 arrow(scene, [start, y], [end, y]);
-                let text = label((dimension.to_mm[0] - dimension.from_mm[0]).abs());
+                let text = dimension.label();
                 if text_width(&text, SMALL) < end - start - 4.0 {
                     scene.small([0.5 * (start + end), y - 5.0], text, Ink::Text, Anchor::Middle);
                 } else {
@@ -292,10 +299,6 @@ impl View {
         }
         level
     }
-}
-
-fn label(distance_mm: f64) -> String {
-    format!("{} mm", short(distance_mm))
 }
 
 /// A line with a head at either end.

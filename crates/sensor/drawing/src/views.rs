@@ -1,6 +1,7 @@
 //! A sensor seen from above, and cut.
 
 use glam::DVec3;
+use twintac_plot::fixed;
 use twintac_sensor::Sensor;
 
 use crate::sheet::{Dimension, Outline, Part, Shape, View};
@@ -141,7 +142,7 @@ pub(crate) fn section(sensor: &Sensor) -> View {
         to_mm: [low.x, high.z],
     }];
     View {
-        name: format!("section at y = {y_mm:.1} mm"),
+        name: format!("section at y = {} mm", fixed(y_mm, 1)),
         shapes,
         dimensions,
     }

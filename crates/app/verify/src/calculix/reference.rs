@@ -13,6 +13,7 @@ use super::case::{Case, Level, PORT_RADIUS_MM, line_mm, taxels_mm};
 use super::difference::{percent, pressure_percent};
 use super::face::Faces;
 use super::{deck, output};
+use crate::files::write_whole;
 
 /// Where CalculiX works, a folder a mesh.
 pub(super) const FOLDER: &str = "target/calculix";
@@ -176,7 +177,5 @@ pub(super) fn write(file: &Path, references: &mut [Reference]) -> Result<()> {
         .iter()
         .map(serde_json::to_string)
         .collect::<Result<_, _>>()?;
-    let temporary = file.with_extension("partial");
-    std::fs::write(&temporary, format!("[\n{}\n]\n", rows.join(",\n")))?;
-    std::fs::rename(&temporary, file).with_context(|| format!("writing {}", file.display()))
+    write_whole(file, format!("[\n{}\n]\n", rows.join(",\n")).as_bytes())
 }

@@ -1,10 +1,11 @@
 //! Force error against real-time factor.
 
-use twintac_plot::{Anchor, Ink, Scene};
+use twintac_plot::{Anchor, Ink, SMALL, Scene, text_width};
 
 use super::row::Row;
 
-const SIZE: [f64; 2] = [780.0, 400.0];
+/// Height of the picture, px; its width follows from the legend's.
+const HEIGHT: f64 = 400.0;
 /// The box: left, top, right, bottom, px.
 const BOX: [f64; 4] = [56.0, 40.0, 470.0, 350.0];
 /// Decades of the real-time factor.
@@ -15,12 +16,11 @@ const ERROR_DECADES: [i32; 2] = [-1, 2];
 /// Every run that gave figures: the largest force error over its depths, against its rate.
 pub(super) fn scene(rows: &[Row]) -> Scene {
     let [left, top, right, bottom] = BOX;
-    let mut scene = Scene::new("force error against real-time factor", SIZE[0], SIZE[1]);
-    scene.rectangle([0.0, 0.0], SIZE, Ink::Paper, 1.0);
-    scene.title(
-        [left, 22.0],
-        "Ball pressed 2 mm into a bonded block: force error against rate",
-    );
+    let entries = legend(rows);
+    let widths = entries.iter().map(|entry| text_width(entry, SMALL));
+    let width = right + 28.0 + widths.fold(0.0, f64::max);
+    let mut scene = Scene::new("force error against real-time factor", width, HEIGHT);
+    scene.heading("Ball pressed 2 mm into a bonded block: force error against rate");
     let x = |rtf: f64| left + (right - left) * part(rtf, DECADES);
     let y = |percent: f64| bottom - (bottom - top) * part(percent, ERROR_DECADES);
     for decade in DECADES[0]..=DECADES[1] {
@@ -57,29 +57,17 @@ pub(super) fn scene(rows: &[Row]) -> Scene {
         "largest force error at 0.5, 1 and 2 mm (%)",
     );
 
-    let mut legend: Vec<(&str, &str)> = Vec::new();
+    for (number, entry) in entries.iter().enumerate() {
+        let at = [right + 18.0, top + 10.0 + 18.0 * number as f64];
+        scene.dot([at[0], at[1] - 4.0], 4.0, ink(number), 1.0);
+        scene.small([at[0] + 10.0, at[1]], entry, Ink::Text, Anchor::Start);
+    }
     for row in rows {
         let (Some(figures), Some(percent)) = (&row.figures, row.worst_percent()) else {
             continue;
         };
-        let key = (row.engine.as_str(), row.setting.as_str());
-        let number = legend
-            .iter()
-            .position(|known| *known == key)
-            .unwrap_or(legend.len());
-        // The first row is ours; the others have a palette of six.
-        let ink = number.checked_sub(1).map_or(Ink::Text, Ink::Series);
-        if !legend.contains(&key) {
-            let at = [right + 18.0, top + 10.0 + 18.0 * legend.len() as f64];
-            scene.dot([at[0], at[1] - 4.0], 4.0, ink, 1.0);
-            scene.small(
-                [at[0] + 10.0, at[1]],
-                format!("{}, {}", key.0, key.1),
-                Ink::Text,
-                Anchor::Start,
-            );
-            legend.push(key);
-        }
+        let number = entries.iter().position(|entry| *entry == name(row));
+        let ink = ink(number.unwrap_or(0));
         let at = [x(figures.rtf), y(percent)];
         // A press that was cut short has been judged on less.
         if row.is_cut() {
@@ -88,7 +76,7 @@ pub(super) fn scene(rows: &[Row]) -> Scene {
             scene.dot(at, 4.0, ink, 0.9);
         }
     }
-    let at = [right + 18.0, top + 22.0 + 18.0 * legend.len() as f64];
+    let at = [right + 18.0, top + 22.0 + 18.0 * entries.len() as f64];
     scene.ring([at[0], at[1] - 4.0], 4.0, Ink::Muted, None);
     scene.small(
         [at[0] + 10.0, at[1]],
@@ -97,6 +85,27 @@ pub(super) fn scene(rows: &[Row]) -> Scene {
         Anchor::Start,
     );
     scene
+}
+
+/// Engines with their settings, in the order of their rows.
+fn legend(rows: &[Row]) -> Vec<String> {
+    let mut entries = Vec::new();
+    let drawn = |row: &&Row| row.figures.is_some() && row.worst_percent().is_some();
+    for entry in rows.iter().filter(drawn).map(name) {
+        if !entries.contains(&entry) {
+            entries.push(entry);
+        }
+    }
+    entries
+}
+
+fn name(row: &Row) -> String {
+    format!("{}, {}", row.engine, row.setting)
+}
+
+/// The first entry is ours; the others have a palette of six.
+fn ink(number: usize) -> Ink {
+    number.checked_sub(1).map_or(Ink::Text, Ink::Series)
 }
 
 /// Where a value lies between decades, 0 to 1; what lies outside sits on the edge.

@@ -3,7 +3,7 @@
 use super::{BELOW, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent};
 use crate::color::Ink;
-use crate::font;
+use crate::font::{fitted, widest};
 use crate::scene::{Anchor, SMALL, Scene};
 
 /// One bar.
@@ -36,19 +36,15 @@ impl Bars {
     /// Draws the bars, [`WIDTH_PX`] wide.
     pub fn scene(&self) -> Scene {
         const ROW: f64 = 24.0;
-        const LONGEST_NAME: f64 = 150.0;
-        let widest = |texts: &mut dyn Iterator<Item = &str>| {
-            texts
-                .map(|text| font::text_width(text, SMALL))
-                .fold(0.0, f64::max)
-        };
-        let names = widest(&mut self.bars.iter().map(|bar| bar.name.as_str())).min(LONGEST_NAME);
-        let values = widest(&mut self.bars.iter().map(|bar| bar.text.as_str()));
-        let (left, right) = (names + 12.0, WIDTH_PX - RIGHT - values - 8.0);
-        let top = 26.0;
+        const LONGEST_NAME: f64 = 170.0;
+        const LONGEST_VALUE: f64 = 100.0;
+        let names = widest(self.bars.iter().map(|bar| bar.name.as_str()), SMALL).min(LONGEST_NAME);
+        let values = widest(self.bars.iter().map(|bar| bar.text.as_str()), SMALL).min(LONGEST_VALUE);
+        let (left, right) = (names + 8.0, WIDTH_PX - RIGHT - values - 8.0);
+        let mut scene = Scene::new(&self.title, WIDTH_PX, 0.0);
+        let top = scene.heading(&self.title) + 6.0;
         let bottom = top + ROW * self.bars.len() as f64;
-        let mut scene = Scene::new(&self.title, WIDTH_PX, bottom + BELOW);
-        scene.title([0.0, 14.0], &self.title);
+        scene.height = bottom + BELOW;
 
         let ends = self.bars.iter().flat_map(|bar| {
             let half = bar.uncertainty.unwrap_or(0.0);
@@ -79,40 +75,22 @@ impl Bars {
             let baseline = middle + 0.35 * SMALL;
             scene.small(
                 [left - 8.0, baseline],
-                shortened(&bar.name, LONGEST_NAME),
+                fitted(&bar.name, SMALL, LONGEST_NAME),
                 Ink::Text,
                 Anchor::End,
             );
-            scene.small([text_at + 6.0, baseline], &bar.text, Ink::Text, Anchor::Start);
+            let value = fitted(&bar.text, SMALL, LONGEST_VALUE);
+            scene.small([text_at + 6.0, baseline], value, Ink::Text, Anchor::Start);
         }
         scene.line(
             [[axis.place(0.0), top], [axis.place(0.0), bottom]],
             Ink::Muted,
             1.0,
         );
-        scene.small(
-            [0.5 * (left + right), bottom + BELOW - 6.0],
-            &self.x_label,
-            Ink::Muted,
-            Anchor::Middle,
-        );
+        let middle = [0.5 * (left + right), bottom + BELOW - 6.0];
+        scene.centred(middle, &self.x_label, Ink::Muted);
         scene
     }
-}
-
-/// The name, cut with dots where it is wider than `widest` px.
-fn shortened(name: &str, widest: f64) -> String {
-    if font::text_width(name, SMALL) <= widest {
-        return name.to_owned();
-    }
-    let mut cut = name.to_owned();
-    while cut.pop().is_some() {
-        let shown = format!("{}…", cut.trim_end());
-        if font::text_width(&shown, SMALL) <= widest {
-            return shown;
-        }
-    }
-    String::new()
 }
 
 #[cfg(test)]

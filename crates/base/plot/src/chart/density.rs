@@ -1,9 +1,10 @@
 //! Two quantities that should agree, as the logarithm of how many readings fall into each cell.
 
-use super::{BELOW, LEFT, RIGHT, WIDTH_PX};
+use super::{BELOW, LABEL, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent, padded};
 use crate::color::{Ink, viridis};
-use crate::scene::{Anchor, Mark, Scene};
+use crate::font::text_width;
+use crate::scene::{Anchor, Mark, SMALL, Scene};
 
 /// Cells along either axis.
 const CELLS: usize = 72;
@@ -24,13 +25,14 @@ pub struct Density {
 impl Density {
     /// Draws the pairs, with the diagonal of agreement.
     pub fn scene(&self) -> Scene {
-        let (left, right) = (LEFT, WIDTH_PX - RIGHT);
-        let (top, bottom) = (54.0, 54.0 + right - left);
-        let mut scene = Scene::new(&self.title, WIDTH_PX, bottom + BELOW);
-        scene.title([0.0, 14.0], &self.title);
-
         let range = extent(self.points.iter().flatten().copied()).unwrap_or([0.0, 1.0]);
         let range = padded(range, 0.02);
+        let mut scene = Scene::new(&self.title, WIDTH_PX, 0.0);
+        let key = scene.heading(&self.title) + 6.0;
+        let right = WIDTH_PX - RIGHT;
+        let left = LABEL + Axis::linear(range, [0.0, right]).left_room();
+        let (top, bottom) = (key + 28.0, key + 28.0 + right - left);
+        scene.height = bottom + BELOW;
         let (x_axis, y_axis) = (
             Axis::linear(range, [left, right]),
             Axis::linear(range, [bottom, top]),
@@ -56,49 +58,39 @@ impl Density {
         }
         let diagonal = [range[0], range[1]].map(|value| [x_axis.place(value), y_axis.place(value)]);
         scene.dashes(diagonal, Ink::Text, 1.0);
-        self.draw_key(&mut scene, most, shade);
-        scene.small(
-            [0.5 * (left + right), scene.height - 6.0],
-            &self.x_label,
-            Ink::Muted,
-            Anchor::Middle,
-        );
+        draw_key(&mut scene, [left, key], most, shade);
+        let middle = [0.5 * (left + right), scene.height - 6.0];
+        scene.centred(middle, &self.x_label, Ink::Muted);
         scene.upwards([12.0, 0.5 * (top + bottom)], &self.y_label);
         scene
     }
+}
 
-    fn draw_key(&self, scene: &mut Scene, most: f64, shade: impl Fn(f64) -> [u8; 3]) {
-        const STEPS: usize = 48;
-        let (y, width) = (26.0, 80.0);
-        scene.small([LEFT, y + 9.0], "readings: 1", Ink::Muted, Anchor::Start);
-        let left = LEFT + crate::font::text_width("readings: 1", crate::scene::SMALL) + 6.0;
-        let pixels = (0..STEPS)
-            .map(|step| shade(most.powf(step as f64 / (STEPS - 1) as f64)))
-            .collect();
-        scene.marks.push(Mark::Image {
-            at: [left, y],
-            size: [width, 10.0],
-            columns: STEPS,
-            pixels,
-        });
-        scene.small(
-            [left + width + 6.0, y + 9.0],
-            format!("{most:.0}"),
-            Ink::Muted,
-            Anchor::Start,
-        );
-        scene.dashes(
-            [[left + width + 56.0, y + 5.0], [left + width + 76.0, y + 5.0]],
-            Ink::Text,
-            1.0,
-        );
-        scene.small(
-            [left + width + 82.0, y + 9.0],
-            "agreement",
-            Ink::Muted,
-            Anchor::Start,
-        );
-    }
+/// How many readings a shade stands for, and what the dashed line is, from `at` to the right.
+fn draw_key(scene: &mut Scene, [left, y]: [f64; 2], most: f64, shade: impl Fn(f64) -> [u8; 3]) {
+    const STEPS: usize = 48;
+    const WIDTH: f64 = 80.0;
+    let mut x = left;
+    let words = |scene: &mut Scene, x: &mut f64, text: &str| {
+        scene.small([*x, y + 9.0], text, Ink::Muted, Anchor::Start);
+        *x += text_width(text, SMALL) + 6.0;
+    };
+    words(scene, &mut x, "readings: 1");
+    let pixels = (0..STEPS)
+        .map(|step| shade(most.powf(step as f64 / (STEPS - 1) as f64)))
+        .collect();
+    scene.marks.push(Mark::Image {
+        at: [x, y],
+        size: [WIDTH, 10.0],
+        columns: STEPS,
+        pixels,
+    });
+    x += WIDTH + 6.0;
+    words(scene, &mut x, &format!("{most:.0}"));
+    x += 14.0;
+    scene.dashes([[x, y + 5.0], [x + 20.0, y + 5.0]], Ink::Text, 1.0);
+    x += 26.0;
+    words(scene, &mut x, "agreement");
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use crate::axis::{Axis, extent};
 use crate::color::{Ink, viridis};
-use crate::scene::{Anchor, Mark, Scene};
+use crate::font::{fitted, text_width, widest};
+use crate::scene::{Anchor, Mark, SMALL, Scene};
 
 /// One map with its name.
 #[derive(Clone, Debug)]
@@ -39,7 +40,6 @@ impl HeatMaps {
     pub fn scene(&self) -> Scene {
         const WIDTH: f64 = super::WIDTH_PX;
         const GAP: f64 = 16.0;
-        const BAR: f64 = 54.0;
         let count = self.maps.len().max(1);
         let aspect = self.maps.first().map_or(1.0, |heat| {
             let [width, height] = size_mm(heat);
@@ -51,21 +51,21 @@ impl HeatMaps {
         });
         let columns = if aspect > 1.6 { 1 } else { count };
         let rows = count.div_ceil(columns);
-        let room = WIDTH - BAR;
+        let range = self.range();
+        let room = WIDTH - 12.0 - color_bar_room(range, &self.unit);
         let tall = if columns == 1 { 180.0 } else { 260.0 };
         let width = ((room - GAP * (columns - 1) as f64) / columns as f64).min(tall * aspect);
         let height = (width / aspect).max(12.0);
-        let (top, pitch_y) = (40.0, height + 34.0);
-        let mut scene = Scene::new(&self.title, WIDTH, top + pitch_y * rows as f64 - 30.0);
-        scene.title([0.0, 14.0], &self.title);
-
-        let range = self.range();
+        let mut scene = Scene::new(&self.title, WIDTH, 0.0);
+        let (top, pitch_y) = (scene.heading(&self.title) + 20.0, height + 34.0);
+        scene.height = top + pitch_y * rows as f64 - 30.0;
         for (index, heat) in self.maps.iter().enumerate() {
             let at = [
                 (index % columns) as f64 * (width + GAP),
                 top + (index / columns) as f64 * pitch_y,
             ];
-            scene.small([at[0], at[1] - 6.0], &heat.name, Ink::Muted, Anchor::Start);
+            let name = fitted(&heat.name, SMALL, width);
+            scene.small([at[0], at[1] - 6.0], name, Ink::Muted, Anchor::Start);
             self.draw_map(&mut scene, heat, range, at, [width, height]);
         }
         let right = columns as f64 * (width + GAP) - GAP;
@@ -77,7 +77,7 @@ impl HeatMaps {
             right + 12.0,
             [top, bottom.max(top + 60.0)],
         );
-        scene.height = scene.height.max(bottom.max(top + 60.0) + 6.0);
+        scene.height = scene.height.max(bottom.max(top + 60.0) + 8.0);
         scene
     }
 
@@ -136,6 +136,19 @@ fn size_mm(map: &HeatMap) -> [f64; 2] {
     [0, 1].map(|axis| map.max_mm[axis] - map.min_mm[axis])
 }
 
+/// Pixels between the tick texts of a colour bar, about.
+const TICK_GAP: f64 = 28.0;
+/// Room of the longest unit that is written in full, px.
+const LONGEST_UNIT: f64 = 90.0;
+
+/// Room that a bar of the map colours takes with its texts, px.
+pub(crate) fn color_bar_room(range: [f64; 2], unit: &str) -> f64 {
+    // However long the bar, its texts are not wider than those of a long one.
+    let ticks = Axis::linear(range, [600.0, 0.0]).ticks(TICK_GAP);
+    let ticks = 15.0 + widest(ticks.iter().map(|(_, text)| text.as_str()), SMALL);
+    ticks.max(text_width(unit, SMALL).min(LONGEST_UNIT))
+}
+
 /// A vertical bar of the map colours with ticks on its right.
 pub(crate) fn draw_color_bar(
     scene: &mut Scene,
@@ -156,14 +169,11 @@ pub(crate) fn draw_color_bar(
         pixels,
     });
     let axis = Axis::linear(range, [bottom, top]);
-    for (value, text) in axis.ticks(28.0) {
-        scene.small(
-            [x + 15.0, axis.place(value) + 4.0],
-            text,
-            Ink::Muted,
-            Anchor::Start,
-        );
+    for (value, text) in axis.ticks(TICK_GAP) {
+        let at = [x + 15.0, axis.place(value) + 4.0];
+        scene.small(at, text, Ink::Muted, Anchor::Start);
     }
+    let unit = fitted(unit, SMALL, LONGEST_UNIT);
     scene.small([x, top - 10.0], unit, Ink::Muted, Anchor::Start);
 }
 

@@ -1,9 +1,10 @@
 //! Lines over a shared horizontal axis, in one panel or several.
 
-use super::{BELOW, LEFT, RIGHT, WIDTH_PX};
+use super::{BELOW, LABEL, RIGHT, WIDTH_PX};
 use crate::axis::{Axis, extent, padded};
 use crate::color::Ink;
-use crate::scene::{Anchor, Scene};
+use crate::font::{fitted, widest};
+use crate::scene::{Anchor, SMALL, Scene};
 
 /// One line.
 #[derive(Clone, Debug)]
@@ -52,45 +53,66 @@ impl Panels {
     /// Draws the panels, [`WIDTH_PX`] wide.
     pub fn scene(&self) -> Scene {
         const GAP: f64 = 12.0;
-        let named = self.panels.iter().any(|panel| !panel.name.is_empty());
-        let (left, right) = (LEFT, WIDTH_PX - if named { 46.0 } else { RIGHT });
-        let mut scene = Scene::new(&self.title, WIDTH_PX, 0.0);
-        scene.title([0.0, 14.0], &self.title);
-        let legend = self.legend();
-        let mut top = 28.0 + scene.legend([0.0, 34.0], &legend);
+        const LONGEST_NAME: f64 = 110.0;
+        let height = self.panel_height_px;
+        let names = widest(self.panels.iter().map(|panel| panel.name.as_str()), SMALL).min(LONGEST_NAME);
+        let ticks = self
+            .panels
+            .iter()
+            .map(|panel| self.y_axis(panel, [0.0, height]).left_room());
+        let left = LABEL + ticks.fold(0.0, f64::max);
+        let right = WIDTH_PX - if names > 0.0 { names + 8.0 } else { RIGHT };
 
-        let points = || {
-            self.panels
-                .iter()
-                .flat_map(|panel| &panel.series)
-                .flat_map(|series| &series.points)
-        };
-        let x_range = extent(points().map(|point| point[0])).unwrap_or([0.0, 1.0]);
+        let mut scene = Scene::new(&self.title, WIDTH_PX, 0.0);
+        let below_title = scene.heading(&self.title);
+        let legend = scene.legend([0.0, below_title + 14.0], &self.legend());
+        let mut top = below_title + 8.0 + legend;
+        let count = self.panels.len() as f64;
+        scene.height = top + count * height + (count - 1.0).max(0.0) * GAP + BELOW;
+
+        let points = self.series().flat_map(|series| &series.points);
+        let x_range = extent(points.map(|point| point[0])).unwrap_or([0.0, 1.0]);
         let x_axis = Axis::linear(x_range, [left, right]);
         for (index, panel) in self.panels.iter().enumerate() {
-            let bottom = top + self.panel_height_px;
-            let last = index + 1 == self.panels.len();
+            let bottom = top + height;
             self.draw_panel(&mut scene, panel, &x_axis, [left, right], [top, bottom]);
+            let name = fitted(&panel.name, SMALL, LONGEST_NAME);
+            let middle = 0.5 * (top + bottom);
+            scene.small([right + 8.0, middle + 4.0], name, Ink::Text, Anchor::Start);
             // Neighbours with the same quantity share one label in the middle.
             let same = |other: &&Panel| other.y_label == panel.y_label;
             if index == 0 || self.panels[index - 1].y_label != panel.y_label {
                 let run = self.panels[index..].iter().take_while(same).count() as f64;
-                let middle = top + 0.5 * (run * (self.panel_height_px + GAP) - GAP);
-                scene.upwards([12.0, middle], &panel.y_label);
+                let room = run * (height + GAP) - GAP;
+                let label = fitted(&panel.y_label, SMALL, room + GAP);
+                scene.upwards([12.0, top + 0.5 * room], &label);
             }
-            if last {
-                x_axis.draw_below(&mut scene, bottom, bottom);
-            }
-            top = bottom + if last { 0.0 } else { GAP };
+            top = bottom + GAP;
         }
-        scene.small(
-            [0.5 * (left + right), top + BELOW - 6.0],
+        let bottom = scene.height - BELOW;
+        x_axis.draw_below(&mut scene, bottom, bottom);
+        scene.centred(
+            [0.5 * (left + right), scene.height - 6.0],
             &self.x_label,
             Ink::Muted,
-            Anchor::Middle,
         );
-        scene.height = top + BELOW;
         scene
+    }
+
+    fn series(&self) -> impl Iterator<Item = &Series> {
+        self.panels.iter().flat_map(|panel| &panel.series)
+    }
+
+    fn y_axis(&self, panel: &Panel, [top, bottom]: [f64; 2]) -> Axis {
+        let points = panel.series.iter().flat_map(|series| &series.points);
+        let values = points.map(|point| point[1]);
+        if self.logarithmic {
+            let positive = extent(values.filter(|value| *value > 0.0)).unwrap_or([0.1, 1.0]);
+            Axis::logarithmic(panel.y_range.unwrap_or(positive), [bottom, top])
+        } else {
+            let data = extent(values).map_or([0.0, 1.0], |range| padded(range, 0.05));
+            Axis::linear(panel.y_range.unwrap_or(data), [bottom, top])
+        }
     }
 
     fn draw_panel(
@@ -99,22 +121,10 @@ impl Panels {
         panel: &Panel,
         x_axis: &Axis,
         [left, right]: [f64; 2],
-        [top, bottom]: [f64; 2],
+        height: [f64; 2],
     ) {
-        let values = panel
-            .series
-            .iter()
-            .flat_map(|series| &series.points)
-            .map(|point| point[1]);
-        let y_axis = if self.logarithmic {
-            let positive = extent(values.filter(|value| *value > 0.0)).unwrap_or([0.1, 1.0]);
-            Axis::logarithmic(panel.y_range.unwrap_or(positive), [bottom, top])
-        } else {
-            let data = extent(values).map_or([0.0, 1.0], |range| padded(range, 0.05));
-            Axis::linear(panel.y_range.unwrap_or(data), [bottom, top])
-        };
+        let y_axis = self.y_axis(panel, height);
         y_axis.draw_left(scene, left, right);
-        let middle = 0.5 * (top + bottom);
         for series in &panel.series {
             let pixels = thinned(&series.points, 2 * (right - left) as usize);
             let pixels = pixels
@@ -126,12 +136,11 @@ impl Panels {
                 scene.line(pixels, series.ink, series.width_px);
             }
         }
-        scene.small([right + 8.0, middle + 4.0], &panel.name, Ink::Text, Anchor::Start);
     }
 
     fn legend(&self) -> Vec<(&str, Ink, bool)> {
         let mut entries: Vec<(&str, Ink, bool)> = Vec::new();
-        for series in self.panels.iter().flat_map(|panel| &panel.series) {
+        for series in self.series() {
             let entry = (series.name.as_str(), series.ink, series.dashed);
             if !series.name.is_empty() && !entries.contains(&entry) {
                 entries.push(entry);

@@ -15,8 +15,8 @@ pub use places::Places;
 /// Width of a chart that stands alone or beside others, px.
 pub const WIDTH_PX: f64 = 380.0;
 
-/// Pixels left of a chart's box, for tick texts and the axis label.
-pub(crate) const LEFT: f64 = 52.0;
+/// Pixels left of the tick texts of a chart's vertical axis, for its label.
+pub(crate) const LABEL: f64 = 20.0;
 /// Pixels below a chart's box, for tick texts and the axis label.
 pub(crate) const BELOW: f64 = 40.0;
 /// Pixels right of a chart's box.

@@ -1,10 +1,10 @@
 //! A number at each pressed place, as colour over the gel.
 
-use super::heat::draw_color_bar;
-use super::{BELOW, LEFT, WIDTH_PX};
+use super::heat::{color_bar_room, draw_color_bar};
+use super::{BELOW, LABEL, WIDTH_PX};
 use crate::axis::{Axis, extent, padded};
 use crate::color::{Ink, viridis};
-use crate::scene::{Anchor, Scene};
+use crate::scene::Scene;
 
 /// Places on the gel with one value each.
 #[derive(Clone, Debug, Default)]
@@ -37,19 +37,6 @@ impl Places {
         };
         let (x_range, y_range) = (range(0), range(1));
         let length = |range: [f64; 2]| (range[1] - range[0]).max(1e-9);
-        let scale = ((WIDTH_PX - LEFT - 60.0) / length(x_range)).min(HEIGHT / length(y_range));
-        let (left, top) = (LEFT, 34.0);
-        let right = left + (scale * length(x_range)).max(40.0);
-        let bottom = top + (scale * length(y_range)).max(40.0);
-        let mut scene = Scene::new(&self.title, WIDTH_PX, bottom + BELOW);
-        scene.title([0.0, 14.0], &self.title);
-
-        let (x_axis, y_axis) = (
-            Axis::linear(x_range, [left, right]),
-            Axis::linear(y_range, [bottom, top]),
-        );
-        x_axis.draw_below(&mut scene, top, bottom);
-        y_axis.draw_left(&mut scene, left, right);
         let mut sorted: Vec<f64> = shown().map(|(_, value)| value).collect();
         sorted.sort_by(f64::total_cmp);
         let highest = sorted
@@ -57,6 +44,21 @@ impl Places {
             .copied()
             .unwrap_or(1.0);
         let lowest = sorted.first().copied().unwrap_or(0.0).min(0.0);
+        let left = LABEL + Axis::linear(y_range, [HEIGHT, 0.0]).left_room();
+        let bar = 14.0 + color_bar_room([lowest, highest], &self.unit);
+        let scale = ((WIDTH_PX - left - bar) / length(x_range)).min(HEIGHT / length(y_range));
+        let mut scene = Scene::new(&self.title, WIDTH_PX, 0.0);
+        let top = scene.heading(&self.title) + 14.0;
+        let right = left + (scale * length(x_range)).max(40.0);
+        let bottom = top + (scale * length(y_range)).max(40.0);
+        scene.height = bottom + BELOW;
+
+        let (x_axis, y_axis) = (
+            Axis::linear(x_range, [left, right]),
+            Axis::linear(y_range, [bottom, top]),
+        );
+        x_axis.draw_below(&mut scene, top, bottom);
+        y_axis.draw_left(&mut scene, left, right);
         let area = length(x_range) * length(y_range);
         let radius = (0.45 * scale * (area / sorted.len().max(1) as f64).sqrt()).clamp(1.0, 6.0);
         for (place, value) in shown() {
@@ -74,12 +76,7 @@ impl Places {
             right + 14.0,
             [top, bottom],
         );
-        scene.small(
-            [0.5 * (left + right), scene.height - 6.0],
-            "x, mm",
-            Ink::Muted,
-            Anchor::Middle,
-        );
+        scene.centred([0.5 * (left + right), scene.height - 6.0], "x, mm", Ink::Muted);
         scene.upwards([12.0, 0.5 * (top + bottom)], "y, mm");
         scene
     }

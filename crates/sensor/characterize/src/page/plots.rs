@@ -1,6 +1,6 @@
 //! The plots, in the order of the paper's: time, small and large force, sensitivity; then what it does not show.
 
-use twintac_plot::{Anchor, Bar, Bars, Ink, Panel, Panels, Scene, Series, viridis};
+use twintac_plot::{Anchor, Bar, Bars, Ink, Panel, Panels, SMALL, Scene, Series, text_width, viridis};
 use twintac_recording::{Control, Recording};
 
 use super::words::number;
@@ -408,20 +408,25 @@ pub(super) fn drift(found: &Characterization) -> Option<Plot> {
 /// What each taxel reads while each is pressed.
 pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
     const CELL: f64 = 36.0;
-    const LEFT: f64 = 64.0;
-    const TOP: f64 = 44.0;
+    let widest = |names: &[String]| {
+        let widths = names.iter().map(|name| text_width(name, SMALL));
+        widths.fold(0.0, f64::max)
+    };
     let (columns, rows) = (talk.taxels.len(), talk.pressed.len());
-    let (width, height) = (CELL * columns as f64, CELL * rows as f64);
-    let mut scene = Scene::new("Cross-talk", LEFT + width + 8.0, TOP + height + 30.0);
-    scene.title([0.0, 14.0], "Cross-talk, %");
+    let cell = CELL.max(widest(&talk.taxels) + 6.0);
+    let (width, height) = (cell * columns as f64, CELL * rows as f64);
+    let left = 26.0 + widest(&talk.pressed);
+    let mut scene = Scene::new("Cross-talk", (left + width + 8.0).max(120.0), 0.0);
+    let top = scene.heading("Cross-talk, %") + 24.0;
+    scene.height = top + height + 30.0;
     for (row, name) in talk.pressed.iter().enumerate() {
-        let y = TOP + CELL * (row as f64 + 0.5) + 4.0;
-        scene.small([LEFT - 6.0, y], name, Ink::Text, Anchor::End);
+        let y = top + CELL * (row as f64 + 0.5) + 4.0;
+        scene.small([left - 6.0, y], name, Ink::Text, Anchor::End);
         for (column, percent) in talk.percent[row].iter().enumerate() {
             let ink = Ink::Rgb(if *percent > 55.0 { [0; 3] } else { [255; 3] });
-            let x = LEFT + CELL * (column as f64 + 0.5);
-            let corner = [x - 0.5 * CELL, TOP + CELL * row as f64];
-            scene.rectangle(corner, [CELL; 2], Ink::Rgb(viridis(percent / 100.0)), 1.0);
+            let x = left + cell * (column as f64 + 0.5);
+            let corner = [x - 0.5 * cell, top + CELL * row as f64];
+            scene.rectangle(corner, [cell, CELL], Ink::Rgb(viridis(percent / 100.0)), 1.0);
             scene.small(
                 [x, y],
                 number(*percent, if percent.abs() < 10.0 { 1 } else { 2 }),
@@ -431,15 +436,14 @@ pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
         }
     }
     for (column, name) in talk.taxels.iter().enumerate() {
-        let x = LEFT + CELL * (column as f64 + 0.5);
-        scene.small([x, TOP - 6.0], name, Ink::Text, Anchor::Middle);
+        let x = left + cell * (column as f64 + 0.5);
+        scene.small([x, top - 6.0], name, Ink::Text, Anchor::Middle);
     }
-    scene.upwards([14.0, TOP + 0.5 * height], "pressed taxel");
-    scene.small(
-        [LEFT + 0.5 * width, TOP + height + 18.0],
+    scene.upwards([12.0, top + 0.5 * height], "pressed taxel");
+    scene.centred(
+        [left + 0.5 * width, top + height + 18.0],
         "read taxel",
         Ink::Muted,
-        Anchor::Middle,
     );
     let caption = format!(
         "Reading of each taxel in % of that of the pressed one, at {} N. In a gel a load spreads: it is no fault.",

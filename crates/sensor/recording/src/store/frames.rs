@@ -1,6 +1,5 @@
 //! Frames of a sensor that nobody presses by plan, as a table: one row per frame.
 
-use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,6 +10,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
+use twintac_files::PartialFile;
 
 use super::schema;
 use super::write::put_column;
@@ -38,16 +38,14 @@ pub struct TaxelCell {
 /// `<taxel>_fault`, null where there is none. The metadata has `twintac.sensor` and `twintac.provenance`.
 #[derive(Debug)]
 pub struct FrameTable {
-    writer: SerializedFileWriter<BufWriter<File>>,
+    writer: SerializedFileWriter<BufWriter<PartialFile>>,
     path: PathBuf,
-    partial: PathBuf,
     provenance: Provenance,
     time_s: Vec<f64>,
     gap_before: Vec<bool>,
     /// By taxel.
     cells: Vec<Vec<TaxelCell>>,
     rows: u64,
-    is_finished: bool,
 }
 
 impl FrameTable {
@@ -62,10 +60,7 @@ impl FrameTable {
         taxels: &[String],
     ) -> Result<Self, RecordingError> {
         let problem = |error: ParquetError| RecordingError::write(path, std::io::Error::other(error));
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(".partial");
-        let partial = path.with_file_name(name);
-        let file = File::create(&partial).map_err(|source| RecordingError::write(path, source))?;
+        let file = PartialFile::create(path).map_err(|source| RecordingError::write(path, source))?;
         let pair = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
         let properties = WriterProperties::builder()
             .set_compression(Compression::UNCOMPRESSED)
@@ -78,13 +73,11 @@ impl FrameTable {
         Ok(Self {
             writer: writer.map_err(problem)?,
             path: path.to_owned(),
-            partial,
             provenance,
             time_s: Vec::new(),
             gap_before: Vec::new(),
             cells: vec![Vec::new(); taxels.len()],
             rows: 0,
-            is_finished: false,
         })
     }
 
@@ -117,11 +110,11 @@ impl FrameTable {
     /// [`RecordingError::Write`].
     pub fn finish(mut self) -> Result<u64, RecordingError> {
         self.put_group()?;
-        let written = self.writer.finish().map_err(std::io::Error::other);
+        let written = self.writer.into_inner().map_err(std::io::Error::other);
         written
-            .and_then(|_| std::fs::rename(&self.partial, &self.path))
+            .and_then(|buffer| buffer.into_inner().map_err(std::io::IntoInnerError::into_error))
+            .and_then(PartialFile::finish)
             .map_err(|source| RecordingError::write(&self.path, source))?;
-        self.is_finished = true;
         Ok(self.rows)
     }
 
@@ -157,15 +150,6 @@ impl FrameTable {
         }
         group.close()?;
         Ok(())
-    }
-}
-
-/// Leaves nothing half-written.
-impl Drop for FrameTable {
-    fn drop(&mut self) {
-        if !self.is_finished {
-            let _ = std::fs::remove_file(&self.partial);
-        }
     }
 }
 

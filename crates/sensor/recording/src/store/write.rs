@@ -30,14 +30,7 @@ impl Recording {
         let problem = |e: ParquetError| RecordingError::write(path, std::io::Error::other(e));
         let bytes = self.to_parquet().map_err(problem)?;
         let bytes = seal::seal(bytes).map_err(|e| RecordingError::write(path, std::io::Error::other(e)))?;
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(".partial");
-        let partial = path.with_file_name(name);
-        let written = std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, path));
-        written.map_err(|source| {
-            let _ = std::fs::remove_file(&partial);
-            RecordingError::write(path, source)
-        })
+        twintac_files::write_whole(path, &bytes).map_err(|source| RecordingError::write(path, source))
     }
 
     pub(super) fn to_parquet(&self) -> Result<Vec<u8>, ParquetError> {
