@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn every_sign_that_plots_use_is_in_the_font() {
         let face = face().unwrap();
-        for sign in "0123456789.−±×·µ°%\u{a0}–—…²³abcXYZ()/".chars() {
+        for sign in "0123456789.−±×·µνσ°%\u{a0}–—…²³abcXYZ()/".chars() {
             assert!(face.glyph_index(sign).is_some(), "no glyph for {sign}");
         }
     }

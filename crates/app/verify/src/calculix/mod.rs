@@ -178,7 +178,7 @@ fn plot(compared: &[Compared]) -> Scene {
             })
         };
         Panel {
-            name: compared.case.split('-').next().unwrap_or_default().to_owned(),
+            name: compared.case.replace("-nu", ", ν 0."),
             y_label: "kPa".to_owned(),
             series: series(0).chain(series(1)).collect(),
             y_range: None,
