@@ -3,7 +3,7 @@
 use crate::{Law, MaterialError};
 
 /// The constants of a model, in kPa where they are stresses. Field names are those of files.
-pub trait Elastic {
+pub trait Elastic: Sized {
     /// The law with these constants.
     type Law<'a>: Law
     where
@@ -11,6 +11,9 @@ pub trait Elastic {
 
     /// The law; its energies are in kPa.
     fn law(&self) -> Self::Law<'_>;
+
+    /// Constants of a soft silicone, with a shear modulus of about 23 kPa: what tests of all models use.
+    fn example() -> Self;
 
     /// Refuses constants that make no material.
     ///

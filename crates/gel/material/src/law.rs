@@ -30,6 +30,35 @@ pub trait Law: Copy + Sync {
     fn stretches(&self) -> Option<Self::Stretches>;
 }
 
+/// What is known of a law before it is evaluated. It tells a solver what to compute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LawProperties {
+    /// See [`Law::USES_SECOND`].
+    pub uses_second: bool,
+    /// See [`Law::IS_CURVED`].
+    pub is_curved: bool,
+    /// See [`Law::IS_ISOCHORIC`].
+    pub is_isochoric: bool,
+    /// See [`Law::BEARS_INVERSION`].
+    pub bears_inversion: bool,
+    /// Whether the law has a part in the principal stretches.
+    pub uses_stretches: bool,
+}
+
+impl LawProperties {
+    /// The properties of a law.
+    #[must_use]
+    pub fn of<L: Law>(law: &L) -> Self {
+        Self {
+            uses_second: L::USES_SECOND,
+            is_curved: L::IS_CURVED,
+            is_isochoric: L::IS_ISOCHORIC,
+            bears_inversion: L::BEARS_INVERSION,
+            uses_stretches: law.stretches().is_some(),
+        }
+    }
+}
+
 /// An energy of the change of shape: a function of `Ī1 = J^(-2/3) I1` and `Ī2 = J^(-4/3) I2`.
 pub trait IsochoricLaw: Copy + Sync {
     /// Whether it depends on `Ī2`.

@@ -20,7 +20,7 @@ pub mod wide;
 pub use elastic::Elastic;
 pub use error::MaterialError;
 pub use invariants::{Curvatures, Invariants, Slopes};
-pub use law::{Isochoric, IsochoricLaw, Law};
+pub use law::{Isochoric, IsochoricLaw, Law, LawProperties};
 pub use material::{Material, PronyTerm};
 pub use model::*;
 pub use stretches::{NoStretches, StretchLaw, StretchSlopes, Stretches};

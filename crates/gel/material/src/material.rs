@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::positive;
-use crate::{Law, MaterialError, Model, NeoHookean, Visitor};
+use crate::{MaterialError, Model, NeoHookean};
 
 /// A nearly incompressible, possibly relaxing, isotropic rubber.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,32 +47,6 @@ impl Material {
         self.model.volume_modulus_kpa(self.bulk_modulus_kpa)
     }
 
-    /// Whether its pressure is that of the mean volume change alone.
-    #[must_use]
-    pub fn is_isochoric(&self) -> bool {
-        struct IsIsochoric;
-        impl Visitor for IsIsochoric {
-            type Output = bool;
-            fn visit<L: Law>(self, _: L) -> bool {
-                L::IS_ISOCHORIC
-            }
-        }
-        self.model.visit(IsIsochoric)
-    }
-
-    /// Whether its energy is defined where the volume ratio is not above zero.
-    #[must_use]
-    pub fn bears_inversion(&self) -> bool {
-        struct Bears;
-        impl Visitor for Bears {
-            type Output = bool;
-            fn visit<L: Law>(self, _: L) -> bool {
-                L::BEARS_INVERSION
-            }
-        }
-        self.model.visit(Bears)
-    }
-
     /// Refuses constants that make no material.
     ///
     /// # Errors
@@ -108,7 +82,7 @@ impl Material {
             let hint = "keep the sum of the weights below 1";
             return Err(error(format!("relaxes {fading} of the stiffness"), hint));
         }
-        if !self.prony.is_empty() && !self.is_isochoric() {
+        if !self.prony.is_empty() && !self.model.properties().is_isochoric {
             let problem = format!(
                 "is only for models of the change of shape alone, not `{}`",
                 self.model.name()

@@ -7,27 +7,33 @@
 
 mod advance;
 mod body;
+mod build;
 mod contact;
+mod derivatives;
 mod element;
 mod error;
+mod frame;
 mod linear;
 mod load;
 mod newton;
+mod nodal;
 mod parallel;
 mod push;
 mod relaxation;
+mod results;
 mod sensitivity;
 mod settings;
 mod state;
 
 pub use body::SoftBody;
+pub use derivatives::DerivativeErrors;
 pub use element::Element;
 pub use error::{Blocker, SoftBodyError, SolveError};
-pub use newton::DerivativeErrors;
+pub use frame::{Cost, Frame};
 pub use push::Push;
 pub use sensitivity::Direction;
 pub use settings::{LinearSolver, SolverSettings};
-pub use state::{Cost, Frame, State};
+pub use state::State;
 pub use twintac_material::{Material, Model, PronyTerm};
 
 use twintac_material::wide;

@@ -1,6 +1,7 @@
-//! Two halves of a piece of work at once.
+//! Work with the vectors of the processor, and two halves of a piece of work at the same time.
 //!
-//! What belongs to which half never depends on the number of threads, nor do the sums: any number of threads gives the same bits.
+//! What belongs to which half does not depend on the number of threads, nor do the sums: any number of threads gives the same bits. The same
+//! holds for the vectors, as all arithmetic is written out.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,6 +11,12 @@ const SPINS: u32 = 32;
 
 thread_local! {
     static MAY_SPLIT: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs a kernel with the widest vectors that the processor has. Not inlined: each kernel is compiled once for each kind of vectors.
+#[inline(never)]
+pub(crate) fn dispatch<K: pulp::NullaryFnOnce>(kernel: K) -> K::Output {
+    pulp::Arch::new().dispatch(kernel)
 }
 
 /// Does both, side by side where [`on_two_threads`] allows it.

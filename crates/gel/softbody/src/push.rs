@@ -5,7 +5,8 @@ use twintac_shape::{Pose, SignedDistance};
 
 use crate::SolveError;
 use crate::body::SoftBody;
-use crate::state::{Frame, State};
+use crate::frame::Frame;
+use crate::state::State;
 
 /// First step into the body, and first step from a place whose stiffness is not known, mm.
 const FIRST_STEP_MM: f64 = 0.1;

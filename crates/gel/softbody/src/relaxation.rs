@@ -14,27 +14,27 @@ use crate::wide::Wide;
 /// A symmetric matrix: xx, yy, zz, yz, xz, xy.
 pub(crate) type Symmetric<T> = [Wide<T>; 6];
 
-/// What a step of time does to each term of the series.
+/// The effect of a time step on each term of the series.
 #[derive(Clone, Debug)]
 pub(crate) struct Relaxation {
-    /// Part of the instantaneous answer that acts over this step.
+    /// Part of the instantaneous stress that acts over this step.
     pub(crate) factor: f64,
-    /// For each term: what is kept of `H`, and the weight of the new stress.
+    /// For each term the factor of `H`, and the weight of the change of stress.
     terms: Vec<(f64, f64)>,
     pub(crate) time_step_s: f64,
 }
 
-/// What a body remembers. Empty for an elastic material.
+/// The history variables of a body's material. Empty for an elastic material.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Memory {
+pub(crate) struct History {
     /// Instantaneous deviatoric stress `S̃` at the end of the last step, then the fading stresses `H`, MPa. `[n_points][1 + n_terms]`, flat.
     stresses: Vec<Symmetric<f64>>,
     stride: usize,
 }
 
-/// What eight points remember.
+/// The history variables of eight points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PointMemory<'a>(&'a [Symmetric<f64>]);
+pub(crate) struct PointHistory<'a>(&'a [Symmetric<f64>]);
 
 impl Relaxation {
     pub(crate) fn new(prony: &[PronyTerm], time_step_s: f64) -> Self {
@@ -57,8 +57,8 @@ impl Relaxation {
 
     /// The constant part of this step's stress, MPa; none for an elastic material.
     #[inline(always)]
-    pub(crate) fn offset(&self, memory: PointMemory) -> Option<Symmetric<f64>> {
-        let (last, fading) = memory.0.split_first()?;
+    pub(crate) fn offset(&self, history: PointHistory) -> Option<Symmetric<f64>> {
+        let (last, fading) = history.0.split_first()?;
         let mut offset = [Wide::zero(); 6];
         for ((kept, weight), fading) in self.terms.iter().zip(fading) {
             for i in 0..6 {
@@ -69,8 +69,8 @@ impl Relaxation {
     }
 }
 
-impl Memory {
-    /// The memory of a body that has been at rest for ever.
+impl History {
+    /// Those of a body that has been at rest for ever.
     pub(crate) fn new(n_points: usize, prony: &[PronyTerm]) -> Self {
         if prony.is_empty() {
             return Self::default();
@@ -87,11 +87,11 @@ impl Memory {
     }
 
     #[inline(always)]
-    pub(crate) fn point(&self, point: usize) -> PointMemory<'_> {
-        PointMemory(&self.stresses[point * self.stride..][..self.stride])
+    pub(crate) fn point(&self, point: usize) -> PointHistory<'_> {
+        PointHistory(&self.stresses[point * self.stride..][..self.stride])
     }
 
-    /// So many times this one plus so many times another.
+    /// The sum of these times `own` and others times `times`.
     pub(crate) fn combined(&self, own: f64, other: &Self, times: f64) -> Self {
         let mut sum = self.clone();
         let entries = sum.stresses.as_flattened_mut().iter_mut();
@@ -102,7 +102,7 @@ impl Memory {
     }
 
     /// Takes eight points to the end of a step, where their instantaneous deviatoric stress is `S̃`, MPa.
-    pub(crate) fn remember(&mut self, step: &Relaxation, point: usize, stress: &Symmetric<f64>) {
+    pub(crate) fn update(&mut self, step: &Relaxation, point: usize, stress: &Symmetric<f64>) {
         let stresses = &mut self.stresses[point * self.stride..][..self.stride];
         if let Some((last, fading)) = stresses.split_first_mut() {
             for ((kept, weight), fading) in step.terms.iter().zip(fading) {

@@ -1,28 +1,29 @@
-//! Where a soft body is, and what a step reports.
+//! The state of a soft body.
 
 use glam::DVec3;
-use serde::Serialize;
 use twintac_shape::Pose;
 
+use crate::body::SoftBody;
 use crate::contact::Contact;
 use crate::newton::Workspace;
-use crate::relaxation::Memory;
-use crate::sensitivity::Sensitivity;
+use crate::relaxation::History;
+use crate::sensitivity::{Direction, Sensitivity};
+use crate::{SoftBodyError, SolverSettings};
 
-/// Where a soft body is: what one press changes. Made by [`crate::SoftBody::rest`].
+/// The state of a soft body: what one press changes. Made by [`SoftBody::rest`].
 #[derive(Clone)]
 pub struct State {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
-    pub(crate) memory: Memory,
+    pub(crate) history: History,
     /// The indenter first, then the obstacles.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) gel_from_indenter: Option<Pose>,
     /// Last accepted motion, to start the next from.
     pub(crate) last: Option<Motion>,
-    /// How the force rose over the way where it was prescribed last, N/mm.
+    /// Slope of the force over the indenter's travel, of the last press by a force, N/mm.
     pub(crate) stiffness_n_per_mm: Option<f64>,
-    /// Rates of all of the above along each direction asked for.
+    /// Derivatives of all of the above along each direction asked for.
     pub(crate) sensitivities: Vec<Sensitivity>,
     pub(crate) workspace: Workspace,
 }
@@ -32,6 +33,16 @@ pub struct State {
 pub(crate) struct Motion {
     pub(crate) travel_mm: DVec3,
     pub(crate) displacements_mm: Vec<DVec3>,
+}
+
+impl Motion {
+    /// Sets the travel, and the displacements as the difference of new ones from old.
+    pub(crate) fn set(&mut self, travel_mm: DVec3, new_mm: &[DVec3], old_mm: &[DVec3]) {
+        self.travel_mm = travel_mm;
+        let ends = new_mm.iter().zip(old_mm);
+        self.displacements_mm.clear();
+        self.displacements_mm.extend(ends.map(|(new, old)| *new - *old));
+    }
 }
 
 impl State {
@@ -52,50 +63,75 @@ impl State {
     pub fn displacements_mm(&self) -> &[DVec3] {
         &self.displacements_mm
     }
+
+    /// Rate of [`crate::Frame::indenter_force_n`] after the last step along each direction, N over the unit of the parameter.
+    #[must_use]
+    pub fn force_sensitivities_n(&self) -> Vec<DVec3> {
+        let rates = self.sensitivities.iter();
+        rates.map(Sensitivity::indenter_force_n).collect()
+    }
 }
 
-/// What a step came to. Forces act on the gel, in the gel's frame; their sum is zero but for the residual.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Force of the indenter, N.
-    pub indenter_force_n: DVec3,
-    /// Torque of the indenter about the indenter's origin, N mm.
-    pub indenter_torque_n_mm: DVec3,
-    /// Force of what the gel is bonded to, N.
-    pub board_reaction_n: DVec3,
-    /// Force of all obstacles, N.
-    pub obstacle_reaction_n: DVec3,
-    /// Always true: a step that does not converge is an error. Kept for records of frames.
-    pub converged: bool,
-    /// Newton iterations, those of sub-steps that were given up included.
-    pub iterations: u32,
-    /// 2-norm of the unbalanced nodal forces over the load.
-    pub residual: f64,
-    /// Largest depth of a node inside a shape, mm.
-    pub penetration_mm: f64,
-    /// Smallest volume of a tetrahedron over its volume at rest.
-    pub smallest_volume_ratio: f64,
-    /// Time spent, s.
-    pub wall_time_s: f64,
-    /// What it was spent on.
-    pub cost: Cost,
-}
+impl SoftBody {
+    /// The body at rest, where it has been for ever.
+    #[must_use]
+    pub fn rest(&self) -> State {
+        State {
+            displacements_mm: vec![DVec3::ZERO; self.mesh.nodes_mm.len()],
+            pressures_mpa: vec![0.0; self.volume_stiffness.len()],
+            history: History::new(self.elements.n_points(), &self.material.prony),
+            contacts: std::iter::once(self.settings.friction)
+                .chain(self.obstacles.iter().map(|_| self.settings.obstacle_friction))
+                .map(|friction| Contact::new(self.boundary.nodes.len(), friction))
+                .collect(),
+            gel_from_indenter: None,
+            last: None,
+            stiffness_n_per_mm: None,
+            sensitivities: Vec::new(),
+            workspace: Workspace::default(),
+        }
+    }
 
-/// What a step's time was spent on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Cost {
-    /// Energy and forces of the elements, s.
-    pub forces_s: f64,
-    /// Distances to shapes, and contact forces, s.
-    pub contact_s: f64,
-    /// The matrix of the linear system, s.
-    pub assembly_s: f64,
-    /// Factors of the coarse system, s.
-    pub factorisation_s: f64,
-    /// Conjugate gradients, s.
-    pub linear_solve_s: f64,
-    /// How often the coarse system was factorised.
-    pub factorisations: u32,
-    /// Iterations of conjugate gradients.
-    pub linear_iterations: u32,
+    /// The body at rest, to be pressed with the rates of all results along some directions kept up to date.
+    ///
+    /// # Errors
+    /// A direction with a step that is not above zero, impossible materials, or another number of Prony terms; a body with friction, whose
+    /// rates are not followed.
+    pub fn rest_with_sensitivities(&self, directions: &[Direction]) -> Result<State, SoftBodyError> {
+        let mut state = self.rest();
+        let SolverSettings {
+            friction,
+            obstacle_friction,
+            ..
+        } = self.settings;
+        for (field, found) in [("friction", friction), ("obstacle_friction", obstacle_friction)] {
+            if found > 0.0 {
+                let expected = "0 where a press is to be differentiated";
+                return Err(SoftBodyError::Setting {
+                    field,
+                    expected,
+                    found,
+                });
+            }
+        }
+        for direction in directions {
+            for material in &direction.materials {
+                material.check()?;
+                if material.prony.len() != self.material().prony.len() {
+                    return Err(SoftBodyError::Direction);
+                }
+            }
+            if !(direction.step.is_finite() && direction.step > 0.0) {
+                return Err(SoftBodyError::Direction);
+            }
+            let of_touches = vec![vec![0.0; self.boundary.nodes.len()]; state.contacts.len()];
+            state.sensitivities.push(Sensitivity::zero(
+                direction.clone(),
+                [self.mesh.nodes_mm.len(), state.pressures_mpa.len()],
+                state.history.clone(),
+                of_touches,
+            ));
+        }
+        Ok(state)
+    }
 }

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{block, bond, even, models};
+use common::{block, bond, even};
 use glam::{DMat3, DQuat, DVec3};
 use twintac_mesh::TetMesh;
 use twintac_softbody::{Material, Model, PronyTerm, SoftBody, SolverSettings, State};
@@ -161,7 +161,7 @@ fn a_linear_field_passes_the_patch_test() {
     let stretches = DVec3::new(1.12, 0.87, 1.04);
     let turn = |a: f64, b: f64, c: f64| DMat3::from_quat(DQuat::from_euler(glam::EulerRot::XYZ, a, b, c));
     let gradient = turn(0.2, -0.1, 0.3) * DMat3::from_diagonal(stretches) * turn(-0.4, 0.3, 0.1);
-    for law in models() {
+    for law in Model::examples() {
         let body = body(law.clone(), Vec::new());
         let mut state = body.rest();
         deform(&body, &mut state, gradient, 0.0);
@@ -176,7 +176,7 @@ fn a_linear_field_passes_the_patch_test() {
 
 #[test]
 fn uniaxial_equibiaxial_and_confined_stretches_follow_the_closed_forms() {
-    for law in models() {
+    for law in Model::examples() {
         let uniaxial = |stretch: f64| {
             let at = |side: f64| DVec3::new(side, side, stretch);
             at(bisect(0.5, 1.5, |side| principal_stress_kpa(&law, at(side)).x))
@@ -222,7 +222,7 @@ fn shear_stress_kpa(law: &Model, amount: f64) -> DMat3 {
 
 #[test]
 fn simple_shear_follows_the_closed_form() {
-    for law in models() {
+    for law in Model::examples() {
         let body = body(law.clone(), Vec::new());
         let mut state = body.rest();
         deform(&body, &mut state, sheared(0.4), 0.0);
@@ -251,7 +251,7 @@ const PRONY: [PronyTerm; 2] = [
 
 #[test]
 fn a_held_shear_relaxes_by_the_prony_series() {
-    for law in models().into_iter().filter(|law| !has_pressure(law)) {
+    for law in Model::examples().into_iter().filter(|law| !has_pressure(law)) {
         let body = body(law.clone(), PRONY.to_vec());
         let mut state = body.rest();
         deform(&body, &mut state, sheared(0.4), 0.0);
@@ -276,7 +276,7 @@ fn a_held_shear_relaxes_by_the_prony_series() {
 #[test]
 fn a_slow_ramp_follows_the_convolution() {
     // Small shear, so that the stress without relaxation is μγ; then σ(t) = μ γ̇ [(1 - Σw) t + Σ w τ (1 - exp(-t/τ))].
-    let (rate, law) = (1e-3, models().remove(0));
+    let (rate, law) = (1e-3, Model::examples().remove(0));
     let body = body_to(law, PRONY.to_vec(), 1e-8);
     let mut state = body.rest();
     for step in 1..=10 {

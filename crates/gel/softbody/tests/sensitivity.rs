@@ -7,7 +7,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{Ball, Wall, block, even, models};
+use common::{Ball, Wall, block, even};
 use glam::DVec3;
 use twintac_material::{MooneyRivlin, Ogden, OgdenTerm, Yeoh};
 use twintac_shape::Pose;
@@ -130,7 +130,7 @@ fn shift(_: &mut Material, by: f64) -> f64 {
 
 #[test]
 fn rates_in_the_constants_of_every_law_are_differences_of_presses() {
-    for model in models() {
+    for model in Model::examples() {
         let material = Material {
             model,
             bulk_modulus_kpa: 800.0,
@@ -175,7 +175,7 @@ fn rates_in_an_exponent_are_differences_of_presses() {
 #[test]
 fn rates_of_a_relaxing_press_are_differences_of_presses() {
     let material = Material {
-        model: models().remove(2),
+        model: Model::examples().remove(2),
         bulk_modulus_kpa: 500.0,
         prony: [(0.2, 0.3), (0.15, 2.0)]
             .map(|(weight, time_s)| PronyTerm { weight, time_s })

@@ -9,7 +9,7 @@ mod yeoh;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Elastic, Law, MaterialError};
+use crate::{Elastic, Law, LawProperties, MaterialError};
 
 pub use ogden::OgdenTerm;
 
@@ -40,6 +40,20 @@ macro_rules! models {
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$model(_) => $name,)+
+                }
+            }
+
+            /// One of each model, of much the same stiffness: for tests that all models have to pass.
+            #[must_use]
+            pub fn examples() -> Vec<Self> {
+                vec![$(Self::$model($model::example()),)+]
+            }
+
+            /// What its law is like.
+            #[must_use]
+            pub fn properties(&self) -> LawProperties {
+                match self {
+                    $(Self::$model(model) => LawProperties::of(&model.law()),)+
                 }
             }
 

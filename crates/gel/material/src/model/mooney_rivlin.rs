@@ -24,6 +24,13 @@ impl Elastic for MooneyRivlin {
         Isochoric(*self)
     }
 
+    fn example() -> Self {
+        Self {
+            c10_kpa: 8.0,
+            c01_kpa: 3.5,
+        }
+    }
+
     fn check(&self) -> Result<(), MaterialError> {
         positive("c10_kpa", self.c10_kpa)?;
         if self.c01_kpa.is_finite() && self.c01_kpa >= 0.0 {

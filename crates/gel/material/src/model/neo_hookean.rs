@@ -22,6 +22,12 @@ impl Elastic for NeoHookean {
         Isochoric(*self)
     }
 
+    fn example() -> Self {
+        Self {
+            shear_modulus_kpa: 23.5,
+        }
+    }
+
     fn check(&self) -> Result<(), MaterialError> {
         positive("shear_modulus_kpa", self.shear_modulus_kpa)
     }

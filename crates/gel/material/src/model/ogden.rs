@@ -34,6 +34,13 @@ impl Elastic for Ogden {
         Stretches(self)
     }
 
+    fn example() -> Self {
+        let terms = [(9.0, 1.3), (0.6, 4.5), (-3.0, -2.0)];
+        Self {
+            terms: terms.map(|(mu_kpa, alpha)| OgdenTerm { mu_kpa, alpha }).to_vec(),
+        }
+    }
+
     fn check(&self) -> Result<(), MaterialError> {
         for (index, term) in self.terms.iter().enumerate() {
             finite(&format!("terms[{index}].mu_kpa"), term.mu_kpa)?;

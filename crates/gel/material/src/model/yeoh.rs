@@ -26,6 +26,14 @@ impl Elastic for Yeoh {
         Isochoric(*self)
     }
 
+    fn example() -> Self {
+        Self {
+            c10_kpa: 7.9,
+            c20_kpa: 0.9,
+            c30_kpa: 0.12,
+        }
+    }
+
     fn check(&self) -> Result<(), MaterialError> {
         positive("c10_kpa", self.c10_kpa)?;
         finite("c20_kpa", self.c20_kpa)?;

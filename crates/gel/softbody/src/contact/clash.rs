@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::RigidBody;
+use super::rigid_body::RigidBody;
 
 /// Depth inside both shapes that is still taken for touching, mm.
 const TOUCHING_MM: f64 = 0.02;
 
-/// A place at which two shapes overlap, and by how much, mm; none where they are apart or only touch.
+/// A point at which two shapes overlap, and the depth there, mm; none where they are apart or only touch.
 ///
 /// Boxes are halved until their middle is inside both shapes, or nothing in them can be: a distance changes no faster than its point moves.
 /// A moving shape without bounds is not looked at.

@@ -1,16 +1,18 @@
 //! Coulomb friction of a boundary's nodes on a rigid shape.
 //!
-//! A node in touch hangs on a point of the shape by a spring along the surface that carries at most the coefficient times the normal force:
-//! it is elastic up to a slip of `μ f / k`, and drags its end along beyond. With the normal forces of the last iterate ("lagged", as Li et al.,
-//! Incremental Potential Contact, ACM Trans. Graph. 39, 2020) the spring has an energy and a symmetric tangent, and what it gives back is never
-//! more than what went in; as the end of a spring that holds stays where it is, a held press does not creep.
+//! A node in touch is connected to a point of the shape, its anchor, by a spring along the surface. The force of the spring is at most the
+//! coefficient times the normal force: it is elastic up to a slip of `μ f / k`, and drags the anchor along beyond that. With the normal forces of the
+//! last iterate ("lagged", as Li et al., Incremental Potential Contact, ACM Trans. Graph. 39, 2020) the spring has an energy and a symmetric
+//! tangent, and never gives back more energy than it took. The anchor of a spring that holds does not move, so a held press does not creep.
 //! The law is that of Simo and Laursen (Comput. Struct. 42, 1992).
 
 use glam::{DMat3, DVec3};
 
-use super::{ContactPoint, RigidBody, Touch, outer};
+use super::point::ContactPoint;
+use super::rigid_body::{RigidBody, outer};
+use super::touch::Touch;
 
-/// A node no farther from the shape than this stands on it, mm.
+/// A node no farther from the shape than this counts as standing on it, mm.
 const STANDING_MM: f64 = 0.001;
 
 /// Friction of a boundary's nodes on one shape.
@@ -24,10 +26,10 @@ pub(crate) struct Friction {
 /// How one node is held.
 #[derive(Clone, Copy, Debug, Default)]
 struct Grip {
-    /// The place on the shape that the node hangs on, in the shape's frame; none where the node was off the shape when the step began: it
-    /// lands without friction, as how much of the step it spent in touch is not known.
+    /// The anchor of the node, in the shape's frame. None where the node was off the shape when the step began: it lands without friction, as it is
+    /// not known for which part of the step it is in touch.
     anchor_mm: Option<DVec3>,
-    /// Outward normal of the shape, and the most that the spring carries, N: both of the last iterate.
+    /// Outward normal of the shape, and the largest force of the spring, N: both of the last iterate.
     normal: DVec3,
     most_n: f64,
     /// Force on the node, N.

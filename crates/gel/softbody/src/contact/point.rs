@@ -1,19 +1,17 @@
-//! Where on the boundary contact is asked about.
+//! The points of the boundary at which contact is evaluated.
 
 use glam::DVec3;
 
-use super::BoundaryTriangle;
-
-/// A place on the boundary that can touch: a node, or a place inside a triangle.
+/// A contact point: a node of the boundary, or a quadrature point inside a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactPoint {
     /// The triangle's corners; of a node, itself.
     nodes: [u32; 3],
-    /// How much of the place each corner is; of a node, all of it.
+    /// Weights of the corners; of a node 1, 0 and 0.
     weights: [f64; 3],
-    /// Contact stiffness κ, N/mm: a stiffness per area times the boundary area that belongs to the place.
+    /// Contact stiffness κ, N/mm: a stiffness per area times the boundary area that belongs to the point.
     pub(crate) stiffness: f64,
-    /// Depth inside a shape that counts for nothing, mm.
+    /// Depth inside a shape that causes no force, mm.
     pub(crate) slack_mm: f64,
 }
 
@@ -28,7 +26,7 @@ impl ContactPoint {
         }
     }
 
-    /// A place inside a triangle.
+    /// A quadrature point inside a triangle.
     pub(super) fn inside(nodes: [u32; 3], weights: [f64; 3], stiffness: f64, slack_mm: f64) -> Self {
         Self {
             nodes,
@@ -54,35 +52,10 @@ impl ContactPoint {
         }
     }
 
-    /// The nodes that the place hangs on, and how much of it each is.
+    /// The nodes on which the point depends, and their weights.
     #[inline]
     pub(crate) fn parts(&self) -> impl Iterator<Item = (u32, f64)> + Clone + use<> {
         let n_parts = if self.is_node() { 1 } else { 3 };
         self.nodes.into_iter().zip(self.weights).take(n_parts)
-    }
-}
-
-/// The boundary of a body: what can touch.
-pub(crate) struct Boundary {
-    /// Its free nodes.
-    pub(crate) nodes: Vec<ContactPoint>,
-    pub(super) triangles: Vec<BoundaryTriangle>,
-    /// Longest edge at each of the nodes, mm.
-    pub(super) reach_mm: Vec<f64>,
-}
-
-impl Boundary {
-    pub(crate) fn new(nodes: Vec<ContactPoint>, triangles: Vec<BoundaryTriangle>) -> Self {
-        let mut reach_mm = vec![0.0_f64; nodes.len()];
-        for triangle in &triangles {
-            for corner in triangle.free_corners() {
-                reach_mm[corner] = reach_mm[corner].max(triangle.longest_mm);
-            }
-        }
-        Self {
-            nodes,
-            triangles,
-            reach_mm,
-        }
     }
 }

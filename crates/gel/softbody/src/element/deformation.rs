@@ -1,11 +1,9 @@
-//! The deformation at a point, in eight tetrahedra at a time.
+//! The deformation at a quadrature point, of eight tetrahedra at a time, and the algebra of 3 × 3 matrices.
 
-use glam::DVec3;
-use twintac_material::{Invariants, Law};
+use twintac_material::Invariants;
 
-use super::table::Place;
-use super::{NODES, Pack};
-use crate::wide::{LANES, Real, Wide};
+use super::table::{NODES, QuadraturePoint};
+use crate::wide::{Real, Wide};
 
 /// A matrix by rows.
 pub(crate) type Matrix<T> = [[Wide<T>; 3]; 3];
@@ -21,33 +19,16 @@ pub(crate) struct Deformation<T> {
     pub(crate) volume_ratio: Wide<T>,
 }
 
-impl Pack {
-    /// The ten nodes' displacements.
-    #[inline(always)]
-    pub(super) fn gather(&self, displacements_mm: &[DVec3]) -> [Vector<f64>; NODES] {
-        let mut ten = [[Wide([0.0; LANES]); 3]; NODES];
-        for (out, nodes) in ten.iter_mut().zip(&self.nodes) {
-            for lane in 0..LANES {
-                let u = displacements_mm[nodes[lane] as usize];
-                out[0].0[lane] = u.x;
-                out[1].0[lane] = u.y;
-                out[2].0[lane] = u.z;
-            }
-        }
-        ten
-    }
-}
-
 impl<T: Real> Deformation<T> {
     #[inline(always)]
-    pub(super) fn new(ten: &[Vector<T>; NODES], place: &Place, gradients: &Matrix<T>) -> Self {
-        let origin = &ten[place.nodes[0] as usize];
+    pub(super) fn new(ten: &[Vector<T>; NODES], point: &QuadraturePoint, gradients: &Matrix<T>) -> Self {
+        let origin = &ten[point.nodes[0] as usize];
         let mut f = [[Wide::zero(); 3]; 3];
         for i in 0..3 {
             f[i][i] = Wide::splat(1.0);
             // Along the coarse tetrahedron's edges first, then in space.
             let mut along = [Wide::zero(); 3];
-            for (node, slopes) in place.nodes[1..].iter().zip(&place.slopes) {
+            for (node, slopes) in point.nodes[1..].iter().zip(&point.slopes) {
                 let u = ten[*node as usize][i] - origin[i];
                 for k in 0..3 {
                     along[k] = along[k].plus_product(u, Wide::splat(slopes[k]));
@@ -69,9 +50,9 @@ impl<T: Real> Deformation<T> {
     }
 
     #[inline(always)]
-    pub(super) fn invariants<L: Law>(&self, _: &L) -> Invariants<T> {
+    pub(super) fn invariants(&self, with_second: bool) -> Invariants<T> {
         let first = contract(&self.gradient, &self.gradient);
-        let second = if L::USES_SECOND {
+        let second = if with_second {
             let c = right_cauchy_green(&self.gradient);
             (first * first - contract(&c, &c)) * Wide::splat(0.5)
         } else {
@@ -87,17 +68,17 @@ impl<T: Real> Deformation<T> {
     }
 }
 
-/// Gradients of the shape functions of the nodes that a place feels, in their order, from those of the corners' coordinates.
+/// Gradients of the shape functions at a point, in the order of its nodes, from the gradients of the barycentric coordinates.
 #[inline(always)]
-pub(super) fn gradients<T: Real>(coarse: &Matrix<T>, place: &Place) -> [Vector<T>; NODES] {
+pub(super) fn gradients<T: Real>(coarse: &Matrix<T>, point: &QuadraturePoint) -> [Vector<T>; NODES] {
     let mut all = [[Wide::zero(); 3]; NODES];
-    for (felt, slopes) in (1..).zip(&place.slopes) {
+    for (own, slopes) in (1..).zip(&point.slopes) {
         for i in 0..3 {
             let mut sum = Wide::zero();
             for k in 0..3 {
                 sum = sum.plus_product(coarse[k][i], Wide::splat(slopes[k]));
             }
-            all[felt][i] = sum;
+            all[own][i] = sum;
             all[0][i] -= sum;
         }
     }

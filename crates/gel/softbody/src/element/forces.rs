@@ -1,16 +1,15 @@
-//! Volume changes, energy and nodal forces.
-//!
-//! `P = ∂W/∂F = 2 w_1 F + 2 w_2 (I1 F - F C) + (w_J - p) J F⁻ᵀ` from the derivatives of the energy in the invariants, and for a
-//! material with a memory `J^(-2/3) (F O - (O:C)/3 F⁻ᵀ)` from its offset `O`. The force that pulls at node `a` is `Σ V P G_a`.
+//! Volume changes, energy and nodal forces. The force at node `a` is `Σ V (P - p J F⁻ᵀ) G_a` over the points, with the stress `P` of the law and
+//! the pressure `p`.
 
 use glam::DVec3;
-use twintac_material::Law;
+use pulp::NullaryFnOnce;
 
-use super::deformation::{Deformation, Matrix, apply, contract, multiply, right_cauchy_green, symmetric};
-use super::spectral;
-use super::{Elements, LawKernel, NODES, Pack, Response, Table, dispatch};
-use crate::MPA_PER_KPA;
-use crate::parallel::join_halves;
+use super::deformation::{Deformation, apply};
+use super::elements::{Elements, Pack};
+use super::response::Response;
+use super::stress::Stresses;
+use super::table::{NODES, Table};
+use crate::parallel::{dispatch, join_halves};
 use crate::wide::{LANES, Wide, least};
 
 /// Forces of the elements on their nodes, to be gathered node by node.
@@ -50,7 +49,7 @@ struct ForceKernel<'a> {
 }
 
 impl Elements {
-    /// Volume changes at given displacements; the smallest volume ratio is not a number if any is not.
+    /// Volume changes at given displacements; returns the smallest volume ratio, or NaN if one is NaN.
     pub(crate) fn volumes(&self, displacements_mm: &[DVec3], out: &mut Volumes) -> f64 {
         out.changes_mm3.resize(self.n_slots(), [0.0; 4]);
         out.least.resize(self.packs.len(), 0.0);
@@ -59,7 +58,7 @@ impl Elements {
         let (changes_a, changes_b) = out.changes_mm3.split_at_mut(half * LANES);
         let (least_a, least_b) = out.least.split_at_mut(half);
         let run = |packs, changes_mm3, least| {
-            pulp::Arch::new().dispatch(VolumeKernel {
+            dispatch(VolumeKernel {
                 tables: &self.tables,
                 packs,
                 displacements_mm,
@@ -74,7 +73,7 @@ impl Elements {
         out.least.iter().copied().fold(f64::INFINITY, least)
     }
 
-    /// Forces and energies of the change of shape; `pressures_mpa` by coarse node.
+    /// Forces and energies of the change of shape, at given displacements and pressures of the slots' corners.
     pub(crate) fn forces(
         &self,
         response: Response,
@@ -99,7 +98,7 @@ impl Elements {
                 forces_n,
                 energies,
             };
-            dispatch(&response.material.model, kernel);
+            dispatch(kernel);
         };
         join_halves(
             || run(packs_a, corners_a, forces_a, energies_a),
@@ -108,7 +107,7 @@ impl Elements {
     }
 }
 
-impl pulp::NullaryFnOnce for VolumeKernel<'_> {
+impl NullaryFnOnce for VolumeKernel<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -118,10 +117,10 @@ impl pulp::NullaryFnOnce for VolumeKernel<'_> {
             let ten = pack.gather(self.displacements_mm);
             let mut sums = [Wide::<f64>::zero(); 4];
             let mut smallest = Wide::<f64>::splat(f64::INFINITY);
-            for place in &self.tables[pack.table].places {
-                let ratio = Deformation::new(&ten, place, &pack.gradients).volume_ratio;
-                let change = (ratio - Wide::splat(1.0)) * pack.volume_mm3 * Wide::splat(place.volume);
-                for (sum, weight) in sums.iter_mut().zip(place.weights) {
+            for point in &self.tables[pack.table].points {
+                let ratio = Deformation::new(&ten, point, &pack.gradients).volume_ratio;
+                let change = (ratio - Wide::splat(1.0)) * pack.volume_mm3 * Wide::splat(point.volume);
+                for (sum, weight) in sums.iter_mut().zip(point.weights) {
                     *sum += change * Wide::splat(weight);
                 }
                 for (smallest, ratio) in smallest.0.iter_mut().zip(ratio.0) {
@@ -136,64 +135,13 @@ impl pulp::NullaryFnOnce for VolumeKernel<'_> {
     }
 }
 
-/// `∂W/∂F` without the pressure's part, and `W`, MPa.
-#[inline(always)]
-pub(super) fn first_piola_kirchhoff<L: Law>(
-    law: &L,
-    deformation: &Deformation<f64>,
-    factor: f64,
-    offset: Option<[Wide<f64>; 6]>,
-) -> (Matrix<f64>, Wide<f64>) {
-    let f = &deformation.gradient;
-    let invariants = deformation.invariants(law);
-    let slopes = law.slopes(&invariants);
-    let scale = Wide::splat(factor * MPA_PER_KPA);
-    let mut energy = law.energy(&invariants) * scale;
-    let mut along_f = slopes.first * scale * Wide::splat(2.0);
-    let mut along_cofactor = slopes.volume * scale;
-    let mut stress = [[Wide::zero(); 3]; 3];
-    if L::USES_SECOND {
-        let twice = slopes.second * scale * Wide::splat(2.0);
-        along_f += twice * invariants.first;
-        let pushed = multiply(f, &right_cauchy_green(f));
-        for i in 0..3 {
-            for j in 0..3 {
-                stress[i][j] -= twice * pushed[i][j];
-            }
-        }
-    }
-    if let Some(stretches) = law.stretches() {
-        energy += spectral::add_stress(&stretches, f, scale, &mut stress);
-    }
-    if let Some(offset) = offset {
-        let pushed = multiply(f, &symmetric(offset));
-        let remembered = contract(f, &pushed) * invariants.isochoric;
-        energy += remembered * Wide::splat(0.5);
-        along_cofactor -= remembered / (deformation.volume_ratio * Wide::splat(3.0));
-        for i in 0..3 {
-            for j in 0..3 {
-                stress[i][j] += invariants.isochoric * pushed[i][j];
-            }
-        }
-    }
-    for i in 0..3 {
-        for j in 0..3 {
-            stress[i][j] = stress[i][j]
-                .plus_product(along_f, f[i][j])
-                .plus_product(along_cofactor, deformation.cofactor[i][j]);
-        }
-    }
-    (stress, energy)
-}
-
-impl LawKernel for ForceKernel<'_> {
+impl NullaryFnOnce for ForceKernel<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Law>(self, law: L) {
-        let Response {
-            relaxation, memory, ..
-        } = self.response;
+    fn call(self) {
+        let properties = self.response.material.model.properties();
+        let mut at = Stresses::new();
         let inputs = self.packs.iter().zip(self.corners.chunks_exact(LANES));
         let outputs = self.forces_n.chunks_exact_mut(LANES).zip(self.energies);
         for ((pack, corners), (forces_n, energy)) in inputs.zip(outputs) {
@@ -206,20 +154,16 @@ impl LawKernel for ForceKernel<'_> {
             }
             let mut sums = [[Wide::<f64>::zero(); 3]; NODES];
             let mut energies = Wide::<f64>::zero();
-            for (at, place) in (pack.first_point..).zip(&self.tables[pack.table].places) {
-                let deformation = Deformation::new(&ten, place, &pack.gradients);
-                let offset = if memory.is_empty() {
-                    None
-                } else {
-                    relaxation.offset(memory.point(at))
-                };
-                let (stress, energy) = first_piola_kirchhoff(&law, &deformation, relaxation.factor, offset);
+            let table = &self.tables[pack.table];
+            at.evaluate(self.response, properties, table, pack, &ten);
+            for (index, point) in table.points.iter().enumerate() {
+                let (deformation, stress) = (at.deformation(index), &at.stresses[index]);
                 let mut pressure = Wide::zero();
-                for (corner, weight) in corner_pressures.iter().zip(place.weights) {
+                for (corner, weight) in corner_pressures.iter().zip(point.weights) {
                     pressure = pressure.plus_product(*corner, Wide::splat(weight));
                 }
-                let volume_mm3 = pack.volume_mm3 * Wide::splat(place.volume);
-                energies = energies.plus_product(energy, volume_mm3);
+                let volume_mm3 = pack.volume_mm3 * Wide::splat(point.volume);
+                energies = energies.plus_product(at.energies[index], volume_mm3);
                 for i in 0..3 {
                     let mut row = stress[i];
                     for j in 0..3 {
@@ -228,7 +172,7 @@ impl LawKernel for ForceKernel<'_> {
                     // Along the coarse tetrahedron's edges, then to the nodes.
                     let mut first = Wide::zero();
                     let along = apply(&pack.gradients, &row);
-                    for (node, slopes) in place.nodes[1..].iter().zip(&place.slopes) {
+                    for (node, slopes) in point.nodes[1..].iter().zip(&point.slopes) {
                         let mut force = Wide::zero();
                         for k in 0..3 {
                             force = force.plus_product(along[k], Wide::splat(slopes[k]));
@@ -236,7 +180,7 @@ impl LawKernel for ForceKernel<'_> {
                         sums[*node as usize][i] += force;
                         first += force;
                     }
-                    let sum = &mut sums[place.nodes[0] as usize][i];
+                    let sum = &mut sums[point.nodes[0] as usize][i];
                     *sum -= first;
                 }
             }

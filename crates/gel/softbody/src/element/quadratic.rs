@@ -1,21 +1,20 @@
-//! Quadratic displacements (Taylor and Hood, Comput. Fluids 1, 1973: P2/P1), with the four points that integrate quadratic functions
-//! exactly. More accurate than linear ones on the same nodes, and dearer.
+//! The quadratic element P2/P1 (Taylor and Hood, Comput. Fluids 1, 1973), with the four quadrature points that integrate quadratic functions
+//! exactly. It is more accurate than the composite element on the same nodes, and more expensive.
 
-use super::NODES;
-use super::table::{Place, Table, ends};
+use super::table::{NODES, QuadraturePoint, Table, ends};
 
-/// Coordinate of a point along the corner it is nearest to; the others share the rest.
+/// Barycentric coordinate of a point for its nearest corner; the other three are equal.
 const NEAR: f64 = 0.585_410_196_624_968_5;
 
 /// The table of any coarse tetrahedron.
 pub(super) fn table() -> Table {
-    Table::new((0..4).map(place).collect())
+    Table::new((0..4).map(point).collect())
 }
 
-fn place(nearest: usize) -> Place {
+fn point(nearest: usize) -> QuadraturePoint {
     let mut coordinates = [(1.0 - NEAR) / 3.0; 4];
     coordinates[nearest] = NEAR;
-    // Slopes in the four coordinates; along an edge from the first corner one rises as the first falls.
+    // Slopes in the four barycentric coordinates. Along an edge from the first corner one coordinate rises and the first falls.
     let slopes = |node: u8| {
         let mut in_each = [0.0; 4];
         let [a, b] = ends(node).map(usize::from);
@@ -27,7 +26,7 @@ fn place(nearest: usize) -> Place {
         }
         [1, 2, 3].map(|k| in_each[k] - in_each[0])
     };
-    Place {
+    QuadraturePoint {
         nodes: (0..NODES as u8).collect(),
         pairs: Vec::new(),
         slopes: (1..NODES as u8).map(slopes).collect(),

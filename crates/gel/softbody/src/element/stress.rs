@@ -1,75 +1,192 @@
-//! Stress, to be shown and to be remembered.
+//! Stress at the points of a pack.
+//!
+//! `P = ∂W/∂F = 2 w_1 F + 2 w_2 (I1 F - F C) + w_J J F⁻ᵀ` from the derivatives of the energy in the invariants, and for a
+//! material with history variables `J^(-2/3) (F O - (O:C)/3 F⁻ᵀ)` from their constant part `O`. The pressure's part is not in it.
 
 use glam::DVec3;
-use twintac_material::{Law, Material};
+use pulp::NullaryFnOnce;
+use twintac_material::{LawProperties, Material};
 
-use super::deformation::{Deformation, Matrix, dot};
-use super::forces::first_piola_kirchhoff;
-use super::table::Place;
-use super::{Elements, LawKernel, Pack, Response, dispatch};
-use crate::relaxation::{Memory, Relaxation};
+use super::deformation::{
+    Deformation, Matrix, Vector, contract, dot, multiply, right_cauchy_green, symmetric,
+};
+use super::elements::{Elements, Pack};
+use super::law::{FirstDerivatives, Points};
+use super::response::Response;
+use super::spectral;
+use super::table::{MAX_POINTS, NODES, QuadraturePoint, Table};
+use crate::MPA_PER_KPA;
+use crate::parallel::dispatch;
+use crate::relaxation::{History, Relaxation};
 use crate::wide::{LANES, Wide};
 
-/// Hands the stress of eight points at a time, without the pressure's part, to `take`.
-struct StressKernel<'a> {
-    elements: &'a Elements,
+/// Stress and energy at the points of a pack. Scratch memory, filled pack by pack.
+pub(super) struct Stresses {
+    points: Points<FirstDerivatives>,
+    /// First Piola–Kirchhoff stress `P`, MPa.
+    pub(super) stresses: [Matrix<f64>; MAX_POINTS],
+    /// Energy per volume at rest, MPa.
+    pub(super) energies: [Wide<f64>; MAX_POINTS],
+}
+
+impl Stresses {
+    pub(super) fn new() -> Self {
+        Self {
+            points: Points::new(),
+            stresses: [[[Wide::zero(); 3]; 3]; MAX_POINTS],
+            energies: [Wide::zero(); MAX_POINTS],
+        }
+    }
+
+    /// The deformation at a point.
+    #[inline(always)]
+    pub(super) fn deformation(&self, point: usize) -> &Deformation<f64> {
+        &self.points.deformations[point]
+    }
+
+    /// Works out a pack with this table, from the displacements of its ten nodes. Not inlined, so that it is compiled once, whoever calls it.
+    #[inline(never)]
+    pub(super) fn evaluate(
+        &mut self,
+        response: Response,
+        properties: LawProperties,
+        table: &Table,
+        pack: &Pack,
+        ten: &[Vector<f64>; NODES],
+    ) {
+        dispatch(Evaluation {
+            stresses: self,
+            response,
+            properties,
+            table,
+            pack,
+            ten,
+        });
+    }
+
+    /// Stress and energy at a point that has been evaluated.
+    #[inline(always)]
+    fn finish(
+        &mut self,
+        properties: LawProperties,
+        point: usize,
+        factor: f64,
+        offset: Option<[Wide<f64>; 6]>,
+    ) {
+        let deformation = &self.points.deformations[point];
+        let invariants = &self.points.arguments[point].invariants;
+        let law = &self.points.law[point];
+        let f = &deformation.gradient;
+        let scale = Wide::splat(factor * MPA_PER_KPA);
+        let mut energy = law.energy * scale;
+        let mut along_f = law.slopes.first * scale * Wide::splat(2.0);
+        let mut along_cofactor = law.slopes.volume * scale;
+        let mut stress = [[Wide::zero(); 3]; 3];
+        if properties.uses_second {
+            let twice = law.slopes.second * scale * Wide::splat(2.0);
+            along_f += twice * invariants.first;
+            let pushed = multiply(f, &right_cauchy_green(f));
+            for i in 0..3 {
+                for j in 0..3 {
+                    stress[i][j] -= twice * pushed[i][j];
+                }
+            }
+        }
+        if properties.uses_stretches {
+            let principal = &self.points.principal[point];
+            spectral::add_stress(principal, &law.stretch_slopes, f, scale, &mut stress);
+            energy += law.stretch_energy * scale;
+        }
+        if let Some(offset) = offset {
+            let pushed = multiply(f, &symmetric(offset));
+            let work = contract(f, &pushed) * invariants.isochoric;
+            energy += work * Wide::splat(0.5);
+            along_cofactor -= work / (deformation.volume_ratio * Wide::splat(3.0));
+            for i in 0..3 {
+                for j in 0..3 {
+                    stress[i][j] += invariants.isochoric * pushed[i][j];
+                }
+            }
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                stress[i][j] = stress[i][j]
+                    .plus_product(along_f, f[i][j])
+                    .plus_product(along_cofactor, deformation.cofactor[i][j]);
+            }
+        }
+        self.stresses[point] = stress;
+        self.energies[point] = energy;
+    }
+}
+
+struct Evaluation<'a> {
+    stresses: &'a mut Stresses,
     response: Response<'a>,
-    displacements_mm: &'a [DVec3],
-    take: &'a mut dyn FnMut(&Point),
-}
-
-/// Eight points, and their first Piola–Kirchhoff stress.
-struct Point<'a> {
+    properties: LawProperties,
+    table: &'a Table,
     pack: &'a Pack,
-    place: &'a Place,
-    index: usize,
-    deformation: Deformation<f64>,
-    stress: Matrix<f64>,
+    ten: &'a [Vector<f64>; NODES],
 }
 
-impl LawKernel for StressKernel<'_> {
+impl NullaryFnOnce for Evaluation<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Law>(self, law: L) {
-        let Response {
-            relaxation, memory, ..
-        } = self.response;
-        for pack in &self.elements.packs {
-            let ten = pack.gather(self.displacements_mm);
-            for (index, place) in (pack.first_point..).zip(&self.elements.tables[pack.table].places) {
-                let deformation = Deformation::new(&ten, place, &pack.gradients);
-                let offset = if memory.is_empty() {
-                    None
-                } else {
-                    relaxation.offset(memory.point(index))
-                };
-                let (stress, _) = first_piola_kirchhoff(&law, &deformation, relaxation.factor, offset);
-                (self.take)(&Point {
-                    pack,
-                    place,
-                    index,
-                    deformation,
-                    stress,
-                });
-            }
+    fn call(self) {
+        let Self {
+            stresses,
+            response,
+            properties,
+            table,
+            pack,
+            ten,
+        } = self;
+        let model = &response.material.model;
+        stresses
+            .points
+            .evaluate(model, properties, table, ten, &pack.gradients);
+        for point in 0..table.points.len() {
+            let offset = response.offset(pack.first_point + point);
+            stresses.finish(properties, point, response.relaxation.factor, offset);
         }
     }
 }
 
-fn for_each_stress(
+/// One point of a pack, and its stress.
+struct Point<'a> {
+    pack: &'a Pack,
+    quadrature: &'a QuadraturePoint,
+    /// Index among the points of all packs.
+    index: usize,
+    deformation: &'a Deformation<f64>,
+    /// First Piola–Kirchhoff stress without the pressure's part, MPa.
+    stress: &'a Matrix<f64>,
+}
+
+/// Hands out the points of all packs.
+fn for_each_point(
     elements: &Elements,
     response: Response,
     displacements_mm: &[DVec3],
-    mut take: impl FnMut(&Point),
+    take: &mut dyn FnMut(&Point),
 ) {
-    let kernel = StressKernel {
-        elements,
-        response,
-        displacements_mm,
-        take: &mut take,
-    };
-    dispatch(&response.material.model, kernel);
+    let properties = response.material.model.properties();
+    let mut stresses = Stresses::new();
+    for pack in &elements.packs {
+        let table = &elements.tables[pack.table];
+        let ten = pack.gather(displacements_mm);
+        stresses.evaluate(response, properties, table, pack, &ten);
+        for (index, quadrature) in table.points.iter().enumerate() {
+            take(&Point {
+                pack,
+                quadrature,
+                index: pack.first_point + index,
+                deformation: stresses.deformation(index),
+                stress: &stresses.stresses[index],
+            });
+        }
+    }
 }
 
 impl Point<'_> {
@@ -84,11 +201,11 @@ impl Point<'_> {
 
     /// Volume at rest, mm³.
     fn volume_mm3(&self) -> Wide<f64> {
-        self.pack.volume_mm3 * Wide::splat(self.place.volume)
+        self.pack.volume_mm3 * Wide::splat(self.quadrature.volume)
     }
 }
 
-/// Sums over the points that feel each node of the deviator of the Cauchy stress (xx, yy, zz, yz, xz, xy; MPa) times the deformed volume,
+/// Sums over the points of the elements at each node, of the deviator of the Cauchy stress (xx, yy, zz, yz, xz, xy; MPa) times the deformed volume,
 /// and of that volume, mm³. `[n_nodes]`
 pub(crate) fn mean_deviators(
     elements: &Elements,
@@ -96,7 +213,7 @@ pub(crate) fn mean_deviators(
     displacements_mm: &[DVec3],
 ) -> Vec<([f64; 6], f64)> {
     let mut sums = vec![([0.0; 6], 0.0); displacements_mm.len()];
-    for_each_stress(elements, response, displacements_mm, |point| {
+    for_each_point(elements, response, displacements_mm, &mut |point| {
         let mean = point.mean_kirchhoff();
         let volume_mm3 = point.volume_mm3();
         let deviator = [
@@ -109,7 +226,7 @@ pub(crate) fn mean_deviators(
         ]
         .map(|entry| entry * volume_mm3);
         let volume_mm3 = point.deformation.volume_ratio * volume_mm3;
-        for &node in &point.place.nodes {
+        for &node in &point.quadrature.nodes {
             for lane in 0..LANES {
                 let (sum, volume) = &mut sums[point.pack.nodes[node as usize][lane] as usize];
                 for (sum, part) in sum.iter_mut().zip(&deviator) {
@@ -129,18 +246,18 @@ pub(crate) fn hydrostatic_shares(
     response: Response,
     displacements_mm: &[DVec3],
 ) -> Option<Vec<[f64; 4]>> {
-    if response.material.is_isochoric() {
+    if response.material.model.properties().is_isochoric {
         return None;
     }
     let mut shares = Vec::with_capacity(elements.n_slots());
-    for_each_stress(elements, response, displacements_mm, |point| {
+    for_each_point(elements, response, displacements_mm, &mut |point| {
         let pressure = -point.mean_kirchhoff() / point.deformation.volume_ratio * point.volume_mm3();
         if point.index == point.pack.first_point {
             shares.extend([[0.0; 4]; LANES]);
         }
         let first = shares.len() - LANES;
         for (lane, shares) in shares[first..].iter_mut().enumerate() {
-            for (share, weight) in shares.iter_mut().zip(point.place.weights) {
+            for (share, weight) in shares.iter_mut().zip(point.quadrature.weights) {
                 *share += weight * pressure.0[lane];
             }
         }
@@ -148,25 +265,25 @@ pub(crate) fn hydrostatic_shares(
     Some(shares)
 }
 
-/// Takes the memory of all points to the end of a step.
-pub(crate) fn remember(
+/// Takes the history variables of all points to the end of a step.
+pub(crate) fn update_history(
     elements: &Elements,
     material: &Material,
     step: &Relaxation,
     displacements_mm: &[DVec3],
-    memory: &mut Memory,
+    history: &mut History,
 ) {
-    if memory.is_empty() {
+    if history.is_empty() {
         return;
     }
-    // The stress of a material without a past.
+    // The stress of the same material without history variables.
     let instantaneous = Response {
         material,
         relaxation: &Relaxation::new(&[], 0.0),
-        memory: &Memory::default(),
+        history: &History::default(),
     };
-    for_each_stress(elements, instantaneous, displacements_mm, |point| {
-        memory.remember(step, point.index, &instantaneous_deviator(point));
+    for_each_point(elements, instantaneous, displacements_mm, &mut |point| {
+        history.update(step, point.index, &instantaneous_deviator(point));
     });
 }
 
@@ -176,7 +293,7 @@ fn instantaneous_deviator(point: &Point) -> [Wide<f64>; 6] {
         cofactor,
         volume_ratio,
         ..
-    } = point.deformation;
+    } = *point.deformation;
     let root = volume_ratio.inverse_cube_root();
     // F⁻¹ is the cofactor's transpose over J.
     let scale = Wide::splat(1.0) / (root * root * volume_ratio);

@@ -1,55 +1,61 @@
-//! How the points of a coarse tetrahedron lie among its ten nodes: all that tells one element from another.
+//! The quadrature points of a coarse tetrahedron and the shape functions at them: all that differs between elements.
 
-/// Corners that the midpoints lie between, in the order of the nodes after the corners.
+/// Nodes of a coarse tetrahedron: corners and midpoints.
+pub(crate) const NODES: usize = 10;
+
+/// Largest number of quadrature points of an element.
+pub(super) const MAX_POINTS: usize = 8;
+
+/// The two corners that each midpoint lies between. Midpoints are numbered after the four corners.
 pub(crate) const EDGES: [[u8; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The points of an element.
+/// The quadrature points of an element.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    pub(crate) places: Vec<Place>,
-    /// Pairs of nodes, the later first, that some point feels together.
+    pub(crate) points: Vec<QuadraturePoint>,
+    /// Pairs of nodes, the later first, that contribute to the same point.
     pub(crate) pairs: Vec<[u8; 2]>,
 }
 
-/// Where a point is.
+/// A quadrature point: where it lies among the nodes.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
-    /// The nodes that it feels, ascending.
+pub(crate) struct QuadraturePoint {
+    /// The nodes whose shape functions are not zero there, ascending.
     pub(crate) nodes: Vec<u8>,
-    /// The pairs of these, at `a (a + 1) / 2 + b`, in the element's.
+    /// Indices of the pairs of these nodes in [`Table::pairs`], at `a (a + 1) / 2 + b`.
     pub(crate) pairs: Vec<u8>,
-    /// Slopes of the shape functions of all of these but the first along the edges from the first corner to the others.
+    /// Slopes of the shape functions of these nodes, without the first, along the three edges at the first corner.
     pub(crate) slopes: Vec<[f64; 3]>,
-    /// The shares of the corners' pressures in its own.
+    /// Weights of the four corners' pressures in the pressure here.
     pub(crate) weights: [f64; 4],
-    /// Its share of the volume.
+    /// Its share of the element's volume.
     pub(crate) volume: f64,
 }
 
 impl Table {
-    /// Finds the pairs of nodes of places that do not know theirs yet.
-    pub(super) fn new(mut places: Vec<Place>) -> Self {
+    /// Finds the pairs of nodes of points whose `pairs` are still empty.
+    pub(super) fn new(mut points: Vec<QuadraturePoint>) -> Self {
         let mut pairs: Vec<[u8; 2]> = Vec::new();
-        for place in &mut places {
-            for (i, &a) in place.nodes.iter().enumerate() {
-                for &b in &place.nodes[..=i] {
+        for point in &mut points {
+            for (i, &a) in point.nodes.iter().enumerate() {
+                for &b in &point.nodes[..=i] {
                     let known = pairs.iter().position(|pair| *pair == [a, b]);
-                    place.pairs.push(known.unwrap_or(pairs.len()) as u8);
+                    point.pairs.push(known.unwrap_or(pairs.len()) as u8);
                     if known.is_none() {
                         pairs.push([a, b]);
                     }
                 }
             }
         }
-        Self { places, pairs }
+        Self { points, pairs }
     }
 
     pub(crate) fn same_as(&self, other: &Self) -> bool {
-        self.places == other.places
+        self.points == other.points
     }
 }
 
-/// The corners that a node lies between; a corner twice itself.
+/// The two corners that a node lies between; for a corner, twice itself.
 pub(crate) fn ends(node: u8) -> [u8; 2] {
     match node.checked_sub(4) {
         Some(edge) => EDGES[edge as usize],

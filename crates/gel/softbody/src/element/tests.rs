@@ -1,48 +1,12 @@
 use glam::{DMat3, DVec3, Mat3};
 use proptest::prelude::*;
-use twintac_material::{
-    LogarithmicNeoHookean, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, StableNeoHookean, Yeoh,
-};
+use twintac_material::{MooneyRivlin, NeoHookean, Ogden, OgdenTerm};
 
-use super::forces::Forces;
-use super::table::EDGES;
+use super::table::{self, Table};
 use super::*;
+use crate::relaxation::{History, Relaxation};
 use crate::wide::LANES;
-use crate::{Material, PronyTerm};
-
-/// One of each model.
-fn models() -> Vec<Model> {
-    let terms = [(9.0, 1.3), (0.6, 4.5), (-3.0, -2.0)].map(|(mu_kpa, alpha)| OgdenTerm { mu_kpa, alpha });
-    vec![
-        NeoHookean {
-            shear_modulus_kpa: 23.5,
-        }
-        .into(),
-        MooneyRivlin {
-            c10_kpa: 8.0,
-            c01_kpa: 3.5,
-        }
-        .into(),
-        Yeoh {
-            c10_kpa: 7.9,
-            c20_kpa: 0.9,
-            c30_kpa: 0.12,
-        }
-        .into(),
-        Ogden {
-            terms: terms.to_vec(),
-        }
-        .into(),
-        LogarithmicNeoHookean {
-            shear_modulus_kpa: 23.5,
-        }
-        .into(),
-        StableNeoHookean {
-            shear_modulus_kpa: 23.5,
-        }
-        .into(),
-    ]
-}
+use crate::{Material, Model, PronyTerm};
 
 /// Pressures of the corners, MPa.
 const CORNERS: [f64; 4] = [0.004, -0.002, 0.007, 0.001];
@@ -118,12 +82,11 @@ impl Sink for Keep<'_> {
     }
 }
 
-impl<S: Sink> Sink for Option<S> {
-    fn take(&mut self, slot: usize, table: &Table, blocks: &[NodeBlock], slopes: &[NodeSlopes; NODES]) {
-        if let Some(sink) = self {
-            sink.take(slot, table, blocks, slopes);
-        }
-    }
+/// Keeps nothing.
+struct Drop;
+
+impl Sink for Drop {
+    fn take(&mut self, _: usize, _: &Table, _: &[NodeBlock], _: &[NodeSlopes; NODES]) {}
 }
 
 /// Blocks of pairs of nodes, those of the first lane.
@@ -134,7 +97,7 @@ fn tangent(elements: &Elements, response: Response, u: &[DVec3]) -> Vec<(usize, 
         response,
         u,
         &[CORNERS; LANES],
-        [Some(Keep(&mut blocks, nodes)), None],
+        [&mut Keep(&mut blocks, nodes), &mut Drop],
     );
     blocks
 }
@@ -219,15 +182,15 @@ proptest! {
         let vectors = |moves: &[[f64; 3]]| moves.iter().map(|u| DVec3::from_array(*u)).collect::<Vec<_>>();
         let (u, before) = (vectors(&moves), vectors(&before));
         let term = PronyTerm { weight: 0.4, time_s: 0.5 };
-        for (model, prony) in models().into_iter().flat_map(|model| [(model.clone(), vec![]), (model, vec![term])]) {
+        for (model, prony) in Model::examples().into_iter().flat_map(|model| [(model.clone(), vec![]), (model, vec![term])]) {
             let material = material(model, prony);
             if material.check().is_err() {
                 continue;
             }
             let relaxation = Relaxation::new(&material.prony, 0.2);
-            let mut memory = Memory::new(elements.n_points(), &material.prony);
-            remember(&elements, &material, &relaxation, &before, &mut memory);
-            let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+            let mut history = History::new(elements.n_points(), &material.prony);
+            update_history(&elements, &material, &relaxation, &before, &mut history);
+            let response = Response { material: &material, relaxation: &relaxation, history: &history };
             check_derivatives(&elements, response, &u)?;
         }
     }
@@ -239,10 +202,10 @@ proptest! {
     ) {
         let (nodes_mm, elements) = one(Element::Composite);
         let displacements = homogeneous(&nodes_mm, &[u, v], stretches);
-        for model in models() {
+        for model in Model::examples() {
             let material = material(model, Vec::new());
-            let (relaxation, memory) = (Relaxation::new(&[], 0.0), Memory::default());
-            let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+            let (relaxation, history) = (Relaxation::new(&[], 0.0), History::default());
+            let response = Response { material: &material, relaxation: &relaxation, history: &history };
             check_derivatives(&elements, response, &displacements)?;
         }
     }
@@ -264,8 +227,8 @@ proptest! {
         ] {
             let [found, expected] = [ogden, same].map(|model| {
                 let material = material(model, Vec::new());
-                let (relaxation, memory) = (Relaxation::new(&[], 0.0), Memory::default());
-                let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+                let (relaxation, history) = (Relaxation::new(&[], 0.0), History::default());
+                let response = Response { material: &material, relaxation: &relaxation, history: &history };
                 (energy(&elements, response, &displacements), tangent(&elements, response, &displacements))
             });
             let scale = stretches.into_iter().fold(1.0, f64::max).powi(4) / stretches.into_iter().fold(1.0, f64::min);
@@ -285,11 +248,11 @@ proptest! {
         let (nodes_mm, elements) = one(Element::Composite);
         let turn = DMat3::from_axis_angle(DVec3::from_array(axis).normalize_or(DVec3::X), angle);
         let u: Vec<DVec3> = nodes_mm.iter().map(|at| turn * *at - *at).collect();
-        for model in models() {
+        for model in Model::examples() {
             let material = material(model, Vec::new());
             let relaxation = Relaxation::new(&[], 0.0);
-            let memory = Memory::new(elements.n_points(), &[]);
-            let response = Response { material: &material, relaxation: &relaxation, memory: &memory };
+            let history = History::new(elements.n_points(), &[]);
+            let response = Response { material: &material, relaxation: &relaxation, history: &history };
             let (mut forces, mut volumes) = (Forces::default(), Volumes::default());
             elements.volumes(&u, &mut volumes);
             elements.forces(response, &u, &[[0.0; 4]; LANES], &mut forces);
@@ -303,13 +266,13 @@ proptest! {
 #[test]
 fn coarse_tangents_are_those_of_midpoints_that_follow() {
     let (nodes_mm, elements) = one(Element::Composite);
-    let material = material(models()[1].clone(), Vec::new());
+    let material = material(Model::examples()[1].clone(), Vec::new());
     let relaxation = Relaxation::new(&[], 0.0);
-    let memory = Memory::new(elements.n_points(), &[]);
+    let history = History::new(elements.n_points(), &[]);
     let response = Response {
         material: &material,
         relaxation: &relaxation,
-        memory: &memory,
+        history: &history,
     };
     let gradient = DMat3::from_cols_array(&[0.1, 0.1, -0.05, 0.2, -0.1, 0.1, -0.1, 0.05, 0.02]);
     let linear = |moved: [DVec3; 4]| -> Vec<DVec3> {
@@ -323,11 +286,11 @@ fn coarse_tangents_are_those_of_midpoints_that_follow() {
         u
     };
     let mut tangents = vec![CoarseTangent::default(); LANES];
-    let sink = CoarseSink {
+    let mut sink = CoarseSink {
         first: 0,
         tangents: &mut tangents,
     };
-    let rest = CoarseSink {
+    let mut rest = CoarseSink {
         first: LANES,
         tangents: &mut [],
     };
@@ -335,7 +298,7 @@ fn coarse_tangents_are_those_of_midpoints_that_follow() {
         response,
         &linear([DVec3::ZERO; 4]),
         &[CORNERS; LANES],
-        [sink, rest],
+        [&mut sink, &mut rest],
     );
     let corner_force = |moved: [DVec3; 4], corner: usize| {
         let (_, forces) = energy(&elements, response, &linear(moved));

@@ -16,7 +16,8 @@ use glam::{DVec3, Mat3};
 
 use super::block::Vector;
 use super::elimination_order::elimination_order;
-use super::triangles::{Layout, Triangles};
+use super::factors::{Layout, TriangularFactors};
+use super::sparsity::{Numbering, Sparsity, TetBlocks, neighbours, tet_blocks, unknowns};
 use crate::SoftBodyError;
 use crate::element::CoarseTangent;
 
@@ -40,14 +41,10 @@ pub(crate) struct CoarseSystem {
     later: Vec<Vec<(u32, u32)>>,
 }
 
-/// For each pair of corners, at `a (a + 1) / 2 + b`: whether the first is the later to be eliminated, and where its rows begin in the
-/// other's columns.
-type TetBlocks = [(bool, u32); 10];
-
 /// Factors to solve with. Clones share their numbers.
 #[derive(Clone)]
 pub(crate) struct Factors {
-    triangles: Triangles,
+    triangular: TriangularFactors,
     unknowns: Vec<f32>,
 }
 
@@ -71,54 +68,15 @@ impl CoarseSystem {
         volume_stiffness: &[f64],
     ) -> Result<Self, SoftBodyError> {
         let n_nodes = nodes_mm.len();
-        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); n_nodes];
-        for corners in corners {
-            for &node in corners {
-                neighbours[node as usize].extend(corners);
-            }
-        }
-        for neighbours in &mut neighbours {
-            neighbours.sort_unstable();
-            neighbours.dedup();
-        }
-        let (order, halves) = elimination_order(nodes_mm, &neighbours);
         let free: Vec<bool> = bonded.iter().map(|bonded| !bonded).collect();
-        let mut first = vec![0; n_nodes];
-        let mut rank = vec![0; n_nodes];
-        let mut n_unknowns = 0;
-        for (position, &node) in order.iter().enumerate() {
-            rank[node as usize] = position as u32;
-            first[node as usize] = n_unknowns;
-            n_unknowns += unknowns(&free, node);
-        }
-
-        let mut columns = vec![0];
-        let mut rows = Vec::new();
-        let mut later: Vec<Vec<(u32, u32)>> = vec![Vec::new(); n_nodes];
-        for &node in &order {
-            let mut below: Vec<u32> = neighbours[node as usize]
-                .iter()
-                .copied()
-                .filter(|&n| rank[n as usize] >= rank[node as usize])
-                .collect();
-            below.sort_unstable_by_key(|&n| rank[n as usize]);
-            let mut offset = 0;
-            for &n in &below {
-                later[node as usize].push((n, offset));
-                offset += unknowns(&free, n);
-            }
-            for column in 0..unknowns(&free, node) {
-                let unknowns_below = below
-                    .iter()
-                    .flat_map(|&n| (0..unknowns(&free, n)).map(move |row| (n, row)));
-                rows.extend(
-                    unknowns_below
-                        .skip(column as usize)
-                        .map(|(n, row)| first[n as usize] + row),
-                );
-                columns.push(rows.len() as u32);
-            }
-        }
+        let neighbours = neighbours(n_nodes, corners);
+        let (order, halves) = elimination_order(nodes_mm, &neighbours);
+        let Numbering {
+            rank,
+            first,
+            n_unknowns,
+        } = Numbering::new(&order, &free);
+        let Sparsity { columns, rows, later } = Sparsity::new(&order, &neighbours, &free, &rank, &first);
         let size = n_unknowns as usize;
         let lower = SymbolicSparseColMat::new_checked(size, size, columns, None, rows);
         let symbolic = analyse(&lower).map_err(|error| SoftBodyError::Analysis {
@@ -137,30 +95,9 @@ impl CoarseSystem {
             columns.sum()
         });
         let layout = Layout::new(supernodes, n_columns);
-        let offset = |row: u32, column: u32| {
-            later[column as usize]
-                .iter()
-                .find(|(n, _)| *n == row)
-                .map_or(0, |(_, offset)| *offset)
-        };
         let blocks = corners
             .iter()
-            .map(|corners| {
-                let mut blocks = [(true, 0); 10];
-                for a in 0..4 {
-                    for b in 0..=a {
-                        let (row, column) = (corners[a], corners[b]);
-                        let is_later = rank[row as usize] >= rank[column as usize];
-                        let at = if is_later {
-                            offset(row, column)
-                        } else {
-                            offset(column, row)
-                        };
-                        blocks[a * (a + 1) / 2 + b] = (is_later, at);
-                    }
-                }
-                blocks
-            })
+            .map(|corners| tet_blocks(corners, &rank, &later))
             .collect();
         let mut system = Self {
             base: vec![0.0; lower.row_idx().len()],
@@ -271,7 +208,7 @@ impl CoarseSystem {
         }
     }
 
-    /// Adds the stiffness of a place that hangs on neighbouring nodes by so much of each; a node may come more than once.
+    /// Adds the stiffness of a point that depends on neighbouring nodes with these weights; a node may come more than once.
     pub(crate) fn add_at(
         &self,
         tangent: &mut Tangent,
@@ -343,7 +280,7 @@ impl CoarseSystem {
         }
         let is_convex = n_negative == self.free.len();
         Ok(is_convex.then(|| Factors {
-            triangles: self.layout.triangles(factors),
+            triangular: self.layout.factors(factors),
             unknowns: vec![0.0; self.lower.ncols()],
         }))
     }
@@ -364,7 +301,7 @@ impl CoarseSystem {
                 }
             }
         }
-        factors.triangles.solve(&self.layout, &mut factors.unknowns);
+        factors.triangular.solve(&self.layout, &mut factors.unknowns);
         for (node, force) in forces.iter_mut().enumerate() {
             let first = self.first[node] as usize;
             *force = Vector::ZERO;
@@ -375,10 +312,6 @@ impl CoarseSystem {
             }
         }
     }
-}
-
-fn unknowns(free: &[bool], node: u32) -> u32 {
-    if free[node as usize] { 4 } else { 1 }
 }
 
 fn analyse(lower: &SymbolicSparseColMat<u32>) -> Result<SymbolicCholesky<u32>, faer::sparse::FaerError> {

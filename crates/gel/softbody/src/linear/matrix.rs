@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use glam::Mat3;
+use pulp::NullaryFnOnce;
 
 use super::block::{Block, Vector};
 use super::numbering::Halves;
 use crate::element::{Elements, NODES, NodeBlock, NodeSlopes, Sink, Table};
-use crate::parallel::join_halves;
+use crate::parallel::{dispatch, join_halves};
 use crate::wide::LANES;
 
 /// A pair of nodes of which one is bonded.
@@ -49,7 +50,7 @@ pub(crate) struct Matrix {
 }
 
 /// Adds the tangents of one half, or of what lies between.
-struct FineSink<'a> {
+pub(crate) struct FineSink<'a> {
     pattern: &'a Pattern,
     first_row: usize,
     diagonal: &'a mut [Block],
@@ -174,7 +175,7 @@ impl Pattern {
 
 impl Matrix {
     /// Empties the matrix, and returns what the two halves add to.
-    pub(crate) fn halves<'a>(&'a mut self, pattern: &'a Pattern) -> [impl Sink + use<'a>; 2] {
+    pub(crate) fn halves<'a>(&'a mut self, pattern: &'a Pattern) -> [FineSink<'a>; 2] {
         self.covered.clear();
         self.diagonal.fill(Block::default());
         self.blocks.fill(Block::default());
@@ -208,7 +209,7 @@ impl Matrix {
     }
 
     /// What lies between the halves adds to this.
-    pub(crate) fn between<'a>(&'a mut self, pattern: &'a Pattern) -> impl Sink + use<'a> {
+    pub(crate) fn between<'a>(&'a mut self, pattern: &'a Pattern) -> FineSink<'a> {
         FineSink {
             pattern,
             first_row: 0,
@@ -234,7 +235,7 @@ impl Matrix {
         }
     }
 
-    /// Adds the stiffness of a place that hangs on neighbouring nodes. Complete the matrix afterwards.
+    /// Adds the stiffness of a point that depends on neighbouring nodes. The matrix has to be completed afterwards.
     pub(crate) fn add_at(
         &mut self,
         pattern: &Pattern,
@@ -280,19 +281,49 @@ impl Matrix {
 }
 
 impl Sink for FineSink<'_> {
-    #[inline(always)]
     fn take(&mut self, slot: usize, table: &Table, blocks: &[NodeBlock], slopes: &[NodeSlopes; NODES]) {
-        let n_pairs = self.pattern.most_pairs;
+        dispatch(Addition {
+            sink: self,
+            slot,
+            table,
+            blocks,
+            slopes,
+        });
+    }
+}
+
+/// Eight tetrahedra to add.
+struct Addition<'a, 'b> {
+    sink: &'a mut FineSink<'b>,
+    slot: usize,
+    table: &'a Table,
+    blocks: &'a [NodeBlock],
+    slopes: &'a [NodeSlopes; NODES],
+}
+
+impl NullaryFnOnce for Addition<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            sink,
+            slot,
+            table,
+            blocks,
+            slopes,
+        } = self;
+        let n_pairs = sink.pattern.most_pairs;
         for lane in 0..LANES {
-            let places = &self.pattern.block_places[(slot + lane) * n_pairs..][..n_pairs];
+            let places = &sink.pattern.block_places[(slot + lane) * n_pairs..][..n_pairs];
             for ((block, &place), [a, b]) in blocks.iter().zip(places).zip(&table.pairs) {
                 if place == NOWHERE {
                     continue;
                 }
                 let sum = if a == b {
-                    &mut self.diagonal[place as usize - self.first_row]
+                    &mut sink.diagonal[place as usize - sink.first_row]
                 } else {
-                    &mut self.blocks[place as usize / 2 - self.first_block]
+                    &mut sink.blocks[place as usize / 2 - sink.first_block]
                 };
                 if a != b && place % 2 == 1 {
                     for i in 0..3 {
@@ -308,12 +339,12 @@ impl Sink for FineSink<'_> {
                     }
                 }
             }
-            for (slopes, places) in slopes.iter().zip(&self.pattern.slope_places[slot + lane]) {
+            for (slopes, places) in slopes.iter().zip(&sink.pattern.slope_places[slot + lane]) {
                 if places[0] == NOWHERE {
                     continue;
                 }
                 for (slope, &place) in slopes.iter().zip(places) {
-                    let sum = &mut self.slopes[place as usize - self.first_slope].0;
+                    let sum = &mut sink.slopes[place as usize - sink.first_slope].0;
                     for i in 0..3 {
                         sum[i] += slope[i].0[lane];
                     }

@@ -1,4 +1,4 @@
-//! Newton's linear system, and conjugate gradients with a two-level preconditioner to solve it.
+//! Newton's linear system, and conjugate gradients with a two-level preconditioner that solve it.
 //!
 //! With the pressures eliminated the system is `H = A + B D Bᵀ`: `A` in blocks of 3 × 3 between neighbouring nodes, `B` the slope of the
 //! coarse nodes' volumes, `D` their bulk modulus over volume. All of it is in single precision: a direction needs no more.
@@ -8,9 +8,10 @@ pub(crate) mod coarse;
 pub(crate) mod cycle;
 pub(crate) mod direct;
 mod elimination_order;
+mod factors;
 pub(crate) mod krylov;
 pub(crate) mod matrix;
 pub(crate) mod numbering;
 mod product;
+mod sparsity;
 mod sweep;
-mod triangles;

@@ -4,7 +4,7 @@
 //! axis. A fine node belongs to a half if all the coarse tetrahedra around it have their corners there, else it lies between.
 
 use glam::DVec3;
-use twintac_mesh::TetMesh;
+use twintac_mesh::{NodeSets, Refinement, TetMesh};
 
 use crate::element::Side;
 
@@ -59,32 +59,69 @@ pub(crate) fn number(mesh: &TetMesh) -> Numbered {
     let coarse_order = by_sides(&mesh.nodes_mm);
     let n_first_coarse = coarse_order.1;
     let new_coarse = inverse(&coarse_order.0);
+    let coarse = renumbered(mesh, &coarse_order.0, &new_coarse);
+    let refinement = coarse.refined();
+    let class = classes(&refinement, n_first_coarse);
+    let order = by_classes(&class, &refinement.mesh.nodes_mm);
+    let count = |up_to: u8| class.iter().filter(|&&class| class <= up_to).count();
+    let halves = Halves {
+        coarse: n_first_coarse,
+        first: count(0),
+        both: count(1),
+        free: count(2),
+    };
+    let new = inverse(&order);
+    let ends = order
+        .iter()
+        .map(
+            |&node| match (node as usize).checked_sub(refinement.n_coarse_nodes) {
+                Some(midpoint) => refinement.midpoints[midpoint],
+                None => [node; 2],
+            },
+        )
+        .collect();
+    let fine = renumbered(&refinement.mesh, &order, &new);
+    let mut coarse_bonded = vec![false; coarse.nodes_mm.len()];
+    coarse
+        .sets
+        .bonded
+        .iter()
+        .for_each(|&node| coarse_bonded[node as usize] = true);
+    Numbered {
+        mesh: fine,
+        coarse_nodes_mm: coarse.nodes_mm,
+        coarse_bonded,
+        coarse_tets: refinement.coarse_tets,
+        ends,
+        halves,
+    }
+}
+
+/// A mesh with its nodes in another order: `new` has the new index of each node.
+fn renumbered(mesh: &TetMesh, order: &[u32], new: &[u32]) -> TetMesh {
     let renumber = |nodes: &[u32]| {
-        let mut nodes: Vec<u32> = nodes.iter().map(|&node| new_coarse[node as usize]).collect();
+        let mut nodes: Vec<u32> = nodes.iter().map(|&node| new[node as usize]).collect();
         nodes.sort_unstable();
         nodes
     };
-    let mut coarse = TetMesh {
-        nodes_mm: coarse_order
-            .0
-            .iter()
-            .map(|&node| mesh.nodes_mm[node as usize])
-            .collect(),
+    TetMesh {
+        nodes_mm: order.iter().map(|&node| mesh.nodes_mm[node as usize]).collect(),
         tets: mesh
             .tets
             .iter()
-            .map(|nodes| nodes.map(|node| new_coarse[node as usize]))
+            .map(|nodes| nodes.map(|node| new[node as usize]))
             .collect(),
-        ..TetMesh::default()
-    };
-    coarse.sets.bonded = renumber(&mesh.sets.bonded);
-    coarse.sets.free = renumber(&mesh.sets.free);
-    coarse.sets.top = renumber(&mesh.sets.top);
+        sets: NodeSets {
+            bonded: renumber(&mesh.sets.bonded),
+            free: renumber(&mesh.sets.free),
+            top: renumber(&mesh.sets.top),
+        },
+    }
+}
 
-    let refinement = coarse.refined();
-    let n_nodes = refinement.mesh.nodes_mm.len();
-    // 0 and 1 for the halves, 2 between them, 3 for bonded nodes.
-    let mut class = vec![u8::MAX; n_nodes];
+/// The class of each fine node: 0 and 1 for the halves, 2 between them, 3 for bonded nodes.
+fn classes(refinement: &Refinement, n_first_coarse: usize) -> Vec<u8> {
+    let mut class = vec![u8::MAX; refinement.mesh.nodes_mm.len()];
     for (tet, nodes) in refinement.mesh.tets.iter().enumerate() {
         let corners = refinement.coarse_tets[tet / 8];
         let n_low = corners.iter().filter(|&&c| (c as usize) < n_first_coarse).count();
@@ -105,9 +142,14 @@ pub(crate) fn number(mesh: &TetMesh) -> Numbered {
     for &node in &refinement.mesh.sets.bonded {
         class[node as usize] = 3;
     }
-    let mut order: Vec<u32> = (0..n_nodes as u32).collect();
+    class
+}
+
+/// The fine nodes by class, and in each class by position.
+fn by_classes(class: &[u8], nodes_mm: &[DVec3]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..nodes_mm.len() as u32).collect();
     order.sort_by_key(|&node| {
-        let at = refinement.mesh.nodes_mm[node as usize];
+        let at = nodes_mm[node as usize];
         (
             class[node as usize],
             ordered(at.x),
@@ -116,60 +158,7 @@ pub(crate) fn number(mesh: &TetMesh) -> Numbered {
             node,
         )
     });
-    let count = |up_to: u8| class.iter().filter(|&&class| class <= up_to).count();
-    let halves = Halves {
-        coarse: n_first_coarse,
-        first: count(0),
-        both: count(1),
-        free: count(2),
-    };
-    let new = inverse(&order);
-    let ends = order
-        .iter()
-        .map(
-            |&node| match (node as usize).checked_sub(refinement.n_coarse_nodes) {
-                Some(midpoint) => refinement.midpoints[midpoint],
-                None => [node; 2],
-            },
-        )
-        .collect();
-    let renumber = |nodes: &[u32]| {
-        let mut nodes: Vec<u32> = nodes.iter().map(|&node| new[node as usize]).collect();
-        nodes.sort_unstable();
-        nodes
-    };
-    let sets = &refinement.mesh.sets;
-    let fine = TetMesh {
-        nodes_mm: order
-            .iter()
-            .map(|&node| refinement.mesh.nodes_mm[node as usize])
-            .collect(),
-        tets: refinement
-            .mesh
-            .tets
-            .iter()
-            .map(|nodes| nodes.map(|node| new[node as usize]))
-            .collect(),
-        sets: twintac_mesh::NodeSets {
-            bonded: renumber(&sets.bonded),
-            free: renumber(&sets.free),
-            top: renumber(&sets.top),
-        },
-    };
-    let mut coarse_bonded = vec![false; coarse.nodes_mm.len()];
-    coarse
-        .sets
-        .bonded
-        .iter()
-        .for_each(|&node| coarse_bonded[node as usize] = true);
-    Numbered {
-        mesh: fine,
-        coarse_nodes_mm: coarse.nodes_mm,
-        coarse_bonded,
-        coarse_tets: refinement.coarse_tets,
-        ends,
-        halves,
-    }
+    order
 }
 
 /// The nodes by the side of a plane that they are on, and how many are on the first.

@@ -6,7 +6,7 @@ use pulp::NullaryFnOnce;
 
 use super::block::{Sum, Vector};
 use super::matrix::{Matrix, Pattern};
-use crate::parallel::join_halves;
+use crate::parallel::{dispatch, join_halves};
 
 impl Matrix {
     /// `√D Bᵀ x`.
@@ -15,7 +15,7 @@ impl Matrix {
         volumes.fill(0.0);
         let (low, high) = volumes.split_at_mut(halves.coarse);
         let add = |rows, first, volumes: &mut [f32]| {
-            pulp::Arch::new().dispatch(Volumes {
+            dispatch(Volumes {
                 pattern,
                 matrix: self,
                 rows,
@@ -36,7 +36,7 @@ impl Matrix {
         let half = pattern.halves.free / 2;
         let (first, second) = from.split_at_mut(half);
         let run = |first, from| {
-            pulp::Arch::new().dispatch(VolumesTaken {
+            dispatch(VolumesTaken {
                 pattern,
                 matrix: self,
                 volumes,

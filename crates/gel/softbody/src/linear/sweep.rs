@@ -11,7 +11,7 @@ use pulp::NullaryFnOnce;
 
 use super::block::{Sum, Vector};
 use super::matrix::{Matrix, Pattern};
-use crate::parallel::join_halves;
+use crate::parallel::{dispatch, join_halves};
 
 /// Vectors of the iteration. `[n_free]`
 pub(crate) struct Vectors {
@@ -171,7 +171,7 @@ impl Matrix {
         moved_volumes.fill(0.0);
         let halves = pattern.halves;
         let rows = |rows, part: Part| {
-            pulp::Arch::new().dispatch(Forward {
+            dispatch(Forward {
                 pattern,
                 matrix: self,
                 step,
@@ -199,7 +199,7 @@ impl Matrix {
         let halves = pattern.halves;
         vectors.defect.fill(Vector::ZERO);
         let rows = |rows, part: Part| {
-            pulp::Arch::new().dispatch(Backward {
+            dispatch(Backward {
                 pattern,
                 matrix: self,
                 rows,

@@ -2,10 +2,16 @@
 
 use glam::DVec3;
 
-use super::{ACCURACY, DIFFERENCE_MM, add, dot};
 use crate::body::SoftBody;
 use crate::contact::Contact;
 use crate::newton::{Buffers, Failure, Step, Unknowns};
+use crate::nodal::{add, dot};
+
+/// Farthest that a node moves in a difference of forces, mm: very little of the depth over which a contact's force starts.
+pub(super) const DIFFERENCE_MM: f64 = 1e-8;
+
+/// A rate is known when the 2-norm of what is left unbalanced is below this part of what the parameter unbalances.
+pub(super) const ACCURACY: f64 = 1e-5;
 
 /// Accuracy of the linear system in single precision, as that of a Newton direction.
 const FORCING: f64 = 0.03;

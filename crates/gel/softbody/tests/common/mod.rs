@@ -4,46 +4,9 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use twintac_material::{
-    LogarithmicNeoHookean, Model, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, StableNeoHookean, Yeoh,
-};
 pub(crate) use twintac_mesh::bricks::{block, bond, even, graded, mirrored};
 use twintac_shape::{Distance, Pose, SignedDistance};
 use twintac_softbody::{Frame, SoftBody, State};
-
-/// One of each model, of much the same stiffness.
-pub(crate) fn models() -> Vec<Model> {
-    let terms = [(9.0, 1.3), (0.6, 4.5), (-3.0, -2.0)].map(|(mu_kpa, alpha)| OgdenTerm { mu_kpa, alpha });
-    vec![
-        NeoHookean {
-            shear_modulus_kpa: 23.5,
-        }
-        .into(),
-        MooneyRivlin {
-            c10_kpa: 8.0,
-            c01_kpa: 3.5,
-        }
-        .into(),
-        Yeoh {
-            c10_kpa: 7.9,
-            c20_kpa: 0.9,
-            c30_kpa: 0.12,
-        }
-        .into(),
-        Ogden {
-            terms: terms.to_vec(),
-        }
-        .into(),
-        LogarithmicNeoHookean {
-            shear_modulus_kpa: 23.5,
-        }
-        .into(),
-        StableNeoHookean {
-            shear_modulus_kpa: 23.5,
-        }
-        .into(),
-    ]
-}
 
 /// A ball whose lowest point is its origin.
 pub(crate) struct Ball {

@@ -1,11 +1,12 @@
-//! A check of the derivatives that Newton's method lives on, for any mesh, element and material.
+//! A check of the derivatives that Newton's method uses, for any mesh, element and material.
 
 use glam::DVec3;
 
-use super::{Step, Unknowns};
 use crate::body::SoftBody;
 use crate::element::Response;
 use crate::linear::block::Vector;
+use crate::newton::{Step, Unknowns};
+use crate::nodal::dot;
 use crate::relaxation::Relaxation;
 use crate::state::State;
 
@@ -38,7 +39,7 @@ impl SoftBody {
     ) -> Option<DerivativeErrors> {
         let now = Relaxation::new(&self.material().prony, 0.0);
         let State {
-            memory,
+            history,
             mut contacts,
             mut pressures_mpa,
             mut workspace,
@@ -48,7 +49,7 @@ impl SoftBody {
             response: Response {
                 material: self.material(),
                 relaxation: &now,
-                memory: &memory,
+                history: &history,
             },
             shapes: &[],
         };
@@ -73,18 +74,18 @@ impl SoftBody {
             }
         }
         // The last of them was where the derivatives are wanted.
-        buffers.foreseen_mpa.copy_from_slice(&pressures_mpa);
         let x = Unknowns {
             displacements_mm: &mut moved,
             pressures_mpa: &mut pressures_mpa,
             contacts: &mut contacts,
         };
+        buffers.stand_at(&x);
         buffers.assemble(self, &step, &x);
         buffers.add_contact(self, &step, &x);
         let way: Vec<Vector> = direction.iter().map(|way| Vector::from_dvec3(*way)).collect();
-        let product = buffers.matrix.product(&self.pattern, &way);
+        let product = buffers.product(self, &way);
 
-        let force: f64 = super::dot(&buffers.gradient_n[..n_free], direction);
+        let force: f64 = dot(&buffers.gradient_n[..n_free], direction);
         let (mut wrong, mut whole) = (0.0, 0.0);
         for (product, change) in product.iter().zip(&change_n) {
             wrong += (product.to_dvec3() - *change).length_squared();

@@ -1,5 +1,7 @@
-//! Solving with the factors of the coarse system, which every iteration does: their numbers in sixteen bits, as a solve waits for memory,
-//! and in two halves that do not touch each other, with what lies between.
+//! The triangular factors of the coarse system, and solving with them, which every iteration does.
+//!
+//! Their entries are kept in sixteen bits, because the speed of a solve is limited by reading memory. They are in two halves that do not
+//! depend on each other, and the part between the halves.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,12 +9,12 @@ use std::sync::Arc;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::NullaryFnOnce;
 
-use crate::parallel::join_halves;
+use crate::parallel::{dispatch, join_halves};
 
 /// Entries that are worked on at once; columns are filled up to a multiple with zeros.
 const LANES: usize = 16;
 
-/// Largest number that an entry stands for, in its column's scale.
+/// Largest entry, in units of its column's scale.
 const LARGEST: f32 = 32_767.0;
 
 /// Where the columns of `L` have their entries.
@@ -38,9 +40,9 @@ struct Supernode {
     first_entry: usize,
 }
 
-/// The numbers, shared by all that solve with them, and memory to do it.
+/// The entries, shared by all that solve with them, and scratch memory.
 #[derive(Clone)]
-pub(crate) struct Triangles {
+pub(crate) struct TriangularFactors {
     numbers: Arc<Numbers>,
     /// Memory of each half: a supernode's rows, and what it adds between the halves.
     local: [Vec<f32>; 2],
@@ -119,10 +121,10 @@ impl Layout {
     }
 
     /// Of factors: of each supernode a matrix by columns, `D` on its diagonal.
-    pub(crate) fn triangles(&self, factors: &[f32]) -> Triangles {
+    pub(crate) fn factors(&self, factors: &[f32]) -> TriangularFactors {
         let local = || vec![0.0; self.most_rows + 2 * LANES];
         let between = || vec![0.0; self.n_columns - self.starts[1]];
-        Triangles {
+        TriangularFactors {
             numbers: Arc::new(self.numbers(factors)),
             local: [local(), local()],
             between: [between(), between()],
@@ -160,7 +162,7 @@ impl Layout {
     }
 }
 
-impl Triangles {
+impl TriangularFactors {
     /// `x ← (L D Lᵀ)⁻¹ x`
     pub(crate) fn solve(&mut self, layout: &Layout, x: &mut [f32]) {
         let Self {
@@ -175,7 +177,7 @@ impl Triangles {
         let [first_nodes, second_nodes, middle_nodes] = &layout.parts;
         let run =
             |down, nodes: &Range<usize>, start, x: &mut [f32], between: &mut [f32], local: &mut [f32]| {
-                pulp::Arch::new().dispatch(Solve {
+                dispatch(Solve {
                     layout,
                     numbers,
                     down,

@@ -1,0 +1,102 @@
+//! Whether an indenter has room to move.
+
+use glam::DVec3;
+use twintac_shape::{Pose, SignedDistance};
+
+use super::drive::Drive;
+use crate::body::SoftBody;
+use crate::contact::{RigidBody, clash};
+use crate::state::State;
+use crate::{Blocker, SolveError};
+
+/// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
+const CLEARANCE_MM: f64 = 0.01;
+
+/// Moves after which an indenter is taken to be out of the body.
+const MAX_RETREATS: u32 = 50;
+
+impl SoftBody {
+    /// Refuses an indenter that would reach into something rigid on its way: no gel is left there that could stop it.
+    pub(super) fn check_way(
+        &self,
+        state: &State,
+        indenter: &dyn SignedDistance,
+        drive: &Drive,
+    ) -> Result<(), SolveError> {
+        let n_parts = (1.0 / drive.largest_part(self.settings.max_travel_mm)).round() as u32;
+        // The way of an indenter without a past is made up.
+        let first = state.gel_from_indenter.map_or(n_parts, |_| 1);
+        (first..=n_parts).try_for_each(|part| {
+            let moving = RigidBody {
+                shape: indenter,
+                gel_from_shape: drive.pose(f64::from(part) / f64::from(n_parts)),
+            };
+            self.check_place(state, &moving)
+        })
+    }
+
+    fn check_place(&self, state: &State, indenter: &RigidBody) -> Result<(), SolveError> {
+        for &node in &self.mesh().sets.bonded {
+            let at_mm = self.mesh().nodes_mm[node as usize] + state.displacements_mm[node as usize];
+            let local_mm = indenter.gel_from_shape.inverse_transform_point(at_mm);
+            let distance_mm = indenter.shape.signed_distance(local_mm).distance_mm;
+            if distance_mm < -self.settings.penetration_mm {
+                return Err(SolveError::Blocked {
+                    by: Blocker::Bonded,
+                    at_mm,
+                    depth_mm: -distance_mm,
+                });
+            }
+        }
+        for (shape, pose) in &self.obstacles {
+            let obstacle = RigidBody {
+                shape: shape.as_ref(),
+                gel_from_shape: *pose,
+            };
+            if let Some((at_mm, depth_mm)) = clash(indenter, &obstacle) {
+                return Err(SolveError::Blocked {
+                    by: Blocker::Obstacle,
+                    at_mm,
+                    depth_mm,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Where an indenter without a past comes from: straight out of the body, along the mean of the outward normals where it is inside.
+    pub(super) fn retreat(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Pose {
+        let mesh = self.mesh();
+        let mut normals = vec![DVec3::ZERO; mesh.nodes_mm.len()];
+        for triangle in mesh.boundary_triangles() {
+            let area_vector = mesh.area_vector_mm2(&triangle);
+            triangle
+                .iter()
+                .for_each(|&node| normals[node as usize] += area_vector);
+        }
+        let mut free = *pose;
+        let mut way_out = DVec3::ZERO;
+        for _ in 0..MAX_RETREATS {
+            let mut deepest_mm: f64 = 0.0;
+            let mut normal = DVec3::ZERO;
+            for (point, at_mm) in self.boundary_mm(&state.displacements_mm) {
+                let gap_mm = indenter
+                    .signed_distance(free.inverse_transform_point(at_mm))
+                    .distance_mm;
+                if gap_mm < 0.0 {
+                    normal += point.value(&normals);
+                    deepest_mm = deepest_mm.max(-gap_mm);
+                }
+            }
+            if deepest_mm == 0.0 {
+                break;
+            }
+            // The first answer stays: as the indenter leaves, ever fewer nodes are asked.
+            if way_out == DVec3::ZERO {
+                way_out = normal.normalize_or(DVec3::Z);
+            }
+            free.position_mm += way_out * (deepest_mm + CLEARANCE_MM);
+        }
+        free
+    }
+}

@@ -1,0 +1,85 @@
+//! What drives a step: an indenter that moves, or bonded nodes that do.
+
+use glam::DVec3;
+use twintac_shape::{Pose, SignedDistance};
+
+use crate::body::SoftBody;
+
+/// Part of its smallest dimension by which an indenter may move at once.
+const THICKNESS_PART: f64 = 0.25;
+
+/// What moves.
+pub(super) enum Drive<'a> {
+    Indenter {
+        shape: &'a dyn SignedDistance,
+        from: Pose,
+        to: Pose,
+    },
+    Bonded {
+        from: Vec<DVec3>,
+        to: &'a [DVec3],
+    },
+}
+
+impl Drive<'_> {
+    pub(super) fn pose(&self, fraction: f64) -> Pose {
+        match self {
+            Self::Indenter { from, to, .. } if fraction < 1.0 => Pose {
+                position_mm: from.position_mm.lerp(to.position_mm, fraction),
+                rotation: from.rotation.slerp(to.rotation, fraction),
+            },
+            Self::Indenter { to, .. } => *to,
+            Self::Bonded { .. } => Pose::IDENTITY,
+        }
+    }
+
+    /// Largest part of the motion that may be taken at once: a node that a moving shape has swallowed must still be nearest to the side
+    /// by which it came in.
+    pub(super) fn largest_part(&self, max_travel_mm: f64) -> f64 {
+        let Self::Indenter { shape, from, to } = self else {
+            return 1.0;
+        };
+        let (low, high) = shape.bounds_mm();
+        let reach_mm = low.abs().max(high.abs()).length();
+        let turn = from.rotation.angle_between(to.rotation);
+        let travel_mm = from.position_mm.distance(to.position_mm) + turn * reach_mm;
+        let limit_mm = max_travel_mm.min(THICKNESS_PART * (high - low).min_element());
+        if travel_mm > limit_mm && limit_mm > 0.0 {
+            1.0 / (travel_mm / limit_mm).ceil()
+        } else {
+            1.0
+        }
+    }
+
+    pub(super) fn shape(&self) -> &dyn SignedDistance {
+        match self {
+            Self::Indenter { shape, .. } => *shape,
+            Self::Bonded { .. } => &Nothing,
+        }
+    }
+
+    /// Puts the bonded nodes where they are to be.
+    pub(super) fn hold(&self, body: &SoftBody, fraction: f64, displacements_mm: &mut [DVec3]) {
+        if let Self::Bonded { from, to } = self {
+            for ((&node, from), to) in body.mesh().sets.bonded.iter().zip(from).zip(*to) {
+                displacements_mm[node as usize] = from.lerp(*to, fraction);
+            }
+        }
+    }
+}
+
+/// No shape at all.
+struct Nothing;
+
+impl SignedDistance for Nothing {
+    fn signed_distance(&self, _: DVec3) -> twintac_shape::Distance {
+        twintac_shape::Distance {
+            distance_mm: f64::MAX,
+            gradient: DVec3::Z,
+        }
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        (DVec3::ZERO, DVec3::ZERO)
+    }
+}

@@ -1,0 +1,61 @@
+//! The frame of a step.
+
+use glam::DVec3;
+
+use crate::body::SoftBody;
+use crate::contact::Contact;
+use crate::frame::Frame;
+use crate::newton::Equilibrium;
+use crate::state::State;
+
+impl SoftBody {
+    /// Forces and torques at an equilibrium, and what it took to find it.
+    pub(super) fn frame(
+        &self,
+        state: &mut State,
+        equilibrium: &Equilibrium,
+        iterations: u32,
+        wall_time_s: f64,
+    ) -> Frame {
+        let origin_mm = state
+            .gel_from_indenter
+            .map_or(DVec3::ZERO, |pose| pose.position_mm);
+        let at_mm = |node: usize| self.mesh().nodes_mm[node] + state.displacements_mm[node];
+        let mut torque = DVec3::ZERO;
+        let mut forces = vec![DVec3::ZERO; state.contacts.len()];
+        let gradient_n = std::mem::take(&mut state.workspace.buffers(self).gradient_n);
+        for (shape, contact) in state.contacts.iter().enumerate() {
+            for (point, force) in contact.forces_n(&self.boundary) {
+                forces[shape] += force;
+                if shape == 0 {
+                    torque += (self.point_mm(point, &state.displacements_mm) - origin_mm).cross(force);
+                }
+            }
+        }
+        // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
+        for node in state.contacts[0].pressed_nodes(&self.boundary, self.pattern.halves.free) {
+            let missing = gradient_n[node as usize];
+            forces[0] += missing;
+            torque += (at_mm(node as usize) - origin_mm).cross(missing);
+        }
+        let held: DVec3 = gradient_n[self.pattern.halves.free..].iter().sum();
+        state.workspace.buffers(self).gradient_n = gradient_n;
+        Frame {
+            indenter_force_n: forces[0],
+            indenter_torque_n_mm: torque,
+            board_reaction_n: held,
+            obstacle_reaction_n: forces[1..].iter().sum(),
+            converged: true,
+            iterations,
+            residual: equilibrium.residual,
+            penetration_mm: state
+                .contacts
+                .iter()
+                .map(Contact::penetration_mm)
+                .fold(0.0, f64::max),
+            smallest_volume_ratio: equilibrium.smallest_volume_ratio,
+            wall_time_s,
+            cost: std::mem::take(&mut state.workspace.buffers(self).cost),
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! A part of a motion, solved in one step.
+
+use glam::DVec3;
+use twintac_shape::Pose;
+
+use super::drive::Drive;
+use crate::body::SoftBody;
+use crate::contact::{Contact, RigidBody};
+use crate::element::{self, Response};
+use crate::newton::{Buffers, Equilibrium, Failure, Step, Unknowns};
+use crate::relaxation::Relaxation;
+use crate::sensitivity;
+use crate::state::{Motion, State};
+
+/// How far past the last motion the next may be extrapolated.
+const MAX_EXTRAPOLATION: f64 = 2.0;
+
+impl SoftBody {
+    /// Solves for a part of a motion, from one fraction of it to another; on failure the state is as before.
+    pub(super) fn substep(
+        &self,
+        state: &mut State,
+        drive: &Drive,
+        part: [f64; 2],
+        time_step_s: f64,
+        iterations: &mut u32,
+    ) -> Result<Equilibrium, Failure> {
+        let relaxation = Relaxation::new(&self.material().prony, time_step_s);
+        let [from, to] = part.map(|fraction| drive.pose(fraction));
+        let shapes = self.shapes(drive, to);
+        let sensitivities_before = state.sensitivities.clone();
+        self.begin(state, &shapes, from);
+        drive.hold(self, part[1], &mut state.displacements_mm);
+        let State {
+            displacements_mm,
+            pressures_mpa,
+            history,
+            contacts,
+            workspace,
+            last,
+            sensitivities,
+            ..
+        } = &mut *state;
+        let buffers = workspace.buffers(self);
+        buffers.keeps_passed = !sensitivities.is_empty();
+        let step = Step {
+            response: Response {
+                material: self.material(),
+                relaxation: &relaxation,
+                history,
+            },
+            shapes: &shapes,
+        };
+        let mut x = Unknowns {
+            displacements_mm,
+            pressures_mpa,
+            contacts,
+        };
+        let travel_mm = to.position_mm - from.position_mm;
+        if let Some(last) = last {
+            self.extrapolate(buffers, &mut x, last, travel_mm);
+            drive.hold(self, part[1], x.displacements_mm);
+        }
+        let solved = buffers
+            .solve(self, &step, &mut x, iterations)
+            .and_then(|equilibrium| {
+                sensitivity::follow(self, buffers, &step, &mut x, sensitivities)?;
+                Ok(equilibrium)
+            });
+        if solved.is_ok() {
+            self.settle_friction(&shapes, &mut x);
+            element::update_history(
+                &self.elements,
+                self.material(),
+                &relaxation,
+                displacements_mm,
+                history,
+            );
+            if let Drive::Indenter { .. } = drive {
+                if travel_mm != DVec3::ZERO {
+                    last.get_or_insert_default().set(
+                        travel_mm,
+                        displacements_mm,
+                        &buffers.old.displacements_mm,
+                    );
+                }
+                state.gel_from_indenter = Some(to);
+            }
+        } else {
+            displacements_mm.clone_from(&buffers.old.displacements_mm);
+            pressures_mpa.clone_from(&buffers.old.pressures_mpa);
+            contacts.clone_from(&buffers.old.contacts);
+            *sensitivities = sensitivities_before;
+        }
+        solved
+    }
+
+    /// The indenter at a pose, then the obstacles.
+    fn shapes<'a>(&'a self, drive: &'a Drive, gel_from_indenter: Pose) -> Vec<RigidBody<'a>> {
+        let mut shapes = Vec::with_capacity(1 + self.obstacles.len());
+        shapes.push(RigidBody {
+            shape: drive.shape(),
+            gel_from_shape: gel_from_indenter,
+        });
+        shapes.extend(self.obstacles.iter().map(|(shape, pose)| RigidBody {
+            shape: shape.as_ref(),
+            gel_from_shape: *pose,
+        }));
+        shapes
+    }
+
+    /// Prepares the contacts for a step in which the indenter comes from a pose, and keeps the unknowns as they were.
+    fn begin(&self, state: &mut State, shapes: &[RigidBody], gel_from_indenter: Pose) {
+        let State {
+            displacements_mm,
+            pressures_mpa,
+            contacts,
+            workspace,
+            ..
+        } = state;
+        contacts[0].forget_distances();
+        let at_mm = |node: u32| self.mesh().nodes_mm[node as usize] + displacements_mm[node as usize];
+        for (shape, contact) in shapes.iter().zip(contacts.iter_mut()) {
+            contact.look_inside(shape, &self.boundary, &at_mm);
+        }
+        let old = &mut workspace.buffers(self).old;
+        old.displacements_mm.clone_from(displacements_mm);
+        old.pressures_mpa.clone_from(pressures_mpa);
+        old.contacts.clone_from(contacts);
+        contacts.iter_mut().for_each(Contact::update_multipliers);
+        for (index, contact) in contacts.iter_mut().enumerate() {
+            if let Some(friction) = &mut contact.friction {
+                let gel_from_shape = match index {
+                    0 => gel_from_indenter,
+                    _ => shapes[index].gel_from_shape,
+                };
+                let shape = RigidBody {
+                    gel_from_shape,
+                    ..shapes[index]
+                };
+                friction.begin(&shape, &contact.touches, self.boundary_mm(displacements_mm));
+            }
+        }
+    }
+
+    /// Starts where the last motion would lead, unless that turns a tetrahedron inside out.
+    fn extrapolate(&self, buffers: &mut Buffers, x: &mut Unknowns, last: &Motion, travel_mm: DVec3) {
+        let ratio = extrapolation(last.travel_mm, travel_mm);
+        if ratio == 0.0 {
+            return;
+        }
+        for (u, change) in x.displacements_mm.iter_mut().zip(&last.displacements_mm) {
+            *u += *change * ratio;
+        }
+        if !buffers.is_valid(self, x) {
+            x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
+        }
+    }
+
+    fn settle_friction(&self, shapes: &[RigidBody], x: &mut Unknowns) {
+        for (shape, contact) in shapes.iter().zip(x.contacts.iter_mut()) {
+            if let Some(friction) = &mut contact.friction {
+                let nodes = self.boundary_mm(x.displacements_mm);
+                friction.settle(shape, &contact.touches, nodes);
+            }
+        }
+    }
+}
+
+/// How much of the last motion the next one is, backwards included: presses are extrapolated in depth, not in time.
+fn extrapolation(last_mm: DVec3, next_mm: DVec3) -> f64 {
+    let size = last_mm.length_squared();
+    if size > 0.0 {
+        (last_mm.dot(next_mm) / size).clamp(-1.0, MAX_EXTRAPOLATION)
+    } else {
+        0.0
+    }
+}

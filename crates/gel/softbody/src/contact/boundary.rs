@@ -1,0 +1,29 @@
+//! The boundary of a body.
+
+use super::point::ContactPoint;
+use super::triangle::BoundaryTriangle;
+
+/// The boundary of a body: what can touch.
+pub(crate) struct Boundary {
+    /// Its free nodes.
+    pub(crate) nodes: Vec<ContactPoint>,
+    pub(super) triangles: Vec<BoundaryTriangle>,
+    /// Longest edge at each of the nodes, mm.
+    pub(super) reach_mm: Vec<f64>,
+}
+
+impl Boundary {
+    pub(crate) fn new(nodes: Vec<ContactPoint>, triangles: Vec<BoundaryTriangle>) -> Self {
+        let mut reach_mm = vec![0.0_f64; nodes.len()];
+        for triangle in &triangles {
+            for corner in triangle.free_corners() {
+                reach_mm[corner] = reach_mm[corner].max(triangle.longest_mm);
+            }
+        }
+        Self {
+            nodes,
+            triangles,
+            reach_mm,
+        }
+    }
+}

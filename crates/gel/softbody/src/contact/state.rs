@@ -1,0 +1,194 @@
+//! Contact of the whole boundary with one shape.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use super::boundary::Boundary;
+use super::friction::Friction;
+use super::point::ContactPoint;
+use super::rigid_body::RigidBody;
+use super::touch::Touch;
+use super::triangle::SIDES;
+
+/// How much stiffer a contact is made that an update of its multiplier does not push out.
+const STIFFENING: f64 = 4.0;
+
+/// An update has not pushed a node out if more than this part of the depth is left.
+const STUCK: f64 = 0.5;
+
+/// Difference of the normals at two corners, as unit vectors, above which a shape turns sharply.
+const SHARP: f64 = 0.5;
+
+/// Contact of the boundary with one shape.
+#[derive(Debug)]
+pub(crate) struct Contact {
+    /// Of its nodes. `[n_boundary_nodes]`
+    pub(crate) touches: Vec<Touch>,
+    /// The quadrature points inside its triangles that are in use.
+    inside: Vec<Inside>,
+    /// Depth of the deepest node when nodes were last pushed out in this step, mm.
+    pushed_mm: f64,
+    /// None for a coefficient of zero.
+    pub(crate) friction: Option<Friction>,
+}
+
+/// A quadrature point inside a triangle, and its contact.
+#[derive(Clone, Debug)]
+struct Inside {
+    point: ContactPoint,
+    touch: Touch,
+}
+
+impl Clone for Contact {
+    fn clone(&self) -> Self {
+        Self {
+            touches: self.touches.clone(),
+            inside: self.inside.clone(),
+            pushed_mm: self.pushed_mm,
+            friction: self.friction.clone(),
+        }
+    }
+
+    /// Reuses the memory: every step begins with this.
+    fn clone_from(&mut self, source: &Self) {
+        self.touches.clone_from(&source.touches);
+        self.inside.clone_from(&source.inside);
+        self.pushed_mm = source.pushed_mm;
+        self.friction.clone_from(&source.friction);
+    }
+}
+
+impl Contact {
+    /// No contact yet.
+    pub(crate) fn new(n_boundary_nodes: usize, friction: f64) -> Self {
+        Self {
+            touches: vec![Touch::OFF; n_boundary_nodes],
+            inside: Vec::new(),
+            pushed_mm: f64::INFINITY,
+            friction: (friction > 0.0).then(|| Friction::new(friction, n_boundary_nodes)),
+        }
+    }
+
+    /// All points, and their contact.
+    pub(crate) fn each<'a>(
+        &'a self,
+        boundary: &'a Boundary,
+    ) -> impl Iterator<Item = (&'a ContactPoint, &'a Touch)> {
+        let inside = self.inside.iter().map(|inside| (&inside.point, &inside.touch));
+        boundary.nodes.iter().zip(&self.touches).chain(inside)
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn each_mut<'a>(
+        &'a mut self,
+        boundary: &'a Boundary,
+    ) -> impl Iterator<Item = (&'a ContactPoint, &'a mut Touch)> {
+        let inside = self.inside.iter_mut();
+        let inside = inside.map(|inside| (&inside.point, &mut inside.touch));
+        boundary.nodes.iter().zip(&mut self.touches).chain(inside)
+    }
+
+    /// All points, and the force of the shape on each, N.
+    pub(crate) fn forces_n<'a>(
+        &'a self,
+        boundary: &'a Boundary,
+    ) -> impl Iterator<Item = (&'a ContactPoint, DVec3)> {
+        self.each(boundary).enumerate().map(|(index, (point, touch))| {
+            let pushed_n = touch.normal * touch.force_n;
+            let friction = self.friction.as_ref().filter(|_| index < boundary.nodes.len());
+            let force_n = friction.map_or(pushed_n, |friction| pushed_n + friction.force_n(index));
+            (point, force_n)
+        })
+    }
+
+    /// Free nodes that the shape presses, themselves or beside them, ascending.
+    pub(crate) fn pressed_nodes(&self, boundary: &Boundary, n_free: usize) -> BTreeSet<u32> {
+        let pressed = self.each(boundary).filter(|(_, touch)| touch.force_n > 0.0);
+        let nodes = pressed.flat_map(|(point, _)| point.parts().map(|(node, _)| node));
+        nodes.filter(|&node| (node as usize) < n_free).collect()
+    }
+
+    /// Makes the present forces the multipliers of the next step.
+    pub(crate) fn update_multipliers(&mut self) {
+        self.touches
+            .iter_mut()
+            .for_each(|touch| touch.update_multiplier(1.0));
+        self.pushed_mm = f64::INFINITY;
+    }
+
+    /// Updates the multipliers within a step if nodes are deeper than allowed; true if there are any. Nodes that an update has not moved out are
+    /// made stiffer as well: neighbours on a convex edge would otherwise slip off it in turns, without end.
+    pub(crate) fn push_out(&mut self, allowed_mm: f64) -> bool {
+        let deepest_mm = self.penetration_mm();
+        if deepest_mm <= allowed_mm {
+            return false;
+        }
+        let is_stuck = deepest_mm > STUCK * self.pushed_mm;
+        self.pushed_mm = deepest_mm;
+        for touch in &mut self.touches {
+            let is_deep = is_stuck && touch.gap_mm < -allowed_mm;
+            touch.update_multiplier(touch.stiffening * if is_deep { STIFFENING } else { 1.0 });
+        }
+        true
+    }
+
+    /// Sets all multipliers to zero.
+    pub(crate) fn drop_multipliers(&mut self) {
+        self.touches
+            .iter_mut()
+            .for_each(|touch| touch.multiplier_mm = 0.0);
+    }
+
+    /// Depth of the deepest node, mm.
+    pub(crate) fn penetration_mm(&self) -> f64 {
+        self.touches
+            .iter()
+            .fold(0.0, |deepest, touch| f64::max(deepest, -touch.gap_mm))
+    }
+
+    /// Forgets the distances: the shape may be another one now.
+    pub(crate) fn forget_distances(&mut self) {
+        self.touches.iter_mut().for_each(|touch| touch.measured_mm = 0.0);
+    }
+
+    /// Chooses the quadrature points of a step: inside the triangles where the shape's normal turns sharply.
+    pub(crate) fn look_inside(
+        &mut self,
+        shape: &RigidBody,
+        boundary: &Boundary,
+        node_mm: &dyn Fn(u32) -> DVec3,
+    ) {
+        self.inside.clear();
+        let nodes = boundary.nodes.iter().zip(&mut self.touches);
+        let is_near: Vec<bool> = nodes
+            .zip(&boundary.reach_mm)
+            .map(|((point, touch), reach_mm)| {
+                let at_mm = point.parts().map(|(node, _)| node_mm(node)).sum();
+                shape.is_within(touch, at_mm, *reach_mm)
+            })
+            .collect();
+        if !is_near.contains(&true) {
+            return;
+        }
+        let mut known = BTreeMap::new();
+        for triangle in &boundary.triangles {
+            if !triangle.free_corners().any(|corner| is_near[corner]) {
+                continue;
+            }
+            let at_mm = triangle.nodes.map(node_mm);
+            let normals = [0, 1, 2].map(|corner| {
+                let normal = known.entry(triangle.nodes[corner]);
+                *normal.or_insert_with(|| shape.normal(at_mm[corner]))
+            });
+            let is_sharp = |[a, b]: [usize; 2]| normals[a].distance(normals[b]) > SHARP;
+            if SIDES.into_iter().any(is_sharp) {
+                let points = triangle.points(at_mm, normals);
+                self.inside.extend(points.map(|point| Inside {
+                    point,
+                    touch: Touch::OFF,
+                }));
+            }
+        }
+    }
+}

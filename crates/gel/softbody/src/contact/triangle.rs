@@ -1,0 +1,104 @@
+//! Contact inside the boundary's triangles, for shapes that turn sharply within one, such as the rim of a punch.
+//!
+//! With contact at nodes alone, a triangle can cut off such a corner. Gel that is squeezed out from under a punch also takes its short edges along,
+//! so that at depth long edges lie across the rim. Therefore quadrature points inside triangles are pushed out of the shape as well, except
+//! for the depth that a flat triangle has in an arc between the same normals: where a shape is smooth, contact at nodes is enough. There are more
+//! quadrature points than the nodes have degrees of freedom, so they cannot all be exactly outside: they are softer than nodes and have no multiplier.
+
+use glam::DVec3;
+
+use super::point::ContactPoint;
+
+/// Parts along each side into which a triangle is cut. A quadrature point is in the middle of each part.
+const CUTS: u32 = 3;
+
+/// Corners of each side.
+pub(super) const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
+/// Factor of the depth in an arc: an arc only approximates the shape, and points must not be in touch because of that.
+const MARGIN: f64 = 1.25;
+
+/// Stiffness of the points inside as part of that of nodes.
+const SOFTNESS: f64 = 0.5;
+
+/// A triangle of the boundary.
+pub(crate) struct BoundaryTriangle {
+    pub(super) nodes: [u32; 3],
+    /// Indices of its free corners among the boundary's nodes.
+    free: Vec<u32>,
+    /// Of all points inside together, N/mm.
+    stiffness: f64,
+    pub(super) longest_mm: f64,
+}
+
+impl BoundaryTriangle {
+    /// A triangle that has such free corners; `stiffness` is that of contact per area and inverse edge, MPa.
+    pub(crate) fn new(nodes: [u32; 3], at_mm: [DVec3; 3], free: Vec<u32>, stiffness: f64) -> Self {
+        let [a, b, c] = at_mm;
+        let area_mm2 = 0.5 * (b - a).cross(c - a).length();
+        let size_mm = (2.0 * area_mm2).sqrt();
+        Self {
+            nodes,
+            free,
+            stiffness: SOFTNESS * stiffness * area_mm2 / size_mm,
+            longest_mm: a.distance(b).max(b.distance(c)).max(c.distance(a)),
+        }
+    }
+
+    /// Its free corners, by their index among the boundary's nodes.
+    pub(super) fn free_corners(&self) -> impl Iterator<Item = usize> {
+        self.free.iter().map(|&corner| corner as usize)
+    }
+
+    /// The quadrature points of a triangle with corners at these positions, beside which the shape has these normals.
+    pub(super) fn points(
+        &self,
+        at_mm: [DVec3; 3],
+        normals: [DVec3; 3],
+    ) -> impl Iterator<Item = ContactPoint> {
+        let stiffness = self.stiffness / f64::from(CUTS * CUTS);
+        let bends_mm = SIDES.map(|[a, b]| at_mm[a].distance(at_mm[b]) * normals[a].distance(normals[b]));
+        middles().map(move |weights| {
+            // Of an arc of curvature c, whose normals differ by c l over a length l: c/2 times the sum of w w l² over the sides.
+            let sides = SIDES.into_iter().zip(bends_mm);
+            let slack_mm = 0.5
+                * MARGIN
+                * sides
+                    .map(|([a, b], bend_mm)| weights[a] * weights[b] * bend_mm)
+                    .sum::<f64>();
+            ContactPoint::inside(self.nodes, weights, stiffness, slack_mm)
+        })
+    }
+}
+
+/// Middles of equal parts of a triangle, as weights of its corners.
+fn middles() -> impl Iterator<Item = [f64; 3]> {
+    let part = |value: u32| f64::from(value) / f64::from(3 * CUTS);
+    (0..CUTS).flat_map(move |row| {
+        // Counted from the first corner, a row has upright parts and between them inverted ones.
+        (0..2 * row + 1).map(move |part_of_row| {
+            let (away, along) = if part_of_row % 2 == 0 { (2, 1) } else { (1, 2) };
+            let (away, along) = (3 * row + away, 3 * (part_of_row / 2) + along);
+            [1.0 - part(away), part(away - along), part(along)]
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_spread_evenly_over_a_triangle() {
+        let points: Vec<DVec3> = middles().map(DVec3::from_array).collect();
+        assert_eq!(points.len(), (CUTS * CUTS) as usize);
+        let mean = points.iter().sum::<DVec3>() / points.len() as f64;
+        assert!((mean - DVec3::splat(1.0 / 3.0)).length() < 1e-12);
+        for (i, a) in points.iter().enumerate() {
+            assert!(a.min_element() > 0.0 && (a.element_sum() - 1.0).abs() < 1e-12);
+            for b in &points[i + 1..] {
+                assert!(a.distance(*b) > 0.2, "{a} {b}");
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! The elements of a body, in packs of eight tetrahedra.
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::deformation::{self, Vector};
+use super::table::{NODES, Table};
+use super::{composite, quadratic};
+use crate::wide::{LANES, Wide};
+
+/// How displacements vary between the nodes of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Element {
+    /// Linearly on each of the eight tetrahedra that a coarse one is cut into: fast and robust.
+    #[default]
+    Composite,
+    /// Quadratically on each tetrahedron: more accurate with the same nodes, for reference.
+    Quadratic,
+}
+
+impl Element {
+    fn table(self, nodes: &[u32; NODES], children: &[[u32; 4]; 8]) -> Table {
+        match self {
+            Self::Composite => composite::table(nodes, children),
+            Self::Quadratic => quadratic::table(),
+        }
+    }
+}
+
+/// Eight coarse tetrahedra with the same table, side by side.
+pub(crate) struct Pack {
+    /// Which of the elements' tables is theirs.
+    pub(super) table: usize,
+    pub(super) nodes: [[u32; LANES]; NODES],
+    /// Gradients of the barycentric coordinates of all corners but the first, 1/mm.
+    pub(super) gradients: [[Wide<f64>; 3]; 3],
+    pub(super) volume_mm3: Wide<f64>,
+    /// Index of its first point, for the history variables.
+    pub(super) first_point: usize,
+}
+
+/// All elements of a body. Slot `8 i + l` is lane `l` of pack `i`; not all slots hold a tetrahedron.
+pub(crate) struct Elements {
+    pub(crate) tables: Vec<Table>,
+    pub(crate) packs: Vec<Pack>,
+    /// Where the packs of the first half end, and those of the second.
+    pub(crate) halves: [usize; 2],
+    /// The slot of each coarse tetrahedron.
+    pub(crate) slots: Vec<u32>,
+}
+
+/// Which half of the body a coarse tetrahedron lies in with all its free nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Side {
+    First,
+    Second,
+    Between,
+}
+
+impl Elements {
+    /// `parents` are the ten nodes of each coarse tetrahedron, `children` the eight tetrahedra that each is cut into, and `sides` says which
+    /// half of the body it lies in.
+    pub(crate) fn new(
+        element: Element,
+        nodes_mm: &[DVec3],
+        parents: &[[u32; NODES]],
+        children: &[[[u32; 4]; 8]],
+        sides: &[Side],
+    ) -> Self {
+        let mut elements = Self {
+            tables: Vec::new(),
+            packs: Vec::new(),
+            halves: [0; 2],
+            slots: vec![0; parents.len()],
+        };
+        let table_of: Vec<usize> = parents
+            .iter()
+            .zip(children)
+            .map(|(nodes, children)| {
+                let table = element.table(nodes, children);
+                let known = elements.tables.iter().position(|other| other.same_as(&table));
+                known.unwrap_or_else(|| {
+                    elements.tables.push(table);
+                    elements.tables.len() - 1
+                })
+            })
+            .collect();
+        // Neighbours close to each other.
+        let mut order: Vec<usize> = (0..parents.len()).collect();
+        order.sort_by_key(|&parent| (sides[parent], table_of[parent], parents[parent].iter().min()));
+        for same in order.chunk_by(|&a, &b| (sides[a], table_of[a]) == (sides[b], table_of[b])) {
+            for eight in same.chunks(LANES) {
+                for (lane, &parent) in eight.iter().enumerate() {
+                    elements.slots[parent] = (elements.packs.len() * LANES + lane) as u32;
+                }
+                let first_point = elements.n_points();
+                elements.packs.push(Pack::new(
+                    table_of[eight[0]],
+                    nodes_mm,
+                    parents,
+                    eight,
+                    first_point,
+                ));
+            }
+            match sides[same[0]] {
+                Side::First => elements.halves = [elements.packs.len(); 2],
+                Side::Second => elements.halves[1] = elements.packs.len(),
+                Side::Between => (),
+            }
+        }
+        elements
+    }
+
+    /// Points in all packs.
+    pub(crate) fn n_points(&self) -> usize {
+        self.packs
+            .last()
+            .map_or(0, |pack| pack.first_point + self.tables[pack.table].points.len())
+    }
+
+    /// The table of what is in a slot.
+    pub(crate) fn table_of(&self, slot: u32) -> &Table {
+        &self.tables[self.packs[slot as usize / LANES].table]
+    }
+
+    pub(crate) fn n_slots(&self) -> usize {
+        self.packs.len() * LANES
+    }
+
+    /// Volume that belongs to each coarse corner of each slot, mm³.
+    pub(crate) fn corner_volumes_mm3(&self) -> Vec<[f64; 4]> {
+        let mut volumes_mm3 = Vec::with_capacity(self.n_slots());
+        for pack in &self.packs {
+            let mut shares = [0.0; 4];
+            for point in &self.tables[pack.table].points {
+                for (share, weight) in shares.iter_mut().zip(point.weights) {
+                    *share += weight * point.volume;
+                }
+            }
+            volumes_mm3.extend(
+                pack.volume_mm3
+                    .0
+                    .map(|volume_mm3| shares.map(|share| share * volume_mm3)),
+            );
+        }
+        volumes_mm3
+    }
+
+    /// `Σ V |G|²` of each node, mm.
+    pub(crate) fn node_stiffness_mm(&self, n_nodes: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; n_nodes];
+        for pack in &self.packs {
+            for point in &self.tables[pack.table].points {
+                let gradients = deformation::gradients(&pack.gradients, point);
+                for (node, gradient) in point.nodes.iter().zip(&gradients) {
+                    let square = deformation::dot(gradient, gradient) * pack.volume_mm3;
+                    for lane in 0..LANES {
+                        sums[pack.nodes[*node as usize][lane] as usize] += point.volume * square.0[lane];
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
+
+impl Pack {
+    /// The ten nodes' displacements.
+    #[inline(always)]
+    pub(super) fn gather(&self, displacements_mm: &[DVec3]) -> [Vector<f64>; NODES] {
+        let mut ten = [[Wide([0.0; LANES]); 3]; NODES];
+        for (out, nodes) in ten.iter_mut().zip(&self.nodes) {
+            for lane in 0..LANES {
+                let u = displacements_mm[nodes[lane] as usize];
+                out[0].0[lane] = u.x;
+                out[1].0[lane] = u.y;
+                out[2].0[lane] = u.z;
+            }
+        }
+        ten
+    }
+
+    /// The tetrahedra `members` of all `parents`.
+    fn new(
+        table: usize,
+        nodes_mm: &[DVec3],
+        parents: &[[u32; NODES]],
+        members: &[usize],
+        first_point: usize,
+    ) -> Self {
+        let mut pack = Self {
+            table,
+            nodes: [[0; LANES]; NODES],
+            gradients: [[Wide::zero(); 3]; 3],
+            volume_mm3: Wide::zero(),
+            first_point,
+        };
+        for lane in 0..LANES {
+            // Empty lanes repeat the first tetrahedron, with no volume.
+            let parent = parents[*members.get(lane).unwrap_or(&members[0])];
+            for (nodes, node) in pack.nodes.iter_mut().zip(parent) {
+                nodes[lane] = node;
+            }
+            let corner = |corner: usize| nodes_mm[parent[corner] as usize];
+            let edges = [1, 2, 3].map(|other| corner(other) - corner(0));
+            let edges = DMat3::from_cols(edges[0], edges[1], edges[2]);
+            let inverse = edges.inverse();
+            for k in 0..3 {
+                for i in 0..3 {
+                    pack.gradients[k][i].0[lane] = inverse.row(k)[i];
+                }
+            }
+            if lane < members.len() {
+                pack.volume_mm3.0[lane] = edges.determinant().abs() / 6.0;
+            }
+        }
+        pack
+    }
+}

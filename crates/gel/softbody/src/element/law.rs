@@ -1,0 +1,201 @@
+//! The material's law at the points of a pack.
+//!
+//! Only what stands here is compiled once for each law. The kernels around it are compiled once, and branch on the law's properties.
+
+use pulp::NullaryFnOnce;
+use twintac_material::{
+    Curvatures, Invariants, Law, LawProperties, Model, Slopes, StretchLaw, StretchSlopes, Visitor,
+};
+
+use super::deformation::{Deformation, Matrix, Vector};
+use super::spectral::Principal;
+use super::table::{MAX_POINTS, NODES, Table};
+use crate::parallel::dispatch;
+use crate::wide::{Real, Wide};
+
+/// What a law is a function of, at eight points.
+#[derive(Clone, Copy)]
+pub(super) struct Arguments<T> {
+    pub(super) invariants: Invariants<T>,
+    /// Logarithms of the isochoric principal stretches; set only for a law that uses them.
+    isochoric_logarithms: Vector<T>,
+}
+
+/// The energy of a law and its first derivatives, kPa.
+#[derive(Clone, Copy)]
+pub(super) struct FirstDerivatives {
+    pub(super) energy: Wide<f64>,
+    pub(super) slopes: Slopes<f64>,
+    /// Of the part in the principal stretches.
+    pub(super) stretch_energy: Wide<f64>,
+    pub(super) stretch_slopes: Vector<f64>,
+}
+
+/// The first and second derivatives of a law, kPa.
+#[derive(Clone, Copy)]
+pub(super) struct SecondDerivatives {
+    pub(super) slopes: Slopes<f32>,
+    pub(super) curvatures: Curvatures<f32>,
+    /// Of the part in the principal stretches.
+    pub(super) stretches: StretchSlopes<f32>,
+}
+
+/// Derivatives of a law in some precision.
+pub(super) trait Derivatives: Copy {
+    type Precision: Real;
+
+    /// Those of no energy.
+    fn none() -> Self;
+
+    /// Those of a law.
+    fn of<L: Law>(law: &L, at: &Arguments<Self::Precision>) -> Self;
+}
+
+impl Derivatives for FirstDerivatives {
+    type Precision = f64;
+
+    fn none() -> Self {
+        Self {
+            energy: Wide::zero(),
+            slopes: Slopes::none(),
+            stretch_energy: Wide::zero(),
+            stretch_slopes: [Wide::zero(); 3],
+        }
+    }
+
+    #[inline(always)]
+    fn of<L: Law>(law: &L, at: &Arguments<f64>) -> Self {
+        let (stretch_energy, stretch_slopes) = match law.stretches() {
+            Some(stretches) => stretches.energy_and_slopes(&at.isochoric_logarithms),
+            None => (Wide::zero(), [Wide::zero(); 3]),
+        };
+        Self {
+            energy: law.energy(&at.invariants),
+            slopes: law.slopes(&at.invariants),
+            stretch_energy,
+            stretch_slopes,
+        }
+    }
+}
+
+impl Derivatives for SecondDerivatives {
+    type Precision = f32;
+
+    fn none() -> Self {
+        let zero = [Wide::zero(); 3];
+        Self {
+            slopes: Slopes::none(),
+            curvatures: Curvatures::none(),
+            stretches: StretchSlopes {
+                slopes: zero,
+                own: zero,
+                between: zero,
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn of<L: Law>(law: &L, at: &Arguments<f32>) -> Self {
+        let mut found = Self {
+            slopes: law.slopes(&at.invariants),
+            curvatures: law.curvatures(&at.invariants),
+            ..Self::none()
+        };
+        if let Some(stretches) = law.stretches() {
+            found.stretches = stretches.derivatives(&at.isochoric_logarithms);
+        }
+        found
+    }
+}
+
+/// The points of a pack: how they are deformed, and what the law says there. Scratch memory of a kernel, filled pack by pack.
+pub(super) struct Points<D: Derivatives> {
+    pub(super) deformations: [Deformation<D::Precision>; MAX_POINTS],
+    pub(super) arguments: [Arguments<D::Precision>; MAX_POINTS],
+    /// Set only for a law that uses stretches.
+    pub(super) principal: [Principal<D::Precision>; MAX_POINTS],
+    pub(super) law: [D; MAX_POINTS],
+}
+
+impl<D: Derivatives> Points<D> {
+    pub(super) fn new() -> Self {
+        let zero = Wide::zero();
+        let matrix = [[zero; 3]; 3];
+        Self {
+            deformations: [Deformation {
+                gradient: matrix,
+                cofactor: matrix,
+                volume_ratio: zero,
+            }; MAX_POINTS],
+            arguments: [Arguments {
+                invariants: Invariants {
+                    first: zero,
+                    second: zero,
+                    volume_ratio: zero,
+                    isochoric: zero,
+                },
+                isochoric_logarithms: [zero; 3],
+            }; MAX_POINTS],
+            principal: [Principal::zero(); MAX_POINTS],
+            law: [D::none(); MAX_POINTS],
+        }
+    }
+
+    /// Works out the points of a pack with this table, from the displacements of its ten nodes and the gradients of its coordinates.
+    #[inline(always)]
+    pub(super) fn evaluate(
+        &mut self,
+        model: &Model,
+        properties: LawProperties,
+        table: &Table,
+        ten: &[Vector<D::Precision>; NODES],
+        gradients: &Matrix<D::Precision>,
+    ) {
+        for (index, point) in table.points.iter().enumerate() {
+            let deformation = Deformation::new(ten, point, gradients);
+            let arguments = &mut self.arguments[index];
+            arguments.invariants = deformation.invariants(properties.uses_second);
+            if properties.uses_stretches {
+                let principal = Principal::new(&deformation.gradient);
+                arguments.isochoric_logarithms = principal.isochoric_logarithms;
+                self.principal[index] = principal;
+            }
+            self.deformations[index] = deformation;
+        }
+        let n_points = table.points.len();
+        evaluate(model, &self.arguments[..n_points], &mut self.law[..n_points]);
+    }
+}
+
+/// Evaluates a law with the vectors that the processor has. Not inlined, so that it is compiled once, whoever calls it.
+#[inline(never)]
+fn evaluate<D: Derivatives>(model: &Model, at: &[Arguments<D::Precision>], found: &mut [D]) {
+    model.visit(Evaluation { at, found });
+}
+
+struct Evaluation<'a, D: Derivatives> {
+    at: &'a [Arguments<D::Precision>],
+    found: &'a mut [D],
+}
+
+impl<D: Derivatives> Visitor for Evaluation<'_, D> {
+    type Output = ();
+
+    fn visit<L: Law>(self, law: L) {
+        dispatch(EvaluationOf(self, law));
+    }
+}
+
+struct EvaluationOf<'a, D: Derivatives, L>(Evaluation<'a, D>, L);
+
+impl<D: Derivatives, L: Law> NullaryFnOnce for EvaluationOf<'_, D, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(Evaluation { at, found }, law) = self;
+        for (at, found) in at.iter().zip(found) {
+            *found = D::of(&law, at);
+        }
+    }
+}

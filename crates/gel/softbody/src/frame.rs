@@ -1,0 +1,50 @@
+//! What a step reports.
+
+use glam::DVec3;
+use serde::Serialize;
+
+/// What a step came to. Forces act on the gel, in the gel's frame; their sum is zero but for the residual.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Force of the indenter, N.
+    pub indenter_force_n: DVec3,
+    /// Torque of the indenter about the indenter's origin, N mm.
+    pub indenter_torque_n_mm: DVec3,
+    /// Force of what the gel is bonded to, N.
+    pub board_reaction_n: DVec3,
+    /// Force of all obstacles, N.
+    pub obstacle_reaction_n: DVec3,
+    /// Always true: a step that does not converge is an error. Kept for records of frames.
+    pub converged: bool,
+    /// Newton iterations, those of sub-steps that were given up included.
+    pub iterations: u32,
+    /// 2-norm of the unbalanced nodal forces over the load.
+    pub residual: f64,
+    /// Largest depth of a node inside a shape, mm.
+    pub penetration_mm: f64,
+    /// Smallest volume of a tetrahedron over its volume at rest.
+    pub smallest_volume_ratio: f64,
+    /// Time spent, s.
+    pub wall_time_s: f64,
+    /// What it was spent on.
+    pub cost: Cost,
+}
+
+/// What a step's time was spent on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Cost {
+    /// Energy and forces of the elements, s.
+    pub forces_s: f64,
+    /// Distances to shapes, and contact forces, s.
+    pub contact_s: f64,
+    /// The matrix of the linear system, s.
+    pub assembly_s: f64,
+    /// Factors of the coarse system, s.
+    pub factorisation_s: f64,
+    /// Conjugate gradients, s.
+    pub linear_solve_s: f64,
+    /// How often the coarse system was factorised.
+    pub factorisations: u32,
+    /// Iterations of conjugate gradients.
+    pub linear_iterations: u32,
+}

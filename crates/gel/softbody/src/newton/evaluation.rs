@@ -1,0 +1,94 @@
+//! The energy of a step, and its gradient.
+
+use std::time::Instant;
+
+use glam::DVec3;
+
+use super::step::{Evaluation, Step, Unknowns};
+use super::workspace::Buffers;
+use crate::body::SoftBody;
+use crate::parallel::join_halves;
+
+impl Buffers {
+    /// Whether no tetrahedron is inside out, or the material bears it.
+    pub(crate) fn is_valid(&mut self, body: &SoftBody, x: &mut Unknowns) -> bool {
+        is_admissible(body, body.elements.volumes(x.displacements_mm, &mut self.volumes))
+    }
+
+    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material does not bear it.
+    pub(crate) fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
+        let started = Instant::now();
+        let mut evaluation = Evaluation {
+            smallest_volume_ratio: body.elements.volumes(x.displacements_mm, &mut self.volumes),
+            ..Evaluation::default()
+        };
+        if !is_admissible(body, evaluation.smallest_volume_ratio) {
+            return None;
+        }
+        let changes = self.volumes.changes_mm3.as_flattened();
+        let pressures = x.pressures_mpa.iter_mut().zip(&body.volume_stiffness);
+        for ((pressure, stiffness), sources) in pressures.zip(body.volume_sources.from(0)) {
+            let change: f64 = sources.iter().map(|&source| changes[source as usize]).sum();
+            *pressure = -stiffness * change;
+            evaluation.energy += 0.5 * stiffness * change * change;
+        }
+
+        body.corner_pressures(x.pressures_mpa, &mut self.corners);
+        body.elements
+            .forces(step.response, x.displacements_mm, &self.corners, &mut self.forces);
+        evaluation.energy += self.forces.energies.iter().sum::<f64>();
+        let forces = self.forces.forces_n.as_flattened();
+        let half = self.gradient_n.len() / 2;
+        let (first, second) = self.gradient_n.split_at_mut(half);
+        let gather = |first: usize, gradients: &mut [DVec3]| {
+            for (gradient, sources) in gradients.iter_mut().zip(body.force_sources.from(first)) {
+                *gradient = sources.iter().map(|&source| forces[source as usize]).sum();
+            }
+        };
+        join_halves(|| gather(0, first), || gather(half, second));
+        self.cost.forces_s += started.elapsed().as_secs_f64();
+
+        let started = Instant::now();
+        for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
+            for (point, touch) in contact.each_mut(&body.boundary) {
+                let at_mm = body.point_mm(point, x.displacements_mm);
+                evaluation.energy += shape.touch(touch, point, at_mm);
+                if touch.force_n > 0.0 {
+                    for (node, part) in point.parts() {
+                        self.gradient_n[node as usize] -= touch.normal * (part * touch.force_n);
+                    }
+                    evaluation.load_n += touch.force_n;
+                }
+            }
+            if let Some(friction) = &mut contact.friction {
+                let nodes = body.boundary_mm(x.displacements_mm);
+                evaluation.energy += friction.pull(shape, nodes, |point, force_n| {
+                    for (node, part) in point.parts() {
+                        self.gradient_n[node as usize] -= force_n * part;
+                    }
+                });
+            }
+        }
+        self.cost.contact_s += started.elapsed().as_secs_f64();
+        for &(node, force) in &body.loads_n {
+            evaluation.energy -= force.dot(x.displacements_mm[node as usize]);
+            self.gradient_n[node as usize] -= force;
+            evaluation.load_n += force.length();
+        }
+        let (free, bonded) = self.gradient_n.split_at(body.pattern.halves.free);
+        let largest = bonded.iter().map(|force| force.length()).fold(0.0, f64::max);
+        evaluation.load_n = evaluation.load_n.max(largest);
+        evaluation.unbalanced_n = free
+            .iter()
+            .map(|force| force.length_squared())
+            .sum::<f64>()
+            .sqrt();
+        evaluation.energy.is_finite().then_some(evaluation)
+    }
+}
+
+/// Whether the energy is defined at this smallest volume ratio.
+fn is_admissible(body: &SoftBody, smallest_volume_ratio: f64) -> bool {
+    smallest_volume_ratio > 0.0
+        || (body.material.model.properties().bears_inversion && !smallest_volume_ratio.is_nan())
+}

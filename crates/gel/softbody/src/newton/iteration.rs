@@ -1,0 +1,128 @@
+//! The iteration: directions and steps along them, until the forces are balanced and no node is too deep inside a shape.
+
+use super::step::{Equilibrium, Failure, Passed, Step, Unknowns};
+use super::workspace::Buffers;
+use crate::body::SoftBody;
+use crate::contact::Contact;
+
+/// Accuracy of a direction: iterations end when one adds less than the square of this to the energy that a direction wins.
+const FORCING: f64 = 0.3;
+
+/// Part of the tolerance below which the start of a step needs no improvement.
+const UNTOUCHED: f64 = 0.1;
+
+/// A step that leaves more than this part of the unbalanced forces calls for a new matrix.
+const SLOW: f64 = 0.3;
+
+/// Steps below this part of their direction are short.
+const SHORT: f64 = 0.2;
+
+/// Smallest damping worth having.
+const LEAST_DAMPING: f64 = 0.01;
+
+impl Buffers {
+    /// Finds the equilibrium of a step, starting from the unknowns given. `iterations` counts up.
+    pub(crate) fn solve(
+        &mut self,
+        body: &SoftBody,
+        step: &Step,
+        x: &mut Unknowns,
+        iterations: &mut u32,
+    ) -> Result<Equilibrium, Failure> {
+        self.damping = 0.0;
+        self.passed.clear();
+        let settings = &body.settings;
+        let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+        let mut has_failed = false;
+        for iteration in 0..=settings.max_iterations {
+            let residual = now.unbalanced_n / now.load_n.max(body.least_load_n());
+            // A start is taken for the answer only if it is much better than it has to be: errors must not pile up from step to step.
+            let goal = if iteration == 0 { UNTOUCHED } else { 1.0 } * settings.tolerance;
+            if residual <= goal {
+                // Some materials pass through inverted tetrahedra, but none may end there.
+                if now.smallest_volume_ratio <= 0.0 {
+                    return Err(Failure::Inverted);
+                }
+                let passed = self.keeps_passed.then(|| Passed {
+                    displacements_mm: x.displacements_mm.clone(),
+                    pressures_mpa: x.pressures_mpa.clone(),
+                    contacts: x.contacts.clone(),
+                });
+                let moved_n = follow_friction(x.contacts);
+                let has_pushed = push_out(body, x.contacts);
+                if !has_pushed && moved_n <= settings.tolerance * now.load_n {
+                    self.foreseen_mpa.copy_from_slice(x.pressures_mpa);
+                    return Ok(Equilibrium {
+                        residual,
+                        smallest_volume_ratio: now.smallest_volume_ratio,
+                    });
+                }
+                self.passed.extend(passed);
+                now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+                continue;
+            }
+            *iterations += 1;
+            self.find_direction(body, step, x, FORCING)?;
+            match self.search(body, step, x, &now) {
+                Ok((next, length)) => {
+                    self.has_matrix = length == 1.0 && next.unbalanced_n <= SLOW * now.unbalanced_n;
+                    now = next;
+                    let changes = self.start_mpa.iter().zip(&self.gradients.solution_mpa);
+                    for (foreseen, (start, change)) in self.foreseen_mpa.iter_mut().zip(changes) {
+                        *foreseen += length * (start - f64::from(*change) - *foreseen);
+                    }
+                    has_failed = false;
+                    self.adapt_damping(length);
+                    if follow_friction(x.contacts) > 0.0 {
+                        now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+                    }
+                }
+                // A direction that leads nowhere: once more with new factors and a short leash.
+                Err(_) if !has_failed => {
+                    has_failed = true;
+                    self.has_matrix = false;
+                    self.factors = None;
+                    self.adapt_damping(0.0);
+                    now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
+                }
+                Err(Failure::Inverted) => return Err(Failure::Inverted),
+                Err(_) => break,
+            }
+        }
+        self.has_matrix = false;
+        Err(Failure::NotConverged {
+            residual: now.unbalanced_n / now.load_n.max(body.least_load_n()),
+        })
+    }
+
+    /// Short steps tell that the tangent is a poor guide: trust it less (Levenberg, 1944), and more again after whole ones.
+    fn adapt_damping(&mut self, length: f64) {
+        if length < SHORT {
+            self.damping = (4.0 * self.damping).max(LEAST_DAMPING);
+        } else if length >= 1.0 {
+            self.damping *= 0.25;
+        }
+        if self.damping < LEAST_DAMPING {
+            self.damping = 0.0;
+        }
+    }
+}
+
+/// Lets friction follow the normal forces; returns by how much its limits change altogether, N.
+fn follow_friction(contacts: &mut [Contact]) -> f64 {
+    let frictions = contacts
+        .iter_mut()
+        .filter_map(|contact| Some((contact.friction.as_mut()?, &contact.touches)));
+    frictions
+        .map(|(friction, touches)| friction.follow(touches))
+        .sum()
+}
+
+/// Carries the forces of those shapes over in which a point is too deep. True if there are any.
+fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
+    let mut any = false;
+    for contact in contacts {
+        any |= contact.push_out(body.settings.penetration_mm);
+    }
+    any
+}

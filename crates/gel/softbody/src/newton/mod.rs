@@ -1,0 +1,13 @@
+//! Newton's method with a line search down the energy.
+
+mod assembly;
+mod direction;
+mod evaluation;
+mod iteration;
+mod line_search;
+mod step;
+mod workspace;
+
+pub(crate) use assembly::rest_factors;
+pub(crate) use step::{Equilibrium, Failure, Step, Unknowns};
+pub(crate) use workspace::{Buffers, Workspace};

@@ -1,0 +1,60 @@
+//! A step to solve, its unknowns, and how it can end.
+
+use glam::DVec3;
+
+use crate::contact::{Contact, RigidBody};
+use crate::element::Response;
+
+/// A step to solve: everything that stays fixed while the displacements are sought.
+pub(crate) struct Step<'a> {
+    pub(crate) response: Response<'a>,
+    pub(crate) shapes: &'a [RigidBody<'a>],
+}
+
+/// Unknowns of a step.
+pub(crate) struct Unknowns<'a> {
+    pub(crate) displacements_mm: &'a mut Vec<DVec3>,
+    pub(crate) pressures_mpa: &'a mut Vec<f64>,
+    pub(crate) contacts: &'a mut Vec<Contact>,
+}
+
+/// Unknowns before a step.
+#[derive(Default)]
+pub(crate) struct Beginning {
+    pub(crate) displacements_mm: Vec<DVec3>,
+    pub(crate) pressures_mpa: Vec<f64>,
+    pub(crate) contacts: Vec<Contact>,
+}
+
+/// An equilibrium that a step passed, and its contacts before their multipliers were updated.
+pub(crate) struct Passed {
+    pub(crate) displacements_mm: Vec<DVec3>,
+    pub(crate) pressures_mpa: Vec<f64>,
+    pub(crate) contacts: Vec<Contact>,
+}
+
+/// Why a step failed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Failure {
+    NotConverged { residual: f64 },
+    Inverted,
+    Singular,
+}
+
+/// How a step ended well.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equilibrium {
+    pub(crate) residual: f64,
+    pub(crate) smallest_volume_ratio: f64,
+}
+
+/// Energy and its slope at a set of displacements.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Evaluation {
+    pub(crate) energy: f64,
+    pub(super) smallest_volume_ratio: f64,
+    /// 2-norm of the gradient at free nodes, N.
+    pub(super) unbalanced_n: f64,
+    /// Sum of the sizes of all forces from outside, N.
+    pub(super) load_n: f64,
+}

@@ -1,0 +1,115 @@
+//! Pressure, stress and reaction forces of a state.
+
+use glam::DVec3;
+
+use crate::MPA_PER_KPA;
+use crate::body::SoftBody;
+use crate::element::{self, Forces, Response};
+use crate::nodal::moved;
+use crate::relaxation::Relaxation;
+use crate::state::State;
+
+impl SoftBody {
+    /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression. `[n_nodes]`
+    #[must_use]
+    pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
+        let now = Relaxation::new(&self.material.prony, 0.0);
+        let response = self.response(&now, state);
+        self.nodal_pressure_kpa(response, &state.displacements_mm, &state.pressures_mpa)
+    }
+
+    /// The same, of the parts of a state.
+    fn nodal_pressure_kpa(
+        &self,
+        response: Response,
+        displacements_mm: &[DVec3],
+        pressures_mpa: &[f64],
+    ) -> Vec<f64> {
+        let shares = element::hydrostatic_shares(&self.elements, response, displacements_mm);
+        // Averaged as the volume changes are that make the rest of the pressure.
+        let pressures_mpa = shares.map_or(pressures_mpa.to_vec(), |shares| {
+            let shares = shares.as_flattened();
+            let modulus_mpa = MPA_PER_KPA * self.material.volume_modulus_kpa();
+            let nodes = pressures_mpa.iter().zip(&self.volume_stiffness);
+            nodes
+                .zip(self.volume_sources.from(0))
+                .map(|((pressure, stiffness), sources)| {
+                    let share: f64 = sources.iter().map(|&source| shares[source as usize]).sum();
+                    pressure + share * stiffness / modulus_mpa
+                })
+                .collect()
+        });
+        let at_kpa = |node: u32| pressures_mpa[node as usize] / MPA_PER_KPA;
+        self.ends
+            .iter()
+            .map(|&[a, b]| 0.5 * (at_kpa(a) + at_kpa(b)))
+            .collect()
+    }
+
+    /// Rates of the hydrostatic pressure at each node along a state's direction, kPa over the unit of the parameter. `[n_nodes]`
+    #[must_use]
+    pub fn pressure_sensitivity_kpa(&self, state: &State, direction: usize) -> Vec<f64> {
+        let rates = &state.sensitivities[direction];
+        let [before, after] = rates.direction().sides().map(|(material, times)| {
+            let now = Relaxation::new(&material.prony, 0.0);
+            let response = Response {
+                material,
+                ..self.response(&now, state)
+            };
+            let displacements_mm = moved(&state.displacements_mm, rates.displacements_mm(), times);
+            let pressures_mpa = moved(&state.pressures_mpa, rates.pressures_mpa(), times);
+            self.nodal_pressure_kpa(response, &displacements_mm, &pressures_mpa)
+        });
+        let over = 2.0 * rates.direction().step;
+        after
+            .iter()
+            .zip(before)
+            .map(|(after, before)| (after - before) / over)
+            .collect()
+    }
+
+    /// Von Mises stress at each node, kPa, of the mean over the deformed volume of the tetrahedra around it of the Cauchy stress, its
+    /// relaxing part included. `[n_nodes]`
+    #[must_use]
+    pub fn von_mises_kpa(&self, state: &State) -> Vec<f64> {
+        let now = Relaxation::new(&self.material.prony, 0.0);
+        let response = self.response(&now, state);
+        element::mean_deviators(&self.elements, response, &state.displacements_mm)
+            .into_iter()
+            .map(|([xx, yy, zz, yz, xz, xy], volume)| {
+                let square = xx * xx + yy * yy + zz * zz + 2.0 * (yz * yz + xz * xz + xy * xy);
+                (1.5 * square).sqrt() / (MPA_PER_KPA * volume)
+            })
+            .collect()
+    }
+
+    /// The forces that hold the bonded nodes, in their order, N. `[n_bonded]`
+    #[must_use]
+    pub fn bonded_forces_n(&self, state: &State) -> Vec<DVec3> {
+        let now = Relaxation::new(&self.material().prony, 0.0);
+        let response = self.response(&now, state);
+        let (mut forces, mut corners) = (Forces::default(), Vec::new());
+        self.corner_pressures(&state.pressures_mpa, &mut corners);
+        self.elements
+            .forces(response, &state.displacements_mm, &corners, &mut forces);
+        let forces = forces.forces_n.as_flattened();
+        self.mesh()
+            .sets
+            .bonded
+            .iter()
+            .map(|&node| {
+                let sources = self.force_sources.of(node).iter();
+                sources.map(|&source| forces[source as usize]).sum()
+            })
+            .collect()
+    }
+
+    /// The response of the material over a step of no time.
+    fn response<'a>(&'a self, now: &'a Relaxation, state: &'a State) -> Response<'a> {
+        Response {
+            material: &self.material,
+            relaxation: now,
+            history: &state.history,
+        }
+    }
+}
