@@ -21,7 +21,6 @@
 //!
 //! Lengths are in mm, forces in N, torques in N mm, pressures in kPa (absolute, as barometers read them), angles in radians.
 
-mod chance;
 mod clock;
 mod emulated_bench;
 mod error;
@@ -37,7 +36,6 @@ pub mod force;
 pub mod i2c;
 pub mod robot;
 
-pub use chance::Chance;
 pub use clock::LabClock;
 pub use emulated_bench::{EmulatedBench, EmulatedBenchSettings};
 pub use error::EmulateError;

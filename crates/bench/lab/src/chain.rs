@@ -1,6 +1,6 @@
 //! The read-out chain: what becomes of the pressures at the ports before they are recorded.
 
-use twintac_emulate::Chance;
+use twintac_random::{RandomStream, normal};
 
 use crate::ReadoutReality;
 use crate::port::Port;
@@ -30,21 +30,21 @@ impl<'a> Chain<'a> {
     pub(crate) fn read(
         &mut self,
         scheduled_s: f64,
-        chance: &mut Chance,
+        random: &mut RandomStream,
         port_kpa: impl Fn(usize, f64) -> f64,
     ) -> (f64, Vec<f64>) {
         let readout = self.readout;
-        let jitter_s = chance.normal(readout.jitter_s);
+        let jitter_s = normal(random, readout.jitter_s);
         let time_s = scheduled_s + jitter_s.clamp(-3.0 * readout.jitter_s, 3.0 * readout.jitter_s);
         let step_s = (time_s - self.previous_s).max(0.0);
         self.previous_s = time_s;
         let readings_kpa = (0..self.walk_kpa.len())
             .map(|taxel| {
                 let late_s = readout.lag_s + taxel as f64 * readout.lag_per_taxel_s;
-                self.walk_kpa[taxel] += chance.normal(readout.drift_kpa_per_sqrt_s * step_s.sqrt());
+                self.walk_kpa[taxel] += normal(random, readout.drift_kpa_per_sqrt_s * step_s.sqrt());
                 let gel_kpa = port_kpa(taxel, time_s + late_s);
                 let clean_kpa = self.ports[taxel].absolute_kpa(gel_kpa, 0.0) + self.walk_kpa[taxel];
-                let noisy_kpa = clean_kpa + chance.normal(readout.noise_kpa);
+                let noisy_kpa = clean_kpa + normal(random, readout.noise_kpa);
                 (noisy_kpa / self.resolution_kpa).round() * self.resolution_kpa
             })
             .collect();

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use twintac_emulate::{CHANNELS, Chance};
+use twintac_emulate::CHANNELS;
 use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
+use twintac_random::{RandomStream, normal, stream};
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
@@ -31,23 +32,23 @@ impl Lab {
     /// Casts a sensor: draws the gains, offsets and places of its taxels.
     #[must_use]
     pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Self {
-        let mut chance = Chance::new(reality.seed, "cast");
+        let mut random = stream(reality.seed, "cast");
         let mut cast = (*drawing).clone();
         for taxel in &mut cast.taxels {
-            taxel.position_mm.x += chance.normal(reality.readout.position_deviation_mm);
-            taxel.position_mm.y += chance.normal(reality.readout.position_deviation_mm);
+            taxel.position_mm.x += normal(&mut random, reality.readout.position_deviation_mm);
+            taxel.position_mm.y += normal(&mut random, reality.readout.position_deviation_mm);
         }
         let readout = &reality.readout;
         let mut ports = vec![Port::PERFECT; drawing.taxels.len()];
         for port in &mut ports {
-            port.gain = readout.gain_mean * (1.0 + chance.normal(readout.gain_deviation));
+            port.gain = readout.gain_mean * (1.0 + normal(&mut random, readout.gain_deviation));
         }
         for port in &mut ports {
-            port.offset_kpa = chance.normal(readout.offset_deviation_kpa);
+            port.offset_kpa = normal(&mut random, readout.offset_deviation_kpa);
         }
         for port in &mut ports {
             port.offset_kpa_per_k =
-                readout.offset_kpa_per_k + chance.normal(readout.offset_deviation_kpa_per_k);
+                readout.offset_kpa_per_k + normal(&mut random, readout.offset_deviation_kpa_per_k);
         }
         let settings = SimulateSettings {
             edges_per_height: reality.gel.edges_per_height,
@@ -73,10 +74,10 @@ impl Lab {
 
     /// Performs one press and records it. The sensor is as warm as when it was switched on.
     pub fn press(&self, plan: &PressPlan) -> Result<Press, LabError> {
-        let mut chance = Chance::new(self.reality.seed, &plan.name);
+        let mut random = stream(self.reality.seed, &plan.name);
         let robot = &self.reality.robot;
-        let place = self.true_place(plan, &mut chance)?;
-        let deeper_mm = self.depth_offset_mm(&mut chance);
+        let place = self.true_place(plan, &mut random)?;
+        let deeper_mm = self.depth_offset_mm(&mut random);
 
         let schedule = plan.trajectory(self.drawing.readout.rate_hz);
         let keyframes = keyframes(&schedule, deeper_mm, self.reality.gel.depth_step_mm);
@@ -98,7 +99,7 @@ impl Lab {
         let mut chain = self.chain();
         let mut frames = Frames::default();
         for &(scheduled_s, depth_mm) in &schedule {
-            let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {
+            let (time_s, raw_kpa) = chain.read(scheduled_s, &mut random, |taxel, time_s| {
                 course.pressure_kpa(taxel, time_s)
             });
             let commanded = Pose {
@@ -114,7 +115,8 @@ impl Lab {
                 time_s,
                 commanded,
                 is_touching: depth_mm >= -0.1,
-                force_n: course.force_n(time_s - robot.force_lag_s) + chance.normal(robot.force_noise_n),
+                force_n: course.force_n(time_s - robot.force_lag_s)
+                    + normal(&mut random, robot.force_noise_n),
                 raw_kpa,
             });
         }
@@ -166,12 +168,16 @@ impl Lab {
     }
 
     /// How much deeper than the robot believes the indenter is in a press, mm.
-    pub(crate) fn depth_offset_mm(&self, chance: &mut Chance) -> f64 {
+    pub(crate) fn depth_offset_mm(&self, random: &mut RandomStream) -> f64 {
         let robot = &self.reality.robot;
-        robot.depth_offset_mm + chance.normal(robot.depth_deviation_mm)
+        robot.depth_offset_mm + normal(random, robot.depth_deviation_mm)
     }
 
-    pub(crate) fn true_place(&self, plan: &PressPlan, chance: &mut Chance) -> Result<PressPlace, LabError> {
+    pub(crate) fn true_place(
+        &self,
+        plan: &PressPlan,
+        random: &mut RandomStream,
+    ) -> Result<PressPlace, LabError> {
         let indenter = self
             .drawing
             .indenters
@@ -186,8 +192,8 @@ impl Lab {
             enough_force_n: None,
             indenter: plan.indenter.clone(),
             shape: indenter.shape.clone(),
-            x_mm: plan.x_mm + chance.normal(robot.place_deviation_mm),
-            y_mm: plan.y_mm + chance.normal(robot.place_deviation_mm),
+            x_mm: plan.x_mm + normal(random, robot.place_deviation_mm),
+            y_mm: plan.y_mm + normal(random, robot.place_deviation_mm),
             rotation: plan.rotation,
             depth_mm: plan.depth_mm,
         })

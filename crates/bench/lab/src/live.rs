@@ -10,8 +10,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{MonotoneCubic, PressFrame};
-use twintac_emulate::{CHANNELS, Chance, Physics, Sensed};
+use twintac_emulate::{CHANNELS, Physics, Sensed};
 use twintac_protocol::PressPlan;
+use twintac_random::{RandomStream, normal, stream};
 use twintac_rig::{TcpPose, Wrench};
 use twintac_shape::Pose;
 
@@ -35,7 +36,7 @@ pub struct LiveGel {
     /// Of each channel.
     ports: [Port; CHANNELS],
     drift_kpa_per_sqrt_s: f64,
-    chance: Chance,
+    random: RandomStream,
     memory: Memory,
 }
 
@@ -84,9 +85,9 @@ impl Lab {
     /// # Errors
     /// A place that can't be pressed, or not as deep as planned.
     pub fn live_table(&self, plan: &PressPlan) -> Result<LiveTable, LabError> {
-        let mut chance = Chance::new(self.reality().seed, &plan.name);
-        let place = self.true_place(plan, &mut chance)?;
-        let deeper_mm = self.depth_offset_mm(&mut chance);
+        let mut random = stream(self.reality().seed, &plan.name);
+        let place = self.true_place(plan, &mut random)?;
+        let deeper_mm = self.depth_offset_mm(&mut random);
         let place = twintac_simulate::PressPlace {
             depth_mm: plan.depth_mm + deeper_mm.max(0.0) + SPARE_MM,
             ..place
@@ -152,7 +153,7 @@ impl Lab {
             climate: reality.climate.clone(),
             ports: self.channels(),
             drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
-            chance: Chance::new(reality.seed, "live"),
+            random: stream(reality.seed, "live"),
         };
         (gel, selector)
     }
@@ -199,10 +200,9 @@ impl Physics for LiveGel {
         let warmed_k = self.climate.warmed_k(time_s);
         let arm_mm = tool.position_mm - self.base_from_gel.position_mm;
         let taxel_pressures_kpa = std::array::from_fn(|channel| {
+            let deviation_kpa = self.drift_kpa_per_sqrt_s * step_s.max(0.0).sqrt();
             let walk_kpa = &mut self.memory.walk_kpa[channel];
-            *walk_kpa += self
-                .chance
-                .normal(self.drift_kpa_per_sqrt_s * step_s.max(0.0).sqrt());
+            *walk_kpa += normal(&mut self.random, deviation_kpa);
             self.ports[channel].absolute_kpa(felt[1 + channel], warmed_k) + *walk_kpa
         });
         Sensed {

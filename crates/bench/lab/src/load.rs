@@ -2,8 +2,8 @@
 
 use glam::DQuat;
 use twintac_depth_table::{DepthTable, MonotoneCubic, PressFrame};
-use twintac_emulate::Chance;
 use twintac_protocol::{LoadPlan, PressPlan};
+use twintac_random::stream;
 use twintac_recording::{Control, Press};
 use twintac_simulate::PressPlace;
 
@@ -25,7 +25,7 @@ impl Lab {
     /// # Errors
     /// A place that can't be pressed, or a weight that the gel does not carry.
     pub fn load(&self, plan: &LoadPlan) -> Result<Press, LabError> {
-        let mut chance = Chance::new(self.reality().seed, &plan.name);
+        let mut random = stream(self.reality().seed, &plan.name);
         let as_press = PressPlan {
             name: plan.name.clone(),
             indenter: plan.indenter.clone(),
@@ -37,7 +37,7 @@ impl Lab {
             speed_mm_per_s: 1.0,
             hold_s: plan.hold_s,
         };
-        let place = self.true_place(&as_press, &mut chance)?;
+        let place = self.true_place(&as_press, &mut random)?;
         let table = self.depth_table_to(plan, place)?;
         let over_force = |taxel: usize| {
             let frames = table.frames.iter();
@@ -59,7 +59,7 @@ impl Lab {
         let mut chain = self.chain();
         let mut frames = Frames::default();
         for &(scheduled_s, weight_n) in &course {
-            let (time_s, raw_kpa) = chain.read(scheduled_s, &mut chance, |taxel, time_s| {
+            let (time_s, raw_kpa) = chain.read(scheduled_s, &mut random, |taxel, time_s| {
                 curves[taxel]
                     .as_ref()
                     .map_or(0.0, |curve| curve.at(force_n(time_s)))

@@ -4,7 +4,6 @@
 //! random in a press depends on the seed and the press's name alone. A [`Load`] puts weights on instead. A [`PressPath`] takes one indenter through given poses
 //! and forces.
 
-mod chance;
 mod load;
 mod part;
 mod path;

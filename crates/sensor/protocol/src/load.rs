@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use twintac_config::{ConfigError, Document};
 
-use crate::chance::stream;
+use twintac_random::stream;
+
 use crate::part::{name_of, once};
 use crate::{Indenters, Places, PlanError, Range, Target};
 
@@ -82,14 +83,14 @@ impl Load {
         for indenter in self.indenters.named(target)? {
             for number in 0..self.repeats * spots.count() {
                 let name = name_of(&self.name, indenter, number);
-                let mut chance = stream(seed, &name);
-                let [x_mm, y_mm] = spots.at(number % spots.count(), &mut chance);
+                let mut random = stream(seed, &name);
+                let [x_mm, y_mm] = spots.at(number % spots.count(), &mut random);
                 plans.push(LoadPlan {
                     name,
                     indenter: indenter.clone(),
                     x_mm,
                     y_mm,
-                    force_n: self.force_n.draw(&mut chance),
+                    force_n: self.force_n.draw(&mut random),
                     rest_s: self.rest_s,
                     hold_s: self.hold_s,
                 });

@@ -5,7 +5,8 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 use twintac_config::{ConfigError, Document};
 
-use crate::chance::stream;
+use twintac_random::stream;
+
 use crate::places::Spots;
 use crate::{Indenters, Places, PlanError, PressPlan, Range, Target};
 
@@ -101,11 +102,11 @@ impl Part {
 
     fn press(&self, indenter: &str, spots: &Spots<'_>, number: u32, seed: u64) -> PressPlan {
         let name = name_of(&self.name, indenter, number);
-        let mut chance = stream(seed, &name);
-        let [x_mm, y_mm] = spots.at(number % spots.count(), &mut chance);
-        let tilt_towards = DQuat::from_rotation_z(std::f64::consts::TAU * chance.random::<f64>()) * DVec3::X;
-        let tilt = DQuat::from_axis_angle(tilt_towards, self.tilt_rad.draw(&mut chance));
-        let spin = DQuat::from_rotation_z(self.spin_rad.draw(&mut chance));
+        let mut random = stream(seed, &name);
+        let [x_mm, y_mm] = spots.at(number % spots.count(), &mut random);
+        let tilt_towards = DQuat::from_rotation_z(std::f64::consts::TAU * random.random::<f64>()) * DVec3::X;
+        let tilt = DQuat::from_axis_angle(tilt_towards, self.tilt_rad.draw(&mut random));
+        let spin = DQuat::from_rotation_z(self.spin_rad.draw(&mut random));
         PressPlan {
             name,
             indenter: indenter.to_owned(),
@@ -113,9 +114,9 @@ impl Part {
             y_mm,
             rotation: tilt * spin,
             clearance_mm: self.clearance_mm,
-            depth_mm: self.depth_mm.draw(&mut chance),
-            speed_mm_per_s: self.speed_mm_per_s.draw(&mut chance),
-            hold_s: self.hold_s.draw(&mut chance),
+            depth_mm: self.depth_mm.draw(&mut random),
+            speed_mm_per_s: self.speed_mm_per_s.draw(&mut random),
+            hold_s: self.hold_s.draw(&mut random),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Where to press.
 
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+use twintac_random::RandomStream;
 
 use crate::{PlanError, Range, Target};
 
@@ -60,12 +60,12 @@ impl Spots<'_> {
     }
 
     /// One of them, mm.
-    pub(crate) fn at(&self, index: u32, chance: &mut ChaCha8Rng) -> [f64; 2] {
+    pub(crate) fn at(&self, index: u32, random: &mut RandomStream) -> [f64; 2] {
         match self {
             Self::Known(places_mm) => places_mm[index as usize],
             Self::Drawn(area, _) => {
-                let x_mm = Range::Between(area.x_mm).draw(chance);
-                [x_mm, Range::Between(area.y_mm).draw(chance)]
+                let x_mm = Range::Between(area.x_mm).draw(random);
+                [x_mm, Range::Between(area.y_mm).draw(random)]
             }
         }
     }

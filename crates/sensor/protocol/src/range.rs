@@ -1,8 +1,8 @@
 //! A number, or a range to draw it from.
 
 use rand::Rng;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+use twintac_random::RandomStream;
 
 /// One number, or two between which a press's value is drawn evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,9 +28,9 @@ impl Range {
         }
     }
 
-    pub(crate) fn draw(&self, chance: &mut ChaCha8Rng) -> f64 {
+    pub(crate) fn draw(&self, random: &mut RandomStream) -> f64 {
         let [low, high] = self.ends();
-        low + (high - low) * chance.random::<f64>()
+        low + (high - low) * random.random::<f64>()
     }
 
     /// What is wrong with it if nothing may be less than `least`: the problem and a hint.

@@ -5,11 +5,11 @@
 use std::sync::Arc;
 
 use glam::DQuat;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::SeedableRng;
 use twintac_calibrate::{
     CalibrateError, Curve, Fit, FitSettings, Material, Model, Parameter, PronyTerm, Quantity, Signal, fit,
 };
+use twintac_random::{RandomStream, normal};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};
@@ -67,11 +67,6 @@ fn model(json: &str) -> Model {
     serde_json::from_str(json).unwrap()
 }
 
-fn noise(random: &mut ChaCha8Rng) -> f64 {
-    let (u, v): (f64, f64) = (random.random(), random.random());
-    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
-
 /// What a bench would measure: this far down at a speed, a hold, and up; noise of 1 % of the largest force.
 fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64) -> Curve {
     let shape = Shape::Sphere { radius_mm: 4.0 };
@@ -111,14 +106,14 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
         .iter()
         .flat_map(|frame| frame.port_pressure_kpa.iter().copied())
         .fold(0.0, f64::max);
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut random = RandomStream::seed_from_u64(seed);
     let gains = [1.4, 0.6];
     let mut signals = vec![Signal {
         quantity: Quantity::Force,
         values: history
             .frames
             .iter()
-            .map(|frame| frame.force_n + 0.01 * largest_n * noise(&mut random))
+            .map(|frame| frame.force_n + 0.01 * largest_n * normal(&mut random, 1.0))
             .collect(),
     }];
     for (taxel, gain) in gains.into_iter().enumerate() {
@@ -127,7 +122,9 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
             values: history
                 .frames
                 .iter()
-                .map(|frame| gain * frame.port_pressure_kpa[taxel] + 0.005 * largest_kpa * noise(&mut random))
+                .map(|frame| {
+                    gain * frame.port_pressure_kpa[taxel] + 0.005 * largest_kpa * normal(&mut random, 1.0)
+                })
                 .collect(),
         });
     }

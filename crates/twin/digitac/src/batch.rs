@@ -76,7 +76,7 @@ impl Batch {
         &self,
         network: &Network,
         physics: &Physics,
-        noise: Option<(f64, &mut rand_chacha::ChaCha8Rng)>,
+        noise: Option<(f64, &mut twintac_random::RandomStream)>,
     ) -> Tensor<1> {
         let seen = match noise {
             Some((deviation, random)) if physics.variant.has_perceptron() && deviation > 0.0 => {

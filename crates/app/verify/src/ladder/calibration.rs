@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
 use glam::DQuat;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::SeedableRng;
 use rayon::prelude::*;
 use twintac_calibrate::{Curve, Fit, FitSettings, FittedSignal, Parameter, Quantity, Signal, fit};
 use twintac_depth_table::MonotoneCubic;
 use twintac_material::{Material, Ogden, OgdenTerm, PronyTerm, Yeoh};
 use twintac_plot::{Panel, Panels};
+use twintac_random::{RandomStream, normal};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::{Gel, Keyframe, PressPlace, SimulateSettings};
@@ -270,7 +270,7 @@ fn gel(material: &Material) -> Result<Gel> {
 }
 
 /// A curve as a bench would measure it that takes the surface to be lower than it is.
-fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut ChaCha8Rng) -> Result<Curve> {
+fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut RandomStream) -> Result<Curve> {
     let place = PressPlace {
         indenter: "ball".into(),
         shape: press.shape.clone(),
@@ -338,14 +338,14 @@ fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut ChaCha8Rng) ->
                 .push(from.depth_mm + part * (to.depth_mm - from.depth_mm) - offset_mm);
             curve.signals[0]
                 .values
-                .push(force.at(time_s) + NOISE * largest_n * normal(random));
+                .push(force.at(time_s) + NOISE * largest_n * normal(random, 1.0));
         }
     }
     Ok(curve)
 }
 
 fn find(case: &Case) -> Result<Fit> {
-    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut random = RandomStream::seed_from_u64(SEED);
     let offset_mm = case.free.iter().find(|(name, _)| *name == "depth_offset_mm");
     let offset_mm = offset_mm.map_or(0.0, |(_, truth)| *truth);
     let truth = gel(&case.truth)?;
@@ -362,10 +362,4 @@ fn find(case: &Case) -> Result<Fit> {
     let fit = fit(&gel(&case.start)?, &curves, &free, settings, &mut |_| ())?;
     ensure!(fit.converged, "{}: {:?}", case.name, fit.warnings);
     Ok(fit)
-}
-
-/// A number from the normal distribution (Box and Muller, 1958).
-fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let (u, v): (f64, f64) = (random.random(), random.random());
-    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }

@@ -1,10 +1,10 @@
 //! What the sensor measures and sends.
 
+use twintac_random::{RandomStream, normal, stream};
 use twintac_rig::Wrench;
 use twintac_rig::netft::{Command, Configuration, Record, Request, Status, TICKS_PER_SECOND, encode_records};
 
 use super::ForceSettings;
-use crate::chance::Chance;
 use crate::clock::{nanoseconds, seconds};
 use crate::fault::FaultWire;
 use crate::schedule::Schedule;
@@ -20,7 +20,7 @@ pub struct ForceSensor {
     configuration: Configuration,
     workcell: Workcell,
     schedule: Schedule,
-    chance: Chance,
+    random: RandomStream,
     bias: [f64; 6],
     is_latched: bool,
     stream: Option<Stream>,
@@ -63,7 +63,7 @@ impl ForceSensor {
         Ok(Self {
             configuration: settings.configuration(),
             schedule: Schedule::new(faults, FaultWire::Force),
-            chance: Chance::new(settings.seed, "force"),
+            random: stream(settings.seed, "force"),
             bias: [0.0; 6],
             is_latched: false,
             stream: None,
@@ -207,7 +207,7 @@ impl ForceSensor {
             } else {
                 self.settings.noise_n_mm
             };
-            *axis += self.settings.zero[index] + self.chance.normal(noise);
+            *axis += self.settings.zero[index] + normal(&mut self.random, noise);
         }
         axes
     }

@@ -1,7 +1,8 @@
 //! The CPS135B.
 
 use super::BarometerSettings;
-use crate::chance::Chance;
+use twintac_random::{RandomStream, normal, stream};
+
 use crate::clock::nanoseconds;
 use crate::{Sensed, Workcell};
 
@@ -32,7 +33,7 @@ pub(super) struct Barometer {
     settings: BarometerSettings,
     /// This part's time, relative to others'.
     slowness: f64,
-    chance: Chance,
+    random: RandomStream,
     /// Whether its one-time memory was burned: it answers no more.
     is_burned: bool,
     /// The next byte written is the register's number.
@@ -54,13 +55,13 @@ struct Conversion {
 
 impl Barometer {
     pub(super) fn new(channel: usize, settings: BarometerSettings, seed: u64) -> Self {
-        let mut chance = Chance::new(seed, &format!("barometer {channel}"));
-        let slowness = 1.0 + chance.normal(settings.conversion_spread).clamp(-0.5, 0.5);
+        let mut random = stream(seed, &format!("barometer {channel}"));
+        let slowness = 1.0 + normal(&mut random, settings.conversion_spread).clamp(-0.5, 0.5);
         Self {
             channel,
             settings,
             slowness,
-            chance,
+            random,
             is_burned: false,
             is_addressed: false,
             register: 0,
@@ -173,9 +174,8 @@ impl Barometer {
     }
 
     fn store(&mut self, sensed: &Sensed, code: u8) {
-        let noise_pa = self
-            .chance
-            .normal(self.settings.noise_pa * (1024.0 / self.samples()).sqrt());
+        let deviation_pa = self.settings.noise_pa * (1024.0 / self.samples()).sqrt();
+        let noise_pa = normal(&mut self.random, deviation_pa);
         let [p0, p1, p2, t0, t1] = &mut self.data;
         if code != TEMPERATURE {
             let pressure_pa = 1000.0 * sensed.taxel_pressures_kpa[self.channel] + noise_pa;
