@@ -188,11 +188,80 @@ fn untracked(root: &Path) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::commands;
+    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+    use super::*;
+
+    /// A checkout with this README.md, these exceptions, and nothing else.
+    fn checkout(readme: &str, exceptions: &str) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("xtask")).unwrap();
+        fs::write(folder.path().join("README.md"), readme).unwrap();
+        fs::write(folder.path().join("xtask/readme.toml"), exceptions).unwrap();
+        fs::write(folder.path().join(".gitignore"), "/runs\n").unwrap();
+        for arguments in [&["init", "--quiet"][..], &["add", "."]] {
+            let git = Command::new("git")
+                .args(arguments)
+                .current_dir(folder.path())
+                .status();
+            assert!(git.unwrap().success());
+        }
+        folder
+    }
+
+    fn error_of(readme: &str, exceptions: &str) -> String {
+        let folder = checkout(readme, exceptions);
+        run(folder.path()).map_or_else(|error| format!("{error:#}"), |()| String::new())
+    }
 
     #[test]
     fn commands_are_lines_of_blocks_for_a_shell() {
-        let readme = "cargo no\n```\ncargo run -- demo   # a comment\n\n# cargo comment\n```\n```rust\nlet no = 1;\n```\n```sh\ncargo \\\n  test\n```\ncargo no\n";
+        let readme = "cargo no\n```\ncargo run -- demo   # a comment\n\n# cargo comment\n```\n```rust\nlet no = 1;\n```\n\
+            ```sh\ncargo \\\n  test\n```\ncargo no\n";
         assert_eq!(commands(readme), ["cargo run -- demo", "cargo test"]);
+    }
+
+    #[test]
+    fn every_command_is_run_as_it_stands() {
+        let readme = "```\nmkdir runs; echo one > runs/one   # a comment\ntest -f runs/one\n```\n";
+        assert_eq!(error_of(readme, ""), "");
+    }
+
+    #[test]
+    fn a_broken_command_is_an_error() {
+        let error = error_of("```\ntrue\ntest -f runs/no-such-file\n```\n", "");
+        assert!(error.contains("`test -f runs/no-such-file` failed"), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_git_does_not_ignore_is_an_error() {
+        let error = error_of("```\ntouch left-over\n```\n", "");
+        assert!(
+            error.contains("left files") && error.contains("left-over"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn an_exception_holds_for_its_command_word_for_word() {
+        let readme = "```\nfalse --one\ntrue\n```\n";
+        let exception = "[[not_run]]\ncommand = \"false --one\"\nwhy = \"it fails\"\n";
+        assert_eq!(error_of(readme, exception), "");
+        let error = error_of(readme, &exception.replace("--one", "--two"));
+        assert!(
+            error.contains("`false --two`, which does not stand in README.md"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn options_of_a_command_that_is_not_run_are_looked_up() {
+        let error_of = |option: &str| {
+            let command = format!("bash -c 'echo its help names --known' -- go {option}");
+            let exception = format!("[[not_run]]\ncommand = \"{command}\"\nwhy = \"it needs a sensor\"\n");
+            error_of(&format!("```\n{command}\n```\n"), &exception)
+        };
+        assert_eq!(error_of("--known"), "");
+        assert!(error_of("--unknown").contains("says nothing of `--unknown`"));
     }
 }

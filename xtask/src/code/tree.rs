@@ -45,7 +45,8 @@ impl Crate {
         Ok(crates)
     }
 
-    fn read(root: &Path, package: &str, file: &Path, is_library: bool) -> Result<Self> {
+    /// Reads the library or program whose root file this is.
+    pub(super) fn read(root: &Path, package: &str, file: &Path, is_library: bool) -> Result<Self> {
         let mut read = Self {
             package: package.to_owned(),
             files: Vec::new(),
