@@ -203,7 +203,7 @@ fn of_documents(workspace: &Arc<Workspace>) -> Vec<Trial> {
         trial(
             workspace,
             "documents::rooms_are_those_of_rooms_toml".into(),
-            |all, root| page::is_fresh(root, &all.rooms, &all.graph),
+            |all, root| page::is_fresh(root, &all.rooms),
         ),
         trial(workspace, "documents::files_named_exist".into(), |_, root| {
             documents::files_named_exist(root)

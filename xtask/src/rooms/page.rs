@@ -5,35 +5,31 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-use super::{Graph, Rooms, Term};
+use super::{Rooms, Term};
 
 /// Each part's name; it stands between `<!-- rooms: NAME -->` and `<!-- end -->`.
-const PARTS: [(&str, fn(&Rooms, &Graph) -> String); 4] = [
-    ("table", |rooms, _| table(rooms)),
-    ("terms", |rooms, _| terms(rooms)),
-    ("arrows", arrows),
-    ("invariants", |rooms, _| invariants(rooms)),
-];
+const PARTS: [(&str, fn(&Rooms) -> String); 3] =
+    [("table", table), ("terms", terms), ("invariants", invariants)];
 
 /// Writes the parts of ARCHITECTURE.md anew.
 pub fn write(root: &Path) -> Result<()> {
     let path = root.join("ARCHITECTURE.md");
     let text = fs::read_to_string(&path).with_context(|| format!("reading {}", path.display()))?;
-    fs::write(&path, fresh(&text, &Rooms::read(root)?, &Graph::read(root)?)?)?;
+    fs::write(&path, fresh(&text, &Rooms::read(root)?)?)?;
     Ok(())
 }
 
 /// ARCHITECTURE.md is as [`write`] would leave it.
-pub fn is_fresh(root: &Path, rooms: &Rooms, graph: &Graph) -> Result<()> {
+pub fn is_fresh(root: &Path, rooms: &Rooms) -> Result<()> {
     let text = fs::read_to_string(root.join("ARCHITECTURE.md")).context("reading ARCHITECTURE.md")?;
     ensure!(
-        fresh(&text, rooms, graph)? == text,
+        fresh(&text, rooms)? == text,
         "ARCHITECTURE.md is not what xtask/rooms.toml says: run `cargo xtask rooms`"
     );
     Ok(())
 }
 
-fn fresh(text: &str, rooms: &Rooms, graph: &Graph) -> Result<String> {
+fn fresh(text: &str, rooms: &Rooms) -> Result<String> {
     let mut text = text.to_owned();
     for (name, part) in PARTS {
         let begin = format!("<!-- rooms: {name} -->\n");
@@ -44,7 +40,7 @@ fn fresh(text: &str, rooms: &Rooms, graph: &Graph) -> Result<String> {
         let length = text[from..]
             .find("<!-- end -->")
             .with_context(|| format!("ARCHITECTURE.md: the part `{name}` has no end"))?;
-        text.replace_range(from..from + length, &part(rooms, graph));
+        text.replace_range(from..from + length, &part(rooms));
     }
     Ok(text)
 }
@@ -56,7 +52,7 @@ fn table(rooms: &Rooms) -> String {
             "| `{}` | {} | {} |\n",
             room.folder,
             room.owns,
-            room.never.join(", ")
+            rooms.never(room).join(", ")
         );
     }
     text + "\n"
@@ -92,34 +88,6 @@ fn meaning(term: &Term) -> String {
         parts.push("as its own dependency".to_owned());
     }
     parts.join("; ")
-}
-
-fn arrows(rooms: &Rooms, graph: &Graph) -> String {
-    let width = rooms
-        .rooms
-        .iter()
-        .map(|room| room.name().len())
-        .max()
-        .unwrap_or_default();
-    let mut text = "\n```\n".to_owned();
-    for shelf in &rooms.shelves {
-        text += &format!("{shelf}\n");
-        for room in rooms.rooms.iter().filter(|room| room.shelf() == Some(shelf)) {
-            let known = graph
-                .packages
-                .get(&room.package())
-                .map(|package| &package.dependencies);
-            let others = rooms
-                .rooms
-                .iter()
-                .filter(|other| known.is_some_and(|known| known.contains(&other.package())));
-            let names: Vec<&str> = others.map(|other| other.name()).collect();
-            let line = format!("  {:width$} ─► {}", room.name(), names.join(", "));
-            text += line.trim_end_matches([' ', '─', '►']);
-            text.push('\n');
-        }
-    }
-    text + "```\n\n"
 }
 
 fn invariants(rooms: &Rooms) -> String {

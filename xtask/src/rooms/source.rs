@@ -47,6 +47,9 @@ pub struct Invariant {
     pub name: String,
     /// Why, in a sentence or two.
     pub why: String,
+    /// The table has it beside what else each room must never know.
+    #[serde(default = "yes")]
+    pub is_in_the_table: bool,
     /// Who must not know what.
     pub bars: Vec<Bar>,
 }
@@ -125,6 +128,19 @@ impl Rooms {
         found.with_context(|| format!("there is no room `{name}`"))
     }
 
+    /// All that a room must never know, by invariants and of its own, in words of [`Self::terms`].
+    pub fn never<'a>(&'a self, room: &'a Room) -> Vec<&'a str> {
+        let bars = self
+            .invariants
+            .iter()
+            .filter(|invariant| invariant.is_in_the_table);
+        let bars = bars
+            .flat_map(|invariant| &invariant.bars)
+            .filter(|bar| bar.binds(room));
+        let words = bars.flat_map(|bar| &bar.never).chain(&room.never);
+        words.map(String::as_str).collect()
+    }
+
     fn check(&self) -> Result<()> {
         let words = || {
             let of_rooms = self.rooms.iter().flat_map(|room| &room.never);
@@ -149,6 +165,17 @@ impl Rooms {
             }
         }
         for room in &self.rooms {
+            let never = self.never(room);
+            if let Some(word) = room
+                .never
+                .iter()
+                .find(|&word| never.iter().filter(|other| *other == word).count() > 1)
+            {
+                bail!(
+                    "`{}`: an invariant says already that it never knows {word}",
+                    room.folder
+                );
+            }
             if let Some(shelf) = room.shelf()
                 && !self.shelves.iter().any(|known| known == shelf)
             {
@@ -157,4 +184,8 @@ impl Rooms {
         }
         Ok(())
     }
+}
+
+fn yes() -> bool {
+    true
 }
