@@ -49,13 +49,14 @@ impl Run {
     /// The folder cannot be written.
     pub fn start(
         folder: &Path,
-        sensor: SensorFile,
+        sensor: impl Into<SensorFile>,
         source: &str,
         seed: u64,
         settings: RunSettings,
         caller: Caller,
     ) -> Result<Self, RunError> {
         std::fs::create_dir_all(folder).map_err(RunError::file("creating", folder))?;
+        let sensor = sensor.into();
         let record = RunRecord {
             sensor: sensor.sensor.name.clone(),
             source: source.to_owned(),

@@ -1,0 +1,137 @@
+//! Barometric touch sensors and their digital twin.
+//!
+//! Press a simulated gel, read a sensor, learn from recordings what its barometers make of the gel's pressure, and ask the trained twin
+//! what it would read.
+//!
+//! ```toml
+//! [dependencies]
+//! twintac = "0.1"
+//! ```
+//!
+//! A ball, pressed into PhysTac, and what reaches its eight ports:
+//!
+//! ```
+//! use twintac::{Error, Gel, Press, Pressed, Sensor};
+//!
+//! fn main() -> Result<(), Error> {
+//!     let sensor = Sensor::phystac()?;
+//!     let ball = Press::with("sphere-25").at_mm(-4.0, 4.0).depth_mm(1.0);
+//!     let pressed = Gel::of(&sensor).press(&ball)?;
+//!     for (taxel, pressure_kpa) in sensor.taxels().zip(pressed.readings_kpa()) {
+//!         println!("{taxel} {pressure_kpa:6.2} kPa, {}", Pressed::PROVENANCE);
+//!     }
+//!     Ok(())
+//! }
+//! ```
+//!
+//! The same press, drawn by [`PressureMap::write`], with the taxels marked:
+//!
+#![doc = include_str!("../pressed.svg")]
+//!
+//! # What there is
+//!
+//! | type | what it is | feature |
+//! |---|---|---|
+//! | [`Sensor`] | a sensor as its description says: gel, taxels, indenters | |
+//! | [`Press`] | where, with what, how deep and how fast to press | |
+//! | [`Gel`], [`Pressed`] | the sensor's gel, and what it does under a press: forces, and pressures at the ports | |
+//! | [`PressureMap`] | pressure between the taxels, and a picture of it | `map` |
+//! | [`Recording`] | recorded presses, as Parquet or from CSV files of any laboratory ([`Import`]) | `recording` |
+//! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
+//! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
+//! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
+//!
+//! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
+//! along -z. Numbers say where they come from: `real`, `emulated` or `simulated`.
+//!
+//! # Five lines more
+//!
+//! A picture of what the taxels read:
+//!
+//! ```
+//! # #[cfg(feature = "map")] {
+//! use twintac::{PressureMap, Sensor};
+//!
+//! let sensor = Sensor::phystac()?;
+//! let map = PressureMap::of(&sensor, &[0.0, 2.0, 7.5, 1.0, 0.0, 1.5, 6.0, 0.8])?;
+//! assert_eq!(map.pressure_kpa().len(), 96 * 64);
+//! # }
+//! # Ok::<(), twintac::Error>(())
+//! ```
+//!
+//! A sensor that is read, here an emulated one:
+//!
+//! ```
+//! # #[cfg(feature = "live")] {
+//! use twintac::{Reader, Sensor};
+//!
+//! let mut reader = Reader::emulated(&Sensor::phystac()?)?;
+//! let reading = reader.read()?;
+//! println!("{:.3} s, {}: {:?} kPa", reading.time_s, reader.provenance(), reading.readings_kpa);
+//! # }
+//! # Ok::<(), twintac::Error>(())
+//! ```
+//!
+//! A twin of PhysTac, trained on the emulated bench in minutes, and what it would read along a press:
+//!
+//! ```no_run
+//! # #[cfg(feature = "run")] {
+//! use std::path::Path;
+//! use twintac::{Caller, Press, Run, Twin};
+//!
+//! let run = Run::demo(Path::new("runs/demo"), 1, Caller::default())?;
+//! let metrics = run.finish()?;
+//! println!("errs by {:.1} % on presses that it never saw", metrics.twin.overall.nearest_in_contact_percent);
+//! let twin = Twin::load(run.model_folder())?;
+//! let predicted = twin.predict(&Press::with("sphere-25").depth_mm(1.2).hold_s(1.0))?;
+//! println!("{:?} kPa at first touch", predicted.readings_kpa[0]);
+//! # }
+//! # Ok::<(), twintac::Error>(())
+//! ```
+//!
+//! The folder `examples/` has these as programs, and one that trains a twin on CSV files of your own.
+//!
+//! # Features
+//!
+//! All are on by default. `default-features = false` leaves the gel alone, which compiles in a fraction of the time: no network, no Parquet.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `map` | pressure maps and pictures |
+//! | `recording` | recorded presses: Parquet, CSV |
+//! | `live` | reading a sensor; brings `recording` |
+//! | `twin` | trained twins: a neural network; brings `recording` |
+//! | `run` | the pipeline from recordings to a judged twin; brings all of the above but `map` |
+//!
+//! What is below this crate has the details: `twintac-simulate` and `twintac-softbody` the finite elements, `digitac` the twin, `phystac` the
+//! `no_std` drivers, `twintac-run` the pipeline.
+
+mod error;
+mod gel;
+#[cfg(feature = "map")]
+mod map;
+mod press;
+#[cfg(feature = "live")]
+mod reader;
+mod sensor;
+#[cfg(feature = "twin")]
+mod twin;
+
+pub use error::Error;
+pub use gel::{Gel, Pressed};
+#[cfg(feature = "map")]
+pub use map::PressureMap;
+pub use press::Press;
+#[cfg(feature = "live")]
+pub use reader::{Reader, Reading};
+pub use sensor::Sensor;
+#[cfg(feature = "twin")]
+pub use twin::{Prediction, Twin};
+
+pub use twintac_depth_table::PressFrame;
+#[cfg(feature = "recording")]
+pub use twintac_recording::{Import, Provenance, Recording};
+#[cfg(feature = "run")]
+pub use twintac_run::{Caller, Metrics, Outcome, Progress, Run, RunSettings, Silent};
+pub use twintac_sensor::SensorFile;
+pub use twintac_simulate::SimulateSettings;

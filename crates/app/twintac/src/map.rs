@@ -1,0 +1,74 @@
+//! Pressure between the taxels.
+
+use std::path::Path;
+
+use twintac_map::{MapSettings, Rectangle, pressure_map};
+use twintac_plot::{HeatMap, HeatMaps};
+
+use crate::{Error, Sensor};
+
+/// A continuous map over the gel of what a few taxels read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressureMap {
+    map: twintac_map::PressureMap,
+    taxels_mm: Vec<[f64; 2]>,
+    title: String,
+}
+
+impl PressureMap {
+    /// The map through readings of a sensor above its unloaded baseline, kPa; `[n_taxels]`. It has 96 columns and 64 rows.
+    ///
+    /// # Errors
+    /// Another number of readings than the sensor has taxels.
+    pub fn of(sensor: &Sensor, readings_kpa: &[f64]) -> Result<Self, Error> {
+        let described = &*sensor.file().sensor;
+        let place = |taxel: &twintac_sensor::Taxel| [taxel.position_mm.x, taxel.position_mm.y];
+        let taxels_mm: Vec<[f64; 2]> = described.taxels.iter().map(place).collect();
+        let (low, high) = described.gel.solid.bounds_mm(&described.surfaces);
+        let gel = Rectangle {
+            min_mm: [low.x, low.y],
+            max_mm: [high.x, high.y],
+        };
+        let baseline_kpa = vec![0.0; readings_kpa.len()];
+        let settings = MapSettings::default();
+        Ok(Self {
+            map: pressure_map(&taxels_mm, readings_kpa, &baseline_kpa, gel, &settings)?,
+            taxels_mm,
+            title: sensor.name().to_owned(),
+        })
+    }
+
+    /// Pressure above the baseline, kPa, `[rows][columns]` flattened, the row of smallest y first.
+    #[must_use]
+    pub fn pressure_kpa(&self) -> &[f64] {
+        &self.map.pressure_kpa
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn grid(&self) -> [usize; 2] {
+        self.map.grid
+    }
+
+    /// Draws the map, with the taxels marked, into a file: `.svg` or `.png`.
+    ///
+    /// # Errors
+    /// A name with another ending; a file that cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let map = HeatMap {
+            name: String::new(),
+            min_mm: self.map.rectangle.min_mm,
+            max_mm: self.map.rectangle.max_mm,
+            grid: self.map.grid,
+            values: self.map.pressure_kpa.clone(),
+        };
+        let maps = HeatMaps {
+            title: format!("Pressure on {}", self.title),
+            maps: vec![map],
+            unit: "kPa".to_owned(),
+            marks_mm: self.taxels_mm.clone(),
+            circle_mm: None,
+        };
+        Ok(maps.scene().write(path.as_ref())?)
+    }
+}

@@ -1,0 +1,87 @@
+//! A sensor that is being read.
+
+use std::path::Path;
+use std::time::Duration;
+
+use twintac_live::{Known, Live, LiveError, Tare, Taring};
+use twintac_recording::Provenance;
+
+use crate::{Error, Sensor};
+
+/// How long to wait for a frame.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Reads a sensor frame by frame: on an I²C bus of Linux, or emulated.
+#[derive(Debug)]
+pub struct Reader {
+    live: Live,
+    tare: Tare,
+}
+
+/// A frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// When the taxels were triggered, s since the sensor was switched on.
+    pub time_s: f64,
+    /// Readings above what the taxels read untouched, kPa; `[n_taxels]`, `None` of a taxel that gives no usable one.
+    pub readings_kpa: Vec<Option<f64>>,
+}
+
+impl Reader {
+    /// Reads the sensor on `/dev/i2c-N`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of
+    /// its barometers, confirmed by who knows the parts; without it, the description's counts.
+    ///
+    /// # Errors
+    /// A bus that cannot be opened; a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
+    #[cfg(target_os = "linux")]
+    pub fn open(bus: impl AsRef<Path>, sensor: &Sensor, counts_per_pa: Option<u16>) -> Result<Self, Error> {
+        let file = sensor.file();
+        let known = Known {
+            counts_per_pa,
+            altitude_m: None,
+        };
+        Self::of(Live::on_linux(bus.as_ref(), &file.sensor, &file.text, &known)?)
+    }
+
+    /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about.
+    ///
+    /// # Errors
+    /// A sensor that is not read this way.
+    pub fn emulated(sensor: &Sensor) -> Result<Self, Error> {
+        let file = sensor.file();
+        Self::of(Live::in_the_lab(&file.sensor, &file.text, &Known::default())?)
+    }
+
+    fn of(mut live: Live) -> Result<Self, Error> {
+        let mut taring = Taring::default();
+        loop {
+            let reading = live.source.next(PATIENCE)?.ok_or_else(silent)?;
+            if let Some(tare) = taring.push(&reading.frame) {
+                return Ok(Self { live, tare });
+            }
+        }
+    }
+
+    /// Where the readings come from: `real` or `emulated`.
+    #[must_use]
+    pub fn provenance(&self) -> Provenance {
+        self.live.about.provenance
+    }
+
+    /// The next frame.
+    ///
+    /// # Errors
+    /// A sensor that has failed for 2 s on end.
+    pub fn read(&mut self) -> Result<Reading, Error> {
+        let reading = self.live.source.next(PATIENCE)?.ok_or_else(silent)?;
+        Ok(Reading {
+            time_s: reading.bench_s,
+            readings_kpa: self.tare.above_kpa(&reading.frame),
+        })
+    }
+}
+
+fn silent() -> Error {
+    let problem = format!("none came for {} s", PATIENCE.as_secs());
+    LiveError::Bus { problem }.into()
+}

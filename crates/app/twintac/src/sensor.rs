@@ -1,0 +1,65 @@
+//! A sensor as it is described.
+
+use std::path::Path;
+
+use twintac_sensor::SensorFile;
+
+use crate::Error;
+
+/// A sensor as its description says: gel, taxels, read-out, and the indenters that it can be pressed with.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    file: SensorFile,
+}
+
+impl Sensor {
+    /// PhysTac: eight barometers under a flat gel of 34 × 18 × 8.5 mm.
+    ///
+    /// # Errors
+    /// None, unless this library was compiled with another description in place of PhysTac's.
+    pub fn phystac() -> Result<Self, Error> {
+        Ok(SensorFile::phystac()?.into())
+    }
+
+    /// Reads a description (TOML).
+    ///
+    /// # Errors
+    /// A file that cannot be read or is wrong: with the line and the field.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(SensorFile::read(path.as_ref())?.into())
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.file.sensor.name
+    }
+
+    /// Names of its taxels, in the order of every row of readings.
+    pub fn taxels(&self) -> impl Iterator<Item = &str> {
+        self.file.sensor.taxels.iter().map(|taxel| &*taxel.name)
+    }
+
+    /// Names of the indenters that it can be pressed with.
+    pub fn indenters(&self) -> impl Iterator<Item = &str> {
+        self.file.sensor.indenters.iter().map(|indenter| &*indenter.name)
+    }
+
+    /// All that the description says, and its text.
+    #[must_use]
+    pub fn file(&self) -> &SensorFile {
+        &self.file
+    }
+}
+
+impl From<SensorFile> for Sensor {
+    fn from(file: SensorFile) -> Self {
+        Self { file }
+    }
+}
+
+impl From<&Sensor> for SensorFile {
+    fn from(sensor: &Sensor) -> Self {
+        sensor.file.clone()
+    }
+}

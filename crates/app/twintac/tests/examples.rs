@@ -1,0 +1,35 @@
+//! The examples run, and end well.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+#![allow(dead_code, unreachable_pub)] // each example has a `main` of its own
+
+#[path = "../examples/predict_along_a_press.rs"]
+mod predict_along_a_press;
+#[path = "../examples/press_a_ball.rs"]
+mod press_a_ball;
+#[path = "../examples/read_a_sensor.rs"]
+mod read_a_sensor;
+#[path = "../examples/train_from_csv.rs"]
+mod train_from_csv;
+
+#[test]
+fn a_ball_is_pressed() {
+    press_a_ball::main().unwrap();
+}
+
+#[test]
+fn a_sensor_is_read() {
+    read_a_sensor::read(None, None).unwrap();
+}
+
+#[test]
+fn a_twin_is_trained_and_predicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let metrics = train_from_csv::train(folder.path()).unwrap();
+    let (twin, zero) = (&metrics.twin.overall, &metrics.baselines.zero);
+    assert!(twin.nearest_in_contact_percent < 0.5 * zero.nearest_in_contact_percent);
+    let predicted = predict_along_a_press::predict(&folder.path().join("model")).unwrap();
+    let loudest = |row: &Vec<f64>| row.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let held = predicted.readings_kpa.len() / 2;
+    assert!(loudest(&predicted.readings_kpa[held]) > 1.0, "{predicted:?}");
+}
