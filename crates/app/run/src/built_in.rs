@@ -14,12 +14,6 @@ pub struct BuiltIn {
     pub text: &'static str,
 }
 
-/// The description of PhysTac.
-pub const PHYSTAC: BuiltIn = BuiltIn {
-    name: "sensors/phystac.toml",
-    text: include_str!("../built_in/phystac.toml"),
-};
-
 /// The protocol of the demo.
 pub const DEMO_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/demo.toml",
@@ -59,7 +53,7 @@ mod tests {
     #[test]
     fn what_is_built_in_is_what_people_edit() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-        for built_in in [PHYSTAC, DEMO_PROTOCOL, REALITY, LAB_RIG] {
+        for built_in in [DEMO_PROTOCOL, REALITY, LAB_RIG] {
             let edited = std::fs::read_to_string(root.join(built_in.name)).unwrap();
             assert_eq!(built_in.text, edited, "{}", built_in.name);
         }

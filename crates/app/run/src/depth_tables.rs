@@ -6,12 +6,11 @@ use std::path::PathBuf;
 use glam::DVec2;
 use rayon::prelude::*;
 use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, Lattice, SourceError};
-use twintac_shape::{Pose, Shape};
+use twintac_shape::Pose;
 use twintac_simulate::{Gel, PressPlace};
 
 use crate::Progress;
 use crate::files::{read_json, sha256, write_json};
-use crate::sensor_file::indenter;
 
 /// From this many different places on, a lattice of places is simulated and interpolated.
 const LATTICE_FROM: usize = 150;
@@ -34,28 +33,6 @@ impl<'a> DepthTableStore<'a> {
             folder,
             progress,
         }
-    }
-
-    fn place(&self, request: &DepthTableRequest) -> Result<PressPlace, SourceError> {
-        let shape = self.shape(&request.indenter)?.clone();
-        let shape = match (shape, request.tip_radius_mm) {
-            (Shape::Sphere { .. }, Some(radius_mm)) => Shape::Sphere { radius_mm },
-            (shape, _) => shape,
-        };
-        let at = request.gel_from_indenter_at_touch;
-        Ok(PressPlace {
-            indenter: request.indenter.clone(),
-            shape,
-            x_mm: at.position_mm.x,
-            y_mm: at.position_mm.y,
-            rotation: at.rotation,
-            depth_mm: request.max_depth_mm,
-            enough_force_n: request.enough_force_n,
-        })
-    }
-
-    fn shape(&self, name: &str) -> Result<&Shape, SourceError> {
-        Ok(indenter(self.gel.sensor(), name)?)
     }
 
     /// The tables at places, from their files or computed now, in order.
@@ -95,13 +72,13 @@ impl<'a> DepthTableStore<'a> {
 
 impl DepthTableSource for DepthTableStore<'_> {
     fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
-        Ok(self.gel.touch(self.shape(indenter)?, above)?)
+        Ok(self.gel.touch(self.gel.shape(indenter)?, above)?)
     }
 
     fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {
         let places = requests
             .iter()
-            .map(|request| self.place(request))
+            .map(|request| self.gel.requested(request))
             .collect::<Result<Vec<_>, _>>()?;
         if let Some(lattice) = lattice(self.gel, &places) {
             let mut place = places[0].clone();

@@ -11,7 +11,7 @@ use twintac_simulate::Gel;
 
 use crate::cache::{self, Inputs};
 use crate::error::At;
-use crate::files::{read_json, write_json};
+use crate::files::{read_json, write_file, write_json};
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
 
 /// What a run is made from: `run.json`.
@@ -63,7 +63,11 @@ impl Run {
             seed,
             settings,
         };
-        sensor.copy_to(folder)?;
+        for (name, path) in sensor.surfaces() {
+            let bytes = std::fs::read(&path).map_err(RunError::file("reading", &path))?;
+            write_file(&folder.join(name), &bytes)?;
+        }
+        write_file(&folder.join("sensor.toml"), sensor.text.as_bytes())?;
         write_json(&folder.join("run.json"), &record)?;
         Ok(Self {
             folder: folder.to_owned(),

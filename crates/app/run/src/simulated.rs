@@ -15,7 +15,6 @@ use twintac_simulate::{Fields, Followed, Gel, PressPlace, SimulateSettings};
 use crate::error::At;
 use crate::files::{read_text, write_file, write_json};
 use crate::progress::Work;
-use crate::sensor_file::indenter;
 use crate::{Progress, RunError};
 
 /// One simulated press: `<press>.json`.
@@ -66,7 +65,7 @@ fn simulate(gel: &Gel, plan: &PressPlan, vtk: Option<&Path>) -> Result<DepthTabl
     let place = PressPlace {
         enough_force_n: None,
         indenter: plan.indenter.clone(),
-        shape: indenter(gel.sensor(), &plan.indenter)?.clone(),
+        shape: gel.shape(&plan.indenter)?.clone(),
         x_mm: plan.x_mm,
         y_mm: plan.y_mm,
         rotation: plan.rotation,
@@ -129,7 +128,7 @@ impl SimulatedPath {
     /// A file that cannot be read or is wrong; an indenter that the sensor does not have; a point with the name of a taxel.
     pub fn follow(gel: &Gel, file: &Path, progress: &dyn Progress) -> Result<Self, RunError> {
         let path = PressPath::parse(&file.display().to_string(), &read_text(file)?)?;
-        let shape = indenter(gel.sensor(), &path.indenter)?;
+        let shape = gel.shape(&path.indenter)?;
         let is_taxel = |name: &str| gel.sensor().taxels.iter().any(|taxel| taxel.name == name);
         if let Some(point) = path.points.iter().find(|point| is_taxel(&point.name)) {
             return Err(RunError::Input(format!(

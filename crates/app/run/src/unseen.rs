@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::Arc;
 
 use digitac::{
     Estimate, Evaluation, Model, Places, Recalibration, Repeatability, Scale, evaluate, pair, recalibrate,
@@ -17,8 +16,7 @@ use crate::depth_tables::DepthTableStore;
 use crate::metrics::{self, BaselineFigures, Figures, TwinFigures, baselines, names};
 use crate::progress::Work;
 use crate::run::left_out;
-use crate::sensor_file::parse_sensor;
-use crate::{Progress, RunError};
+use crate::{Progress, RunError, SensorFile};
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
@@ -105,7 +103,7 @@ pub fn evaluate_elsewhere(
 /// The gel of a model's sensor, simulated as it was for training.
 fn gel_of(model: &Model, folder: &Path) -> Result<Gel, RunError> {
     let path = folder.join("twin.json");
-    let sensor = Arc::new(parse_sensor(&path, &model.record.sensor)?);
+    let sensor = SensorFile::parse(&path, &model.record.sensor)?.sensor;
     let settings: SimulateSettings = serde_json::from_value(model.record.simulation.clone())
         .map_err(|source| RunError::Damaged { path, source })?;
     Ok(Gel::new(sensor, settings))

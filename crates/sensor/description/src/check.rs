@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use twintac_config::{ConfigError, Document};
 
 use crate::Sensor;
-use crate::file::SensorFile;
+use crate::file::SensorToml;
 
 /// Lengths that differ by less are the same, mm.
 const TOLERANCE_MM: f64 = 1e-6;
@@ -16,13 +16,13 @@ const RIM_POINTS: u32 = 16;
 
 struct Checker<'a> {
     sensor: &'a Sensor,
-    document: &'a Document<SensorFile>,
+    document: &'a Document<SensorToml>,
 }
 
 type Checked = Result<(), ConfigError>;
 
 impl Sensor {
-    pub(crate) fn check(&self, document: &Document<SensorFile>) -> Checked {
+    pub(crate) fn check(&self, document: &Document<SensorToml>) -> Checked {
         let checker = Checker {
             sensor: self,
             document,

@@ -8,7 +8,7 @@ use crate::{Inclusion, Indenter, LoadLimits, Readout, Shell, Taxel};
 /// The file as it is written, before anything is checked.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SensorFile {
+pub(crate) struct SensorToml {
     pub(crate) name: String,
     pub(crate) summary: String,
     pub(crate) source: String,

@@ -12,9 +12,11 @@ mod load;
 mod material;
 mod material_table;
 mod sensor;
+mod sensor_file;
 
 pub use material::GelMaterial;
 pub use sensor::{ConfirmedTransfer, Gel, Inclusion, Indenter, LoadLimits, Readout, Sensor, Shell, Taxel};
+pub use sensor_file::SensorFile;
 pub use twintac_material::{Model, PronyTerm};
 
 /// Why a description cannot be used: what is wrong with which field, in which file and line.

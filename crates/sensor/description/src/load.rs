@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use twintac_config::Document;
 use twintac_shape::{Shape, Solid, Surfaces, TriangleSurface};
 
-use crate::file::SensorFile;
+use crate::file::SensorToml;
 use crate::material_table::material;
 use crate::{Gel, GelMaterial, Sensor, SensorError};
 
@@ -22,7 +22,7 @@ impl Sensor {
         text: &str,
         load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
     ) -> Result<Self, SensorError> {
-        let document = twintac_config::parse::<SensorFile>(file, text)?;
+        let document = twintac_config::parse::<SensorToml>(file, text)?;
         Self::from_document(document, load)
     }
 
@@ -32,7 +32,7 @@ impl Sensor {
     /// Those of [`Sensor::parse`], and a file that cannot be read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SensorError> {
         let folder = path.as_ref().parent().unwrap_or(Path::new("")).to_owned();
-        let document = twintac_config::read::<SensorFile>(path)?;
+        let document = twintac_config::read::<SensorToml>(path)?;
         Self::from_document(document, &|name| std::fs::read(folder.join(name)))
     }
 
@@ -45,7 +45,7 @@ impl Sensor {
         text: &str,
         load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
     ) -> Result<String, SensorError> {
-        let document = twintac_config::parse::<SensorFile>(file, text)?;
+        let document = twintac_config::parse::<SensorToml>(file, text)?;
         let Value::String(path) = &document.value.gel.material else {
             return Ok(text.to_owned());
         };
@@ -64,7 +64,7 @@ impl Sensor {
     }
 
     fn from_document(
-        document: Document<SensorFile>,
+        document: Document<SensorToml>,
         load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
     ) -> Result<Self, SensorError> {
         let material = load_material(&document, load)?.1;
@@ -97,7 +97,7 @@ const MATERIAL: &str = "gel.material";
 
 /// The table of the gel's material, and what it means.
 fn load_material(
-    document: &Document<SensorFile>,
+    document: &Document<SensorToml>,
     load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<(Table, GelMaterial), SensorError> {
     match &document.value.gel.material {
@@ -119,7 +119,7 @@ fn load_material(
 }
 
 fn load_surfaces(
-    document: &Document<SensorFile>,
+    document: &Document<SensorToml>,
     load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<Surfaces, SensorError> {
     let file = &document.value;

@@ -29,6 +29,14 @@ pub enum SimulateError {
         /// Place of the press, mm.
         y_mm: f64,
     },
+    /// The sensor's description has no such indenter.
+    #[error("there is no indenter `{asked_for}`; the sensor has {}", described.join(", "))]
+    NoIndenter {
+        /// The name that was asked for.
+        asked_for: String,
+        /// The names that there are.
+        described: Vec<String>,
+    },
     /// A taxel's port, or a point, reaches outside the mesh.
     #[error("`{place}` reaches more than {distance_mm:.2} mm outside the gel's mesh")]
     PortOutside {

@@ -15,6 +15,7 @@ mod readout;
 mod rounding;
 mod settings;
 mod shell;
+mod source;
 mod touch;
 
 pub use error::SimulateError;

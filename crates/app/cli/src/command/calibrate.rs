@@ -36,8 +36,8 @@ fn measured(
     sensor: &SensorFile,
     settings: &SimulateSettings,
 ) -> Result<Vec<Measured>> {
+    let gel = Gel::new(Arc::clone(&sensor.sensor), settings.clone());
     if let Some(path) = &arguments.curves {
-        let gel = Gel::new(Arc::clone(&sensor.sensor), settings.clone());
         return Ok(curves_of_file(path, &gel, sensor.import())?);
     }
     let indenter = arguments.indenter.clone();
@@ -47,9 +47,7 @@ fn measured(
         y_mm: arguments.y_mm,
     };
     let files = super::files::expand(&arguments.csv)?;
-    let curves = files
-        .iter()
-        .map(|file| curve_of_csv(file, &place, &sensor.sensor));
+    let curves = files.iter().map(|file| curve_of_csv(file, &place, &gel));
     Ok(curves.collect::<Result<_, _>>()?)
 }
 

@@ -14,10 +14,11 @@ mod simulate;
 mod stages;
 mod stream;
 
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
-use twintac_run::{Caller, sha256_of_file};
+use twintac_run::{Caller, SensorFile, sha256_of_file};
 
 use crate::arguments::{Command, SensorCommand};
 use crate::progress::Bars;
@@ -52,6 +53,11 @@ pub(crate) fn print(text: &str) -> Result<()> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }
+}
+
+/// Reads a sensor description, or without a file that of PhysTac.
+pub(crate) fn sensor_or_phystac(file: Option<&Path>) -> Result<SensorFile> {
+    Ok(file.map_or_else(SensorFile::phystac, SensorFile::read)?)
 }
 
 /// This program, for runs: its own file is what tells one build from another.

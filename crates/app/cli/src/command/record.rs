@@ -40,7 +40,7 @@ struct Summary {
 }
 
 pub(super) fn run(arguments: &Record) -> Result<()> {
-    let sensor = SensorFile::or_phystac(arguments.sensor.as_deref())?;
+    let sensor = super::sensor_or_phystac(arguments.sensor.as_deref())?;
     let planned = Planned::read(&arguments.protocol, &sensor.sensor, arguments.start.seed)?;
     let reality = arguments.lab.as_ref().map(|file| read_reality(file.as_deref()));
     let reality = reality.transpose()?;

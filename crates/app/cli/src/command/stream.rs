@@ -10,7 +10,7 @@ use crate::progress::say;
 use twintac_run::SensorFile;
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
-    let sensor = SensorFile::or_phystac(arguments.sensor.as_deref())?;
+    let sensor = super::sensor_or_phystac(arguments.sensor.as_deref())?;
     let known = Known {
         counts_per_pa: arguments.scale,
         altitude_m: arguments.altitude_m,

@@ -6,13 +6,11 @@ use glam::DQuat;
 use serde::Deserialize;
 use twintac_calibrate::{Curve, Quantity, Signal};
 use twintac_recording::{Control, Import, Press, Provenance, Recording};
-use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
 use crate::RunError;
 use crate::error::At;
 use crate::files::read_text;
-use crate::sensor_file::indenter;
 
 /// Recorded frames before and after the press are kept up to this far above the gel, mm.
 const ABOVE_MM: f64 = 0.25;
@@ -100,7 +98,7 @@ pub fn curves_of_file(
             x_mm: curve.x_mm,
             y_mm: curve.y_mm,
         };
-        curves.push(curve_of_csv(&folder.join(&curve.file), &place, gel.sensor())?);
+        curves.push(curve_of_csv(&folder.join(&curve.file), &place, gel)?);
     }
     for recorded in &file.recordings {
         let import = recorded.import.as_ref().map(|import| folder.join(import));
@@ -118,7 +116,7 @@ pub fn curves_of_file(
 ///
 /// # Errors
 /// A file that cannot be read, a missing column, a cell that is no finite number, an indenter that the sensor does not have.
-pub fn curve_of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Measured, RunError> {
+pub fn curve_of_csv(path: &Path, place: &CsvPlace, gel: &Gel) -> Result<Measured, RunError> {
     let unreadable = |source: csv::Error| RunError::Csv {
         path: path.to_owned(),
         source,
@@ -135,7 +133,7 @@ pub fn curve_of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Me
     let (time, depth) = (needed("time_s")?, needed("depth_mm")?);
     let mut columns: Vec<(usize, Quantity)> = Vec::new();
     columns.extend(column("force_n").map(|column| (column, Quantity::Force)));
-    for (taxel, described) in sensor.taxels.iter().enumerate() {
+    for (taxel, described) in gel.sensor().taxels.iter().enumerate() {
         let found = column(&format!("{}_kpa", described.name));
         columns.extend(found.map(|column| (column, Quantity::Taxel(taxel))));
     }
@@ -146,7 +144,8 @@ pub fn curve_of_csv(path: &Path, place: &CsvPlace, sensor: &Sensor) -> Result<Me
         name: path
             .file_stem()
             .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
-        shape: indenter(sensor, &place.indenter)
+        shape: gel
+            .shape(&place.indenter)
             .at(|| path.display().to_string())?
             .clone(),
         x_mm: place.x_mm,
@@ -252,7 +251,7 @@ fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Res
                 .to_owned(),
         ));
     }
-    let shape = indenter(gel.sensor(), &press.indenter)?;
+    let shape = gel.shape(&press.indenter)?;
     let Some(first) = press.gel_from_indenter.first() else {
         return Err(RunError::Input("has no frames".to_owned()));
     };
@@ -331,7 +330,7 @@ mod tests {
             println!("skipped: no recording at {}", file.display());
             return;
         }
-        let sensor = Sensor::read(root.join("sensors/strip4-gel-d.toml")).unwrap();
+        let sensor = twintac_sensor::Sensor::read(root.join("sensors/strip4-gel-d.toml")).unwrap();
         let gel = Gel::new(
             std::sync::Arc::new(sensor),
             twintac_simulate::SimulateSettings::default(),

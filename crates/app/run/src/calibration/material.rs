@@ -96,7 +96,7 @@ mod tests {
         ));
         assert!(!text.contains("depth_offset_mm"));
 
-        let sensor = include_str!("../../../../../sensors/phystac.toml");
+        let sensor = twintac_sensor::SensorFile::phystac().unwrap().text;
         let (before, after) = sensor.split_once("[gel.material]").unwrap();
         let (_, after) = after.split_once("\n[").unwrap();
         // Constants that this material does not have are not inferred.
@@ -105,7 +105,9 @@ mod tests {
             .replace("\"gel.material.poissons_ratio\",", "");
         let block = text.replace("[[", "[[gel.material.");
         let text = format!("{before}[gel.material]\n{block}\n[{after}");
-        let sensor = crate::sensor_file::parse_sensor(std::path::Path::new("phystac.toml"), &text).unwrap();
+        let sensor = twintac_sensor::SensorFile::parse(std::path::Path::new("phystac.toml"), &text)
+            .unwrap()
+            .sensor;
         let found = &sensor.gel.material;
         assert!((found.bulk_modulus_kpa / 33333.3 - 1.0).abs() < 1e-5);
         assert!((found.shear_modulus_kpa() / (0.5 * 8.123_456_789 * 3.0) - 1.0).abs() < 1e-5);

@@ -1,0 +1,88 @@
+//! A sensor description with its text.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::{Sensor, SensorError};
+
+/// PhysTac's description, and its name for errors.
+const PHYSTAC: (&str, &str) = ("sensors/phystac.toml", include_str!("../built_in/phystac.toml"));
+
+/// A sensor description with its text, which logs, runs and models keep.
+#[derive(Clone, Debug)]
+pub struct SensorFile {
+    /// What the description says.
+    pub sensor: Arc<Sensor>,
+    /// The description (TOML), with the material in it that it may name in a file of its own.
+    pub text: String,
+    /// Where surfaces and the import description lie.
+    folder: PathBuf,
+}
+
+impl SensorFile {
+    /// Reads a description; paths of other files are relative to its folder.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`], and a file that cannot be read.
+    pub fn read(path: &Path) -> Result<Self, SensorError> {
+        let text = std::fs::read_to_string(path).map_err(|found| SensorError {
+            file: path.display().to_string(),
+            line: 0,
+            field: String::new(),
+            problem: format!("cannot be read: {found}"),
+            hint: "give the path of a sensor description (TOML)".to_owned(),
+        })?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads a description from its text, as if it stood in the file `path`, which need not exist.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, SensorError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let load = |name: &str| std::fs::read(folder.join(name));
+        let file = path.display().to_string();
+        let sensor = Sensor::parse(&file, text, &load)?;
+        Ok(Self {
+            sensor: Arc::new(sensor),
+            text: Sensor::text_with_material(&file, text, &load)?,
+            folder,
+        })
+    }
+
+    /// The description of PhysTac, which is built in.
+    ///
+    /// # Errors
+    /// None, unless this crate was compiled with another file in its place.
+    pub fn phystac() -> Result<Self, SensorError> {
+        let (name, text) = PHYSTAC;
+        Self::parse(Path::new(name), text)
+    }
+
+    /// The files of surfaces (STL) that the description names: their names, and where they are.
+    pub fn surfaces(&self) -> impl Iterator<Item = (&String, PathBuf)> {
+        let names = self.sensor.surfaces.keys();
+        names.map(|name| (name, self.folder.join(name)))
+    }
+
+    /// The file that says how to read recordings of the sensor, if the description names one.
+    #[must_use]
+    pub fn import(&self) -> Option<PathBuf> {
+        self.sensor.import.as_ref().map(|path| self.folder.join(path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The built-in file is a symbolic link to the one that people edit. Where links are not kept, the two must be equal.
+    #[test]
+    fn what_is_built_in_is_what_people_edit() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+        let (name, text) = PHYSTAC;
+        assert_eq!(text, std::fs::read_to_string(root.join(name)).unwrap());
+        assert_eq!(SensorFile::phystac().unwrap().sensor.taxels.len(), 8);
+    }
+}
