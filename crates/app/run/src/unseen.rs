@@ -159,7 +159,7 @@ impl Pressed<'_> {
     fn judge(
         &self,
         model: &Model,
-        bench: &digitac::Bench,
+        bench: &digitac::BenchEstimate,
         spent: &BTreeSet<usize>,
     ) -> Result<(Evaluation, Option<Repeatability>), RunError> {
         let settings = digitac::PairSettings::default();

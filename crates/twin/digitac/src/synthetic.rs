@@ -8,9 +8,8 @@ use twintac_depth_table::{
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
-use crate::gains::Gains;
-use crate::paired::Features;
 use crate::seed;
+use crate::{Features, Gains};
 
 const TOP_MM: f64 = 6.0;
 const MODULUS_KPA: f64 = 1500.0;

@@ -2,7 +2,7 @@
 
 mod figures;
 
-use digitac::{Bench, PairedPress};
+use digitac::{BenchEstimate, PairedPress};
 use twintac_depth_table::DepthTable;
 use twintac_plot::page::Fact;
 use twintac_plot::{Ink, Panel, Panels, Scene, Series};
@@ -83,7 +83,7 @@ impl Run {
         write_file(&self.folder.join("metrics.json"), &figures)
     }
 
-    fn warnings(&self, bench: &Bench, metrics: &Metrics) -> Vec<String> {
+    fn warnings(&self, bench: &BenchEstimate, metrics: &Metrics) -> Vec<String> {
         let mut warnings = Vec::new();
         if metrics.provenance == Provenance::Emulated {
             warnings.push("The sensor behind these numbers is emulated: they say how well the method works, not how well a sensor does.".into());
@@ -297,7 +297,7 @@ fn taxels(
         .collect()
 }
 
-fn bench(bench: &Bench, taxels: &[String]) -> BenchFit {
+fn bench(bench: &BenchEstimate, taxels: &[String]) -> BenchFit {
     let parameter = |name: String, estimate: &digitac::Estimate, unit: &str| Parameter {
         name,
         value: estimate.value,

@@ -1,6 +1,6 @@
 //! Stages `mesh` and `simulation`: the gel, the bench's unknowns, and a table over depth for each place.
 
-use digitac::{Bench, Places, Split, fit_bench};
+use digitac::{BenchEstimate, Places, Split, fit_bench};
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::Recording;
 
@@ -16,7 +16,7 @@ pub(crate) struct Simulation {
     /// Which presses teach, decide and judge.
     pub(crate) split: Split,
     /// What was fitted about the bench.
-    pub(crate) bench: Bench,
+    pub(crate) bench: BenchEstimate,
     /// The distinct places.
     pub(crate) places: Places,
     /// A table over depth for each place.
@@ -73,7 +73,7 @@ impl Run {
     /// What the simulation stage left.
     pub(crate) fn simulation(&self, recording: &Recording) -> Result<Simulation, RunError> {
         let folder = self.stage("simulation");
-        let bench: Bench = read_json(&folder.join("bench.json"))?;
+        let bench: BenchEstimate = read_json(&folder.join("bench.json"))?;
         let gel = self.gel();
         let store = DepthTableStore::new(&gel, folder.join("depth_tables"), &Silent);
         let places = Places::of(recording, &store, &self.record.settings.places)?.at_bench(&bench);

@@ -1,4 +1,4 @@
-//! Fits a [`Bench`] by variable projection: for every guess of radius, contact heights and stiffness the
+//! Fits a [`BenchEstimate`] by variable projection: for every guess of radius, contact heights and stiffness the
 //! gains are solved for inside.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,9 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use twintac_depth_table::DepthTableSource;
 use twintac_recording::{Control, Recording};
 
-use crate::bench_problem::{Guess, Problem, exactly};
-use crate::golden::minimize;
-use crate::{Bench, BenchSettings, DigitacError, Estimate, Places};
+use super::problem::{Guess, Problem, exactly};
+use super::{BenchEstimate, BenchSettings, Estimate, Places};
+use crate::DigitacError;
+use crate::numerics::minimize;
 
 /// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
 const TOLERANCE: f64 = 2e-3;
@@ -26,7 +27,7 @@ pub fn fit_bench(
     train: &[usize],
     source: &dyn DepthTableSource,
     settings: &BenchSettings,
-) -> Result<Bench, DigitacError> {
+) -> Result<BenchEstimate, DigitacError> {
     check(settings)?;
     let chosen = choose(recording, places, train, settings.n_places);
     if chosen.is_empty() {
@@ -224,7 +225,7 @@ impl Problem<'_> {
         Ok((guess, value))
     }
 
-    fn bench(&self, best: &Guess, without: &[Guess]) -> Result<Bench, DigitacError> {
+    fn bench(&self, best: &Guess, without: &[Guess]) -> Result<BenchEstimate, DigitacError> {
         let curves = self.curves_at(best.ln_radius)?;
         let (gains, deviation_kpa) = self.deviation(&curves, best, None)?;
         let mut doubts = doubts(best, &self.start());
@@ -246,7 +247,7 @@ impl Problem<'_> {
             .keys()
             .map(|file| (file.clone(), estimate(&|guess| guess.offsets_mm[file])))
             .collect();
-        Ok(Bench {
+        Ok(BenchEstimate {
             tip_radius_mm: radius_mm
                 .or_else(|| self.settings.tip_radii_mm.first().map(|radius| exactly(*radius))),
             contact_offset_elsewhere_mm: median(

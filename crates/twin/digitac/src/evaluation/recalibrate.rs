@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 use twintac_depth_table::DepthTable;
 use twintac_recording::{Control, Press, Recording};
 
-use crate::golden::minimize;
-use crate::paired::curves;
-use crate::{Bench, DigitacError, Estimate, Features, Places, Twin};
+use crate::bench_fit::{BenchEstimate, Estimate, Places, curves, features_along};
+use crate::numerics::minimize;
+use crate::{DigitacError, Twin};
 
 /// Presses of a file that are given away.
 const N_PRESSES: usize = 3;
@@ -41,7 +41,7 @@ pub struct Recalibration {
 pub fn recalibrate(
     recording: &Recording,
     (places, tables): (&Places, &[DepthTable]),
-    bench: &Bench,
+    bench: &BenchEstimate,
     twin: &Twin,
     file: &str,
     limit_mm: f64,
@@ -70,7 +70,7 @@ pub fn recalibrate(
             },
         );
         let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
-        let features = Features::along(&curves[place], press, touch_z_mm, &bench)?;
+        let features = features_along(&curves[place], press, touch_z_mm, &bench)?;
         Ok(mean_deviation_kpa(press, &twin.predict(&features), left_out))
     };
     let center = bench.contact_offset_elsewhere_mm;

@@ -1,15 +1,16 @@
 //! What is unknown about a bench: the tip's radius, the height at which it touches, and how stiff the gel
 //! really is.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Estimate, Gains};
+use super::Estimate;
+use crate::features::{Gains, TIME_CONSTANTS_S};
 
 /// Values of a bench that no data sheet gives, fitted to training presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bench {
+pub struct BenchEstimate {
     /// Radius of the spherical tip, mm; `None` if the described indenter was taken as it is.
     pub tip_radius_mm: Option<Estimate>,
     /// By how much the tip is deeper than its recorded height says, mm, by file.
@@ -27,7 +28,7 @@ pub struct Bench {
     pub doubts: Vec<String>,
 }
 
-impl Bench {
+impl BenchEstimate {
     /// A bench that is exactly as described.
     #[must_use]
     pub fn nominal() -> Self {
@@ -75,7 +76,7 @@ pub struct BenchSettings {
     /// Time constants of the barometers' memory, s.
     pub time_constants_s: Vec<f64>,
     /// Taxels that the fit leaves out, by index.
-    pub left_out: std::collections::BTreeSet<usize>,
+    pub left_out: BTreeSet<usize>,
     /// How many blocks of places are left out in turn for the uncertainties.
     pub n_blocks: usize,
 }
@@ -87,8 +88,8 @@ impl Default for BenchSettings {
             n_places: 10,
             contact_offset_limit_mm: 0.3,
             stiffness_limits: [0.5, 2.0],
-            time_constants_s: crate::TIME_CONSTANTS_S.to_vec(),
-            left_out: std::collections::BTreeSet::new(),
+            time_constants_s: TIME_CONSTANTS_S.to_vec(),
+            left_out: BTreeSet::new(),
             n_blocks: 6,
         }
     }

@@ -8,12 +8,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use rand::Rng;
-use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use twintac_recording::{Press, Recording};
 
-use crate::places::deepest_pose;
+use crate::bench_fit::deepest_pose;
 use crate::{DigitacError, seed};
 
 /// How presses are divided.
@@ -181,15 +180,6 @@ fn draw(groups: &mut Vec<Vec<usize>>, one_in: usize, seed_number: u64, name: &st
     taken
 }
 
-/// Cuts indices into shuffled batches of about the same size.
-pub(crate) fn batches(indices: &[usize], size: usize, seed_number: u64) -> Vec<Vec<usize>> {
-    let mut shuffled = indices.to_vec();
-    shuffled.shuffle(&mut seed::stream(seed_number, "batches"));
-    let count = shuffled.len().div_ceil(size.max(1)).max(1);
-    let size = shuffled.len().div_ceil(count).max(1);
-    shuffled.chunks(size).map(<[usize]>::to_vec).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -248,17 +238,5 @@ mod tests {
     fn too_few_places_are_an_error() {
         assert!(Split::new(&line(3, 5), &SplitSettings::default()).is_err());
         assert!(Split::new(&line(3, 0), &SplitSettings::default()).is_err());
-    }
-
-    #[test]
-    fn batches_hold_every_index_once() {
-        let batches = batches(&(10..45).collect::<Vec<_>>(), 8, 3);
-        assert!(
-            batches.iter().all(|batch| (5..=8).contains(&batch.len())),
-            "{batches:?}"
-        );
-        let mut all = batches.concat();
-        all.sort_unstable();
-        assert_eq!(all, (10..45).collect::<Vec<_>>());
     }
 }

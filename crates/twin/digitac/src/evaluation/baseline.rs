@@ -14,7 +14,7 @@ const RIDGE: f64 = 1e-5;
 
 /// Predicts that nothing is ever felt; `[n_frames][n_taxels]`.
 #[must_use]
-pub fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
+pub(crate) fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
     press
         .readings_kpa
         .iter()

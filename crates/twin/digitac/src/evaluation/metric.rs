@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::PairedPress;
 
 /// The definition that goes with every score.
-pub const DEFINITION: &str = "Errors are mean absolute differences between predicted and measured readings over the largest \
+pub(crate) const DEFINITION: &str = "Errors are mean absolute differences between predicted and measured readings over the largest \
     reading of the same file, in percent. 'Nearest, in contact' (the headline) takes, of the frames with depth > 0 whose largest \
     reading exceeds 3 % of the file's largest, the taxel with the largest reading. 'All' takes every taxel in every frame. 'Peak' \
     compares, press by press, the largest reading of the press with the largest prediction of the same taxel. Taxels left out count in \

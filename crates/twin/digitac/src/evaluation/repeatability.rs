@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Errors, PairedPress, Scale, Warp, score};
+use super::{Errors, Scale, score};
+use crate::{PairedPress, Warp};
 
 /// The definition that goes with the numbers.
 const DEFINITION: &str = "Two presses of one indenter at one place (within 0.05 mm) are compared from first touch for as long as both were \

@@ -5,8 +5,8 @@ const ROUNDS: usize = 12;
 /// Residuals below this fraction of the largest target count squared, not absolute: the corner of Huber's
 /// loss.
 const CORNER: f64 = 2e-3;
-/// Sweeps of coordinate descent.
-const SWEEPS: usize = 200;
+/// Rounds over the coefficients in coordinate descent.
+const DESCENTS: usize = 200;
 
 /// Coefficients a ≥ 0 that make Σ a columns ≈ target in the sense of least absolute deviations (iteratively
 /// reweighted least squares), and the mean absolute deviation. Columns that are all zero get zero.
@@ -67,7 +67,7 @@ fn normal_equations(columns: &[Vec<f64>], target: &[f64], weights: &[f64]) -> (V
 /// Minimizes the quadratic over a ≥ 0, one coefficient after the other.
 fn descend(matrix: &[f64], right: &[f64], coefficients: &mut [f64]) {
     let n = right.len();
-    for _ in 0..SWEEPS {
+    for _ in 0..DESCENTS {
         let mut moved: f64 = 0.0;
         for i in 0..n {
             let diagonal = matrix[i * n + i];

@@ -8,8 +8,9 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::network::{Physics, Weights};
-use crate::{DigitacError, Model, ModelRecord, Twin};
+use super::{Model, ModelRecord};
+use crate::network::{Parameters, Physics, Weights};
+use crate::{DigitacError, Twin};
 
 const WEIGHTS: &str = "weights.safetensors";
 const RECORD: &str = "twin.json";
@@ -39,7 +40,7 @@ impl Model {
             sha256: BTreeMap::new(),
         };
         let contents = [
-            (WEIGHTS, pack(self.twin.weights(), folder)?),
+            (WEIGHTS, pack(&self.twin.parameters().weights(), folder)?),
             (RECORD, json(&self.record, folder)?),
         ];
         for (name, bytes) in &contents {
@@ -94,8 +95,9 @@ impl Model {
             normalization: start.normalization.clone(),
             correction_limit: start.correction_limit,
         };
-        let twin = Twin::with_weights(record.taxels.clone(), physics, start.hidden.clone(), weights)
+        let parameters = Parameters::with_weights(&physics, &start.hidden, &weights)
             .map_err(|problem| DigitacError::model(&path, problem))?;
+        let twin = Twin::new(record.taxels.clone(), physics, parameters);
         Ok(Self { record, twin })
     }
 }

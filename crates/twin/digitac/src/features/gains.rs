@@ -3,10 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::golden::minimize;
-use crate::memory::overstress;
-use crate::robust::fit_nonnegative;
-use crate::{Features, PairedPress};
+use super::{Features, overstress};
+use crate::numerics::{fit_nonnegative, minimize};
 
 /// Linear readings: gain × (pressure + Σ memory × overstress), taxel by taxel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,16 +28,6 @@ pub(crate) struct Sample<'a> {
     pub(crate) features: &'a Features,
     pub(crate) readings_kpa: &'a [Vec<f64>],
     pub(crate) valid: &'a [Vec<bool>],
-}
-
-impl<'a> From<&'a PairedPress> for Sample<'a> {
-    fn from(press: &'a PairedPress) -> Self {
-        Self {
-            features: &press.features,
-            readings_kpa: &press.readings_kpa,
-            valid: &press.valid,
-        }
-    }
 }
 
 impl Gains {
@@ -101,7 +89,10 @@ impl Gains {
         for (taxel, shares) in self.memory.iter().enumerate() {
             let elastic: Vec<f64> = readings.iter().map(|row| row[taxel]).collect();
             for (share, constant_s) in shares.iter().zip(&self.time_constants_s) {
-                for (row, q) in readings.iter_mut().zip(overstress(time_s, &elastic, *constant_s)) {
+                for (row, q) in readings
+                    .iter_mut()
+                    .zip(overstress::of(time_s, &elastic, *constant_s))
+                {
                     row[taxel] += share * q;
                 }
             }
@@ -127,7 +118,7 @@ fn columns(samples: &[Sample<'_>], taxel: usize, time_constants_s: &[f64]) -> (V
         columns[0].extend(usable.iter().map(|&frame| pressure[frame]));
         target.extend(usable.iter().map(|&frame| sample.readings_kpa[frame][taxel]));
         for (column, time_constant_s) in columns[1..].iter_mut().zip(time_constants_s) {
-            let q = overstress(&sample.features.time_s, &pressure, *time_constant_s);
+            let q = overstress::of(&sample.features.time_s, &pressure, *time_constant_s);
             column.extend(usable.iter().map(|&frame| q[frame]));
         }
     }

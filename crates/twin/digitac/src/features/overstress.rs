@@ -1,4 +1,4 @@
-//! Quasi-linear viscoelastic memory: an overstress that follows each change of the elastic reading and fades.
+//! The memory of a reading: overstresses that follow each change of the elastic reading and fade (quasi-linear viscoelasticity).
 //!
 //! With the elastic reading r(t) each time constant τ carries dq/dt = dr/dt - q/τ, and a barometer reads r +
 //! Σ c q (a generalized Maxwell solid, Simo and Hughes, Computational Inelasticity, section 10.3). A memory
@@ -18,7 +18,7 @@ fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
 }
 
 /// The overstress of each frame, starting from none; `[n_frames]`.
-pub(crate) fn overstress(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f64> {
+pub(crate) fn of(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f64> {
     let mut q = vec![0.0; elastic.len()];
     for i in 1..elastic.len() {
         let (kept, arrived) = step(time_s[i] - time_s[i - 1], time_constant_s);
@@ -27,9 +27,9 @@ pub(crate) fn overstress(time_s: &[f64], elastic: &[f64], time_constant_s: f64) 
     q
 }
 
-/// [`overstress`] as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames
+/// [`of`] as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames
 /// + j]` × elastic reading j.
-pub(crate) fn operator(time_s: &[f64], time_constant_s: f64) -> Vec<f64> {
+pub(crate) fn matrix(time_s: &[f64], time_constant_s: f64) -> Vec<f64> {
     let n = time_s.len();
     let mut matrix = vec![0.0; n * n];
     for i in 1..n {
@@ -56,7 +56,7 @@ mod tests {
             .collect();
         let ramp_s = time_s[30];
         let elastic: Vec<f64> = time_s.iter().map(|t| 2.0 * t.min(ramp_s)).collect();
-        let q = overstress(&time_s, &elastic, tau);
+        let q = of(&time_s, &elastic, tau);
         for (t, q) in time_s.iter().zip(&q) {
             let loaded = 2.0 * tau * (1.0 - (-t.min(ramp_s) / tau).exp());
             let expected = loaded * (-(t - ramp_s).max(0.0) / tau).exp();
@@ -68,8 +68,8 @@ mod tests {
     fn the_matrix_is_the_recurrence() {
         let time_s: Vec<f64> = (0..40).map(|i| f64::from(i * i) * 0.003).collect();
         let elastic: Vec<f64> = time_s.iter().map(|t| (3.0 * t).sin()).collect();
-        let matrix = operator(&time_s, 0.8);
-        let q = overstress(&time_s, &elastic, 0.8);
+        let matrix = matrix(&time_s, 0.8);
+        let q = of(&time_s, &elastic, 0.8);
         for (row, q) in matrix.chunks(40).zip(q) {
             let product: f64 = row.iter().zip(&elastic).map(|(m, r)| m * r).sum();
             assert!((product - q).abs() < 1e-12);

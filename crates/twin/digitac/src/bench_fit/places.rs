@@ -5,7 +5,8 @@ use twintac_depth_table::{DepthTableRequest, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 use twintac_shape::Pose;
 
-use crate::{Bench, DigitacError};
+use super::BenchEstimate;
+use crate::DigitacError;
 
 /// Places closer than this are one, mm.
 const SAME_PLACE_MM: f64 = 0.01;
@@ -98,7 +99,7 @@ impl Places {
 
     /// The same requests as the bench is known to be, with a little room.
     #[must_use]
-    pub fn at_bench(self, bench: &Bench) -> Self {
+    pub fn at_bench(self, bench: &BenchEstimate) -> Self {
         self.with_tip_radius(bench.tip_radius_mm.map(|radius| radius.value))
             .with_stiffness(bench.stiffness() / FORCE_MARGIN)
     }

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use twintac_depth_table::{DepthCurves, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 
-use crate::gains::Sample;
-use crate::golden::minimize;
-use crate::paired::curves;
-use crate::{Bench, BenchSettings, DigitacError, Estimate, Features, Gains, Places};
+use super::{BenchEstimate, BenchSettings, Estimate, Places, curves, features_along};
+use crate::features::{Gains, Sample};
+use crate::numerics::minimize;
+use crate::{DigitacError, Features};
 
 /// Frames of a press that the fit looks at.
 const MAX_FRAMES: usize = 96;
@@ -123,14 +123,14 @@ impl<'a> Problem<'a> {
         guess: &Guess,
         without_block: Option<usize>,
     ) -> Result<(Gains, f64), DigitacError> {
-        let bench = Bench {
+        let bench = BenchEstimate {
             contact_offset_mm: guess
                 .offsets_mm
                 .iter()
                 .map(|(file, mm)| (file.clone(), exactly(*mm)))
                 .collect(),
             stiffness: Some(exactly(guess.ln_stiffness.exp())),
-            ..Bench::nominal()
+            ..BenchEstimate::nominal()
         };
         let kept: Vec<&Thinned> = self
             .presses
@@ -139,7 +139,7 @@ impl<'a> Problem<'a> {
             .collect();
         let features: Vec<Features> = kept
             .iter()
-            .map(|p| Features::along(&curves[p.place], &p.press, p.touch_z_mm, &bench))
+            .map(|p| features_along(&curves[p.place], &p.press, p.touch_z_mm, &bench))
             .collect::<Result<_, _>>()?;
         let samples: Vec<Sample<'_>> = kept
             .iter()
@@ -203,10 +203,10 @@ impl<'a> Problem<'a> {
             .filter(|p| p.press.control == Control::Pose && reach_mm > 0.0)
         {
             let mut failure = None;
-            let mut bench = Bench::nominal();
+            let mut bench = BenchEstimate::nominal();
             let at = |extra_mm: f64| {
                 bench.contact_offset_elsewhere_mm = best.offsets_mm[&p.press.mounting] + extra_mm;
-                match Features::along(&curves[p.place], &p.press, p.touch_z_mm, &bench) {
+                match features_along(&curves[p.place], &p.press, p.touch_z_mm, &bench) {
                     Ok(features) => self.own_deviation(&p.press, &gains.readings_kpa(&features)),
                     Err(error) => {
                         failure = Some(error);

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{PairedPress, Scale, Score, StaticPolynomial, Twin, Variant, baseline, score};
+use super::{Errors, Scale, Score, StaticPolynomial, baseline, score};
+use crate::{PairedPress, Twin, Variant};
 
 /// A press, measured and predicted. Per-frame vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,7 +29,7 @@ pub struct PressEvaluation {
     /// Largest time by which readings were warped, s.
     pub largest_shift_s: f64,
     /// Errors of this press alone.
-    pub errors: crate::Errors,
+    pub errors: Errors,
 }
 
 /// A twin judged.

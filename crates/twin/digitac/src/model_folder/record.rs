@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
-use crate::{Bench, Evaluation, Gains, Normalization, Score, Split, TrainSettings, Twin, Variant};
+use crate::{BenchEstimate, Evaluation, Gains, Normalization, Score, Split, TrainSettings, Twin, Variant};
 
 /// A twin and its record.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct ModelRecord {
     /// Settings of the mesh and the simulation.
     pub simulation: serde_json::Value,
     /// What was found about the bench.
-    pub bench: Bench,
+    pub bench: BenchEstimate,
     /// Gains and memory as learned.
     pub gains: Gains,
     /// Settings of the training.
@@ -62,7 +62,7 @@ pub struct Origin {
     /// Settings of the mesh and the simulation.
     pub simulation: serde_json::Value,
     /// What was found about the bench.
-    pub bench: Bench,
+    pub bench: BenchEstimate,
     /// Settings of the training.
     pub settings: TrainSettings,
     /// Where the training data come from.
@@ -95,7 +95,7 @@ impl Model {
                 gains: physics.gains.clone(),
                 normalization: physics.normalization.clone(),
                 correction_limit: physics.correction_limit,
-                hidden: twin.hidden().to_vec(),
+                hidden: twin.parameters().hidden(),
             },
         };
         Self { record, twin }

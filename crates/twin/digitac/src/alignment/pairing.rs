@@ -1,0 +1,131 @@
+//! What was measured, beside what the simulation says about the same moment.
+
+use serde::{Deserialize, Serialize};
+use twintac_depth_table::DepthTable;
+use twintac_recording::{Control, Press, Recording};
+
+use super::{Warp, WarpSettings};
+use crate::bench_fit::{BenchEstimate, Places, deepest_pose, features};
+use crate::features::Sample;
+use crate::{DigitacError, Features};
+
+/// A press, measured and simulated, on one clock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PairedPress {
+    /// Name of the press in its recording.
+    pub name: String,
+    /// The file that it was read from.
+    pub file: String,
+    /// The indenter's name.
+    pub indenter: String,
+    /// Place in the gel's plane, mm.
+    pub place_mm: [f64; 2],
+    /// The simulated side.
+    pub features: Features,
+    /// Measured force, N; `[n_frames]`, if there was one.
+    pub measured_force_n: Option<Vec<f64>>,
+    /// Readings above the unloaded baseline, warped to the simulation's clock, kPa; `[n_frames][n_taxels]`.
+    pub readings_kpa: Vec<Vec<f64>>,
+    /// Whether the reading counts: usable, and simulated; `[n_frames][n_taxels]`.
+    pub valid: Vec<Vec<bool>>,
+    /// How the readings were warped.
+    pub warp: Warp,
+}
+
+impl<'a> From<&'a PairedPress> for Sample<'a> {
+    fn from(press: &'a PairedPress) -> Self {
+        Self {
+            features: &press.features,
+            readings_kpa: &press.readings_kpa,
+            valid: &press.valid,
+        }
+    }
+}
+
+/// How measured and simulated frames are brought together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PairSettings {
+    /// How far clocks may differ.
+    pub warp: WarpSettings,
+}
+
+/// Pairs every press of a recording with its simulation.
+pub fn pair(
+    recording: &Recording,
+    places: &Places,
+    tables: &[DepthTable],
+    bench: &BenchEstimate,
+    settings: &PairSettings,
+) -> Result<Vec<PairedPress>, DigitacError> {
+    let features = features(recording, places, tables, bench)?;
+    recording
+        .presses
+        .iter()
+        .zip(features)
+        .map(|(press, features)| pair_press(press, features, settings))
+        .collect()
+}
+
+fn pair_press(
+    press: &Press,
+    features: Features,
+    settings: &PairSettings,
+) -> Result<PairedPress, DigitacError> {
+    let n_frames = features.n_frames();
+    if press.taxels_kpa.len() != n_frames || press.valid.len() != n_frames {
+        let problem = format!(
+            "has {n_frames} time stamps and {} rows of readings",
+            press.taxels_kpa.len()
+        );
+        return Err(DigitacError::press(&press.name, problem));
+    }
+    let warp = match press.control {
+        Control::Pose => warp(press, &features, &settings.warp),
+        Control::Force => Warp::identity(n_frames),
+    };
+    let readings_kpa = warp.apply(&press.taxels_kpa);
+    let mut valid = warp.apply_valid(&press.valid);
+    for ((row, readings), simulated) in valid.iter_mut().zip(&readings_kpa).zip(&features.simulated) {
+        for (valid, reading) in row.iter_mut().zip(readings) {
+            *valid &= *simulated && reading.is_finite();
+        }
+    }
+    let measured_force_n = press.force_n.as_ref().map(|force_n| {
+        let rows: Vec<Vec<f64>> = force_n.iter().map(|f| vec![*f]).collect();
+        warp.apply(&rows).into_iter().flatten().collect()
+    });
+    Ok(PairedPress {
+        name: press.name.clone(),
+        file: press.mounting.clone(),
+        indenter: press.indenter.clone(),
+        place_mm: deepest_pose(press)?.position_mm.truncate().to_array(),
+        features,
+        measured_force_n,
+        readings_kpa,
+        valid,
+        warp,
+    })
+}
+
+/// Compares force with force; without a force sensor, the sum of the positive readings with the sum of the
+/// positive port pressures.
+fn warp(press: &Press, features: &Features, settings: &WarpSettings) -> Warp {
+    match &press.force_n {
+        Some(force_n) => Warp::between(&press.time_s, force_n, &features.force_n, settings),
+        None => {
+            let measured = press.taxels_kpa.iter().zip(&press.valid).map(|(row, valid)| {
+                row.iter()
+                    .zip(valid)
+                    .map(|(p, valid)| if *valid { p.max(0.0) } else { 0.0 })
+                    .sum()
+            });
+            let simulated = features
+                .pressure_kpa
+                .iter()
+                .map(|row| row.iter().map(|p| p.max(0.0)).sum());
+            let (measured, simulated): (Vec<f64>, Vec<f64>) = (measured.collect(), simulated.collect());
+            Warp::between(&press.time_s, &measured, &simulated, settings)
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! What is unknown about a bench, fitted to training presses: the tip's radius, the height at which it touches, how stiff the gel really is.
+
+mod bench_estimate;
+mod estimate;
+mod places;
+mod problem;
+mod search;
+mod simulated;
+
+pub use bench_estimate::{BenchEstimate, BenchSettings};
+pub use estimate::Estimate;
+pub(crate) use places::deepest_pose;
+pub use places::{PlaceSettings, Places};
+pub use search::fit_bench;
+pub use simulated::features;
+pub(crate) use simulated::{curves, features_along};

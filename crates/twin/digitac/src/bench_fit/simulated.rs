@@ -1,0 +1,131 @@
+//! Tables over depth, read along presses as the bench is known to be.
+
+use twintac_depth_table::{DepthCurves, DepthTable};
+use twintac_recording::{Control, Press, Recording};
+
+use super::{BenchEstimate, Places};
+use crate::{DigitacError, Features};
+
+/// How far beyond its end a table is still trusted, mm or N.
+const BEYOND: f64 = 1e-6;
+
+/// The simulated side of every press of a recording. `tables` answer `places.requests`, whatever their tip
+/// radius.
+pub fn features(
+    recording: &Recording,
+    places: &Places,
+    tables: &[DepthTable],
+    bench: &BenchEstimate,
+) -> Result<Vec<Features>, DigitacError> {
+    let curves = curves(places, tables, recording.taxels.len())?;
+    recording
+        .presses
+        .iter()
+        .zip(&places.of_press)
+        .map(|(press, &place)| {
+            let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
+            features_along(&curves[place], press, touch_z_mm, bench)
+        })
+        .collect()
+}
+
+/// Interpolates the table of each place.
+pub(crate) fn curves(
+    places: &Places,
+    tables: &[DepthTable],
+    n_taxels: usize,
+) -> Result<Vec<DepthCurves>, DigitacError> {
+    if tables.len() != places.requests.len() {
+        return Err(DigitacError::DepthTableCount {
+            expected: places.requests.len(),
+            found: tables.len(),
+        });
+    }
+    tables
+        .iter()
+        .enumerate()
+        .map(|(index, table)| {
+            DepthCurves::new(table, n_taxels).map_err(|source| DigitacError::DepthTable { index, source })
+        })
+        .collect()
+}
+
+/// Reads the curves of a place along a press.
+pub(crate) fn features_along(
+    curves: &DepthCurves,
+    press: &Press,
+    touch_z_mm: f64,
+    bench: &BenchEstimate,
+) -> Result<Features, DigitacError> {
+    let n_frames = press.time_s.len();
+    let n_forces = press.force_n.as_ref().map_or(n_frames, Vec::len);
+    if press.gel_from_indenter.len() != n_frames || n_forces != n_frames {
+        let problem = format!(
+            "has {n_frames} time stamps, {} poses and {n_forces} forces",
+            press.gel_from_indenter.len()
+        );
+        return Err(DigitacError::press(&press.name, problem));
+    }
+    let stiffness = match press.control {
+        Control::Pose => 1.0,
+        Control::Force => bench.stiffness(),
+    };
+    let depth_mm = match press.control {
+        Control::Pose => depths_mm(press, touch_z_mm, bench.contact_offset_mm(&press.mounting)),
+        Control::Force => {
+            let force_n = press.force_n.as_ref();
+            let force_n =
+                force_n.ok_or_else(|| DigitacError::press(&press.name, "prescribes a force but has none"))?;
+            force_n
+                .iter()
+                .map(|f| {
+                    if *f > 0.0 {
+                        curves.depth_mm(f / stiffness)
+                    } else {
+                        0.0
+                    }
+                })
+                .collect()
+        }
+    };
+    let simulated = match (press.control, &press.force_n) {
+        (Control::Force, Some(force_n)) => force_n
+            .iter()
+            .map(|f| f / stiffness <= curves.max_force_n() + BEYOND)
+            .collect(),
+        _ => depth_mm
+            .iter()
+            .map(|depth| *depth <= curves.max_depth_mm() + BEYOND)
+            .collect(),
+    };
+    let scaled = |mut row: Vec<f64>| {
+        row.iter_mut().for_each(|value| *value *= stiffness);
+        row
+    };
+    Ok(Features {
+        time_s: press.time_s.clone(),
+        force_n: depth_mm
+            .iter()
+            .map(|depth| stiffness * curves.force_n(*depth))
+            .collect(),
+        pressure_kpa: depth_mm
+            .iter()
+            .map(|depth| scaled(curves.pressure_kpa(*depth)))
+            .collect(),
+        stress_kpa_per_mm: depth_mm
+            .iter()
+            .map(|depth| scaled(curves.stress_kpa_per_mm(*depth)))
+            .collect(),
+        depth_mm,
+        simulated,
+    })
+}
+
+/// Depth of each frame below first touch, mm.
+fn depths_mm(press: &Press, touch_z_mm: f64, contact_offset_mm: f64) -> Vec<f64> {
+    press
+        .gel_from_indenter
+        .iter()
+        .map(|pose| touch_z_mm - pose.position_mm.z + contact_offset_mm)
+        .collect()
+}

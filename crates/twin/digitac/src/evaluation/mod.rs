@@ -1,0 +1,13 @@
+//! How wrong a twin is, beside what it has to beat and how well presses repeat.
+
+mod baseline;
+mod evaluate;
+pub(crate) mod metric;
+mod recalibrate;
+mod repeatability;
+
+pub use baseline::StaticPolynomial;
+pub use evaluate::{Evaluation, PressEvaluation, evaluate};
+pub use metric::{Errors, Mean, Scale, Score, score};
+pub use recalibrate::{Recalibration, recalibrate};
+pub use repeatability::{Repeatability, repeatability};

@@ -1,0 +1,10 @@
+//! What the twin is told of a press: the simulated gel along it, and what each barometer makes of that by itself.
+
+mod gains;
+mod overstress;
+mod press_features;
+
+pub(crate) use gains::Sample;
+pub use gains::{Gains, TIME_CONSTANTS_S};
+pub(crate) use overstress::matrix as overstress_matrix;
+pub use press_features::Features;

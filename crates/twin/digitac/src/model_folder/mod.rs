@@ -1,0 +1,6 @@
+//! A twin with all that is needed to use it and to know where it comes from, and the folder that keeps it.
+
+mod folder;
+mod record;
+
+pub use record::{Model, ModelRecord, Origin};

@@ -1,0 +1,146 @@
+//! Elastic readings, and their gradient by the parameters.
+
+use super::perceptron::{self, PerceptronPass};
+use super::{Matrix, Parameters, Physics, Variant};
+
+/// Below this share of the largest reading, squared, the size of a frame's readings is rounded off to keep
+/// its slope finite.
+const ROUNDING: f32 = 1e-8;
+
+/// Elastic readings, and what their gradient needs.
+pub(crate) struct Pass {
+    /// Elastic readings of order one; `[n_rows][n_taxels]`.
+    pub(crate) readings: Matrix,
+    perceptron: Option<PerceptronPass>,
+    correction: Option<Correction>,
+}
+
+/// A correction that is a bounded share of the size of a row's physical readings.
+struct Correction {
+    /// The readings without it; `[n_rows][n_taxels]`.
+    physical: Matrix,
+    /// Rounded sum of their squares; `[n_rows]`.
+    squares: Vec<f32>,
+    /// Share of the size over the limit, between -1 and 1; `[n_rows][n_taxels]`.
+    shares: Matrix,
+}
+
+impl Parameters {
+    /// Elastic readings of order one from [`Physics::inputs`]. What the perceptron sees may be noisier than what the physics sees.
+    pub(crate) fn elastic(&self, physics: &Physics, inputs: &Matrix, seen: &Matrix) -> Pass {
+        if physics.variant == Variant::Paper {
+            let (readings, pass) = perceptron::forward(&self.layers, seen);
+            return Pass {
+                readings,
+                perceptron: Some(pass),
+                correction: None,
+            };
+        }
+        let changed = physics.start_gains().into_iter().zip(&self.gain_change);
+        let gains: Vec<f32> = changed.map(|(start, change)| start * change.exp()).collect();
+        let mut physical = inputs.clone();
+        for row in physical.rows_mut() {
+            row.iter_mut()
+                .zip(&gains)
+                .for_each(|(value, gain)| *value *= gain);
+        }
+        if self.layers.is_empty() {
+            return Pass {
+                readings: physical,
+                perceptron: None,
+                correction: None,
+            };
+        }
+        let sum_of_squares = |row: &[f32]| row.iter().map(|p| p * p).sum::<f32>();
+        let squares: Vec<f32> = physical
+            .rows()
+            .map(|row| sum_of_squares(row) + ROUNDING)
+            .collect();
+        let (mut shares, pass) = perceptron::forward(&self.layers, seen);
+        shares.values.iter_mut().for_each(|value| *value = value.tanh());
+        let limit = physics.correction_limit as f32;
+        let mut readings = physical.clone();
+        for ((row, shares), square) in readings.rows_mut().zip(shares.rows()).zip(&squares) {
+            for (reading, share) in row.iter_mut().zip(shares) {
+                *reading += square.sqrt() * share * limit;
+            }
+        }
+        Pass {
+            readings,
+            perceptron: Some(pass),
+            correction: Some(Correction {
+                physical,
+                squares,
+                shares,
+            }),
+        }
+    }
+
+    /// Gradient by all parameters but the memory's, from the gradient by the elastic readings.
+    pub(crate) fn elastic_gradient(
+        &self,
+        physics: &Physics,
+        inputs: &Matrix,
+        pass: &Pass,
+        of_readings: Matrix,
+    ) -> Self {
+        let mut gradient = self.zeros_like();
+        let of_physical = match (&pass.perceptron, &pass.correction) {
+            (None, _) => of_readings,
+            (Some(perceptron), None) => {
+                gradient.layers = perceptron::gradient(&self.layers, perceptron, of_readings);
+                return gradient;
+            }
+            (Some(perceptron), Some(correction)) => {
+                let limit = physics.correction_limit as f32;
+                let (of_physical, of_outputs) = correction.gradient(limit, &of_readings);
+                gradient.layers = perceptron::gradient(&self.layers, perceptron, of_outputs);
+                of_physical
+            }
+        };
+        let mut of_gains = vec![0.0; physics.n_taxels()];
+        for (row, inputs) in of_physical.rows().zip(inputs.rows()) {
+            for ((sum, slope), input) in of_gains.iter_mut().zip(row).zip(inputs) {
+                *sum += slope * input;
+            }
+        }
+        let starts = physics.start_gains();
+        for (((to, of_gain), start), change) in gradient
+            .gain_change
+            .iter_mut()
+            .zip(of_gains)
+            .zip(starts)
+            .zip(&self.gain_change)
+        {
+            *to = of_gain * start * change.exp();
+        }
+        gradient
+    }
+}
+
+impl Correction {
+    /// Gradients by the physical readings and by the perceptron's outputs.
+    fn gradient(&self, limit: f32, of_readings: &Matrix) -> (Matrix, Matrix) {
+        let (mut of_physical, mut of_outputs) = (of_readings.clone(), of_readings.clone());
+        let rows = of_physical.rows_mut().zip(of_outputs.rows_mut());
+        let own = self.physical.rows().zip(self.shares.rows()).zip(&self.squares);
+        for ((of_physical, of_outputs), ((physical, shares), square)) in rows.zip(own) {
+            let size = square.sqrt();
+            of_outputs.iter_mut().for_each(|slope| *slope *= limit);
+            let of_size: f32 = of_outputs
+                .iter()
+                .zip(shares)
+                .map(|(slope, share)| slope * share)
+                .sum();
+            let of_square = of_size * (square.powf(-0.5) / 2.0);
+            for (slope, p) in of_physical.iter_mut().zip(physical) {
+                let by_square = of_square * p;
+                *slope = by_square + (by_square + *slope);
+            }
+            for (slope, share) in of_outputs.iter_mut().zip(shares) {
+                *slope = *slope * size * (1.0 - share * share);
+            }
+        }
+        (of_physical, of_outputs)
+    }
+}

@@ -1,0 +1,21 @@
+//! The learned part of a twin: which models there are, their parameters, what they read, and how that changes with the parameters.
+//!
+//! The network is small and its structure is fixed, so it is differentiated here by hand, and a test compares every derivative with a
+//! difference quotient. A framework for automatic differentiation would take a third of the processor time of the whole build.
+
+mod elastic;
+mod matrix;
+mod normalization;
+mod parameters;
+mod perceptron;
+mod physics;
+mod twin;
+mod variant;
+
+pub(crate) use elastic::Pass;
+pub(crate) use matrix::Matrix;
+pub use normalization::Normalization;
+pub(crate) use parameters::{Parameters, Weights};
+pub(crate) use physics::Physics;
+pub use twin::Twin;
+pub use variant::Variant;

@@ -1,0 +1,88 @@
+//! What a variant is built from and does not learn.
+
+use super::{Normalization, Variant};
+use crate::Features;
+use crate::features::Gains;
+use crate::network::Matrix;
+
+/// Memory shares below this start here: from zero nothing could be learned.
+const SMALLEST_MEMORY: f64 = 1e-3;
+
+/// What a variant is built from and does not learn.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Physics {
+    pub(crate) variant: Variant,
+    pub(crate) gains: Gains,
+    pub(crate) normalization: Normalization,
+    /// Largest correction over the size of the frame's readings.
+    pub(crate) correction_limit: f64,
+}
+
+impl Physics {
+    /// Inputs of the variant, of order one; `[n_frames][n_taxels]`.
+    pub(crate) fn inputs(&self, features: &Features) -> Matrix {
+        let n = &self.normalization;
+        let values = match self.variant {
+            Variant::Paper => features
+                .stress_kpa_per_mm
+                .iter()
+                .flat_map(|row| {
+                    let scales = n
+                        .stress_mean_kpa_per_mm
+                        .iter()
+                        .zip(&n.stress_deviation_kpa_per_mm);
+                    row.iter()
+                        .zip(scales)
+                        .map(|(s, (mean, deviation))| ((s - mean) / deviation) as f32)
+                })
+                .collect(),
+            _ => features
+                .pressure_kpa
+                .iter()
+                .flat_map(|row| {
+                    row.iter()
+                        .zip(&n.pressure_rms_kpa)
+                        .map(|(p, rms)| (p / rms) as f32)
+                })
+                .collect(),
+        };
+        Matrix {
+            values,
+            n_columns: self.n_taxels(),
+        }
+    }
+
+    pub(crate) fn n_taxels(&self) -> usize {
+        self.gains.gain.len()
+    }
+
+    pub(crate) fn n_time_constants(&self) -> usize {
+        if self.variant.has_memory() {
+            self.gains.time_constants_s.len()
+        } else {
+            0
+        }
+    }
+
+    /// Readings of order one over inputs of order one, without what is learned; `[n_taxels]`.
+    pub(crate) fn start_gains(&self) -> Vec<f32> {
+        let n = &self.normalization;
+        let gains = self.gains.gain.iter().zip(&n.pressure_rms_kpa);
+        gains
+            .map(|(gain, rms)| (gain * rms / n.reading_kpa) as f32)
+            .collect()
+    }
+
+    /// Memory before the softplus; `[n_time_constants][n_taxels]`, row by row.
+    pub(crate) fn start_memory(&self) -> Vec<f32> {
+        let inverse_softplus = |share: f64| share.max(SMALLEST_MEMORY).exp_m1().ln();
+        (0..self.n_time_constants())
+            .flat_map(|j| {
+                self.gains
+                    .memory
+                    .iter()
+                    .map(move |shares| inverse_softplus(shares[j]) as f32)
+            })
+            .collect()
+    }
+}

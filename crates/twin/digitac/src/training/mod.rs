@@ -1,0 +1,11 @@
+//! Training: which presses teach and which judge, how the parameters of each variant are learned, and which variant is chosen.
+
+mod adamw;
+mod batch;
+mod settings;
+mod split;
+mod train;
+
+pub use settings::TrainSettings;
+pub use split::{Split, SplitSettings};
+pub use train::{Epoch, Progress, Trained, choose, train};
