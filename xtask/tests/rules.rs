@@ -51,8 +51,6 @@ fn read() -> Result<Workspace> {
 
 /// What does not hold yet.
 const NOT_YET: &[&str] = &[
-    "sources::crates/base/plot::long_functions_say_why",
-    "sources::crates/gel/softbody::long_functions_say_why",
     "sources::crates/sensor/characterize::long_functions_say_why",
     "sources::crates/sensor/description::long_functions_say_why",
     "sources::crates/sensor/recording::long_functions_say_why",
@@ -84,7 +82,6 @@ const NOT_YET: &[&str] = &[
     "sources::twintac-sensor::what_is_public_is_used",
     "sources::twintac-shape::library_has_no_circles",
     "sources::twintac-simulate::what_is_public_is_used",
-    "sources::twintac-softbody::library_has_no_circles",
     "sources::twintac-softbody::what_is_public_is_used",
 ];
 

@@ -86,8 +86,12 @@ impl Graph {
     }
 
     /// How `start` reaches each package that it is built with, the shortest way: the packages in between, `start` first, the reached one last.
-    /// What packages of others depend on does not count.
-    pub fn ways_from(&self, start: &str) -> Result<BTreeMap<String, Vec<String>>> {
+    /// What packages of others depend on does not count, nor do ways through a package for which `ends` holds.
+    pub fn ways_from(
+        &self,
+        start: &str,
+        ends: impl Fn(&str) -> bool,
+    ) -> Result<BTreeMap<String, Vec<String>>> {
         self.package(start)?;
         let mut ways: BTreeMap<String, Vec<String>> = BTreeMap::new();
         let mut pending = VecDeque::from([vec![start.to_owned()]]);
@@ -99,7 +103,9 @@ impl Graph {
                 if !ways.contains_key(next) {
                     let longer: Vec<String> = way.iter().chain([next]).cloned().collect();
                     ways.insert(next.clone(), longer.clone());
-                    pending.push_back(longer);
+                    if !ends(next) {
+                        pending.push_back(longer);
+                    }
                 }
             }
         }

@@ -57,7 +57,7 @@ pub fn arrows_point_down(rooms: &Rooms, graph: &Graph, room: &Room) -> Result<()
     Ok(())
 }
 
-/// `room` does not know what `word` means.
+/// `room` does not know what `word` means. What it reaches through a room that must not know it either is that room's failure.
 pub fn never_knows(rooms: &Rooms, graph: &Graph, sources: &[Crate], room: &Room, word: &str) -> Result<()> {
     let term = rooms
         .terms
@@ -70,7 +70,11 @@ pub fn never_knows(rooms: &Rooms, graph: &Graph, sources: &[Crate], room: &Room,
             other.is_some_and(|other| term.every_room || term.rooms.iter().any(|name| name == other.name()));
         is_library || is_room
     };
-    let ways = graph.ways_from(&room.package())?;
+    let has_a_test_of_its_own = |package: &str| {
+        let other = rooms.rooms.iter().find(|other| other.package() == package);
+        other.is_some_and(|other| rooms.never(other).contains(&word))
+    };
+    let ways = graph.ways_from(&room.package(), has_a_test_of_its_own)?;
     let ways = ways.values().filter(|way| !term.directly || way.len() == 2);
     for way in ways {
         if way.last().is_some_and(|name| forbidden(name)) {
