@@ -180,9 +180,7 @@ impl Lab {
     ) -> Result<PressPlace, LabError> {
         let indenter = self
             .drawing
-            .indenters
-            .iter()
-            .find(|indenter| indenter.name == plan.indenter)
+            .indenter(&plan.indenter)
             .ok_or_else(|| LabError::NoIndenter {
                 press: plan.name.clone(),
                 indenter: plan.indenter.clone(),

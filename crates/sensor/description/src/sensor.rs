@@ -37,6 +37,14 @@ pub struct Sensor {
     pub surfaces: Surfaces,
 }
 
+impl Sensor {
+    /// The indenter of a name, if the sensor has one.
+    #[must_use]
+    pub fn indenter(&self, name: &str) -> Option<&Indenter> {
+        self.indenters.iter().find(|indenter| indenter.name == name)
+    }
+}
+
 /// The soft part. It is bonded to the board at z = 0 and to the inclusions.
 #[derive(Clone, Debug)]
 pub struct Gel {

@@ -81,11 +81,8 @@ fn phystac_is_what_the_paper_says() {
     );
     assert_eq!(sensor.shell.as_ref().unwrap().gap_mm, 1.0);
     assert!(!sensor.is_inferred("shell.gap_mm") && sensor.is_inferred("taxels[3].position_mm"));
-    let sphere = sensor
-        .indenters
-        .iter()
-        .find(|indenter| indenter.name == "sphere-25")
-        .unwrap();
+    assert!(sensor.indenter("sphere").is_none());
+    let sphere = sensor.indenter("sphere-25").unwrap();
     assert_eq!(sphere.shape, Shape::Sphere { radius_mm: 12.5 });
     assert!((sensor.gel.solid.volume_mm3(&Surfaces::new()) - 34.0 * 18.0 * 8.5).abs() < 1e-9);
     let material = &sensor.gel.material;

@@ -152,7 +152,7 @@ impl Gel {
     /// The same gel with the friction of an indenter of the sensor, if its description states one.
     pub(crate) fn rough_for(&self, indenter: &str) -> Self {
         let mut gel = self.clone();
-        let known = gel.sensor.indenters.iter().find(|known| known.name == indenter);
+        let known = gel.sensor.indenter(indenter);
         if let Some(friction) = known.and_then(|known| known.friction) {
             gel.settings.solver.friction = friction;
         }

@@ -71,7 +71,7 @@ fn gel(sensor: Arc<Sensor>, tolerance: f64) -> Gel {
 }
 
 fn place(gel: &Gel, indenter: &str, x_mm: f64, depth_mm: f64) -> PressPlace {
-    let found = gel.sensor().indenters.iter().find(|known| known.name == indenter);
+    let found = gel.sensor().indenter(indenter);
     PressPlace {
         indenter: indenter.into(),
         shape: found.unwrap().shape.clone(),

@@ -101,8 +101,8 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
 /// Presses in [`STEPS`] steps, until the force is enough or a step fails.
 fn press(gel: &Gel, name: &str, at_mm: [f64; 2], tilt_rad: f64) -> Result<Pressed> {
     let sensor = gel.sensor();
-    let indenter = sensor.indenters.iter().find(|indenter| indenter.name == name);
-    let shape = indenter
+    let shape = sensor
+        .indenter(name)
         .with_context(|| format!("the sensor lacks the indenter {name}"))?
         .shape
         .clone();

@@ -1,5 +1,7 @@
 //! What an import description says, field by field.
 
+use std::collections::BTreeSet;
+
 use serde::Deserialize;
 
 use super::unit::{Force, Length, Pressure, Time, Unit};
@@ -170,4 +172,20 @@ pub(crate) struct Zero {
 pub(crate) struct Outliers {
     pub(crate) within_mm: f64,
     pub(crate) jump: f64,
+}
+
+impl Description {
+    /// All columns that are read.
+    pub(crate) fn column_names(&self) -> BTreeSet<&str> {
+        let mut names: BTreeSet<&str> = self.taxels.iter().map(|taxel| taxel.column.as_str()).collect();
+        names.extend(self.time.as_ref().and_then(|time| time.column.as_deref()));
+        names.extend(self.x.column.as_deref());
+        names.extend(self.y.column.as_deref());
+        names.extend(self.z.as_ref().and_then(|z| z.column.as_deref()));
+        names.extend(self.force.as_ref().and_then(|force| force.column.as_deref()));
+        if let Split::Column { column } = &self.presses {
+            names.insert(column);
+        }
+        names
+    }
 }

@@ -2,6 +2,7 @@
 
 mod align;
 mod buffered;
+mod check;
 mod describe;
 mod description;
 mod outliers;
