@@ -32,13 +32,17 @@ impl Gel {
     /// # Errors
     /// [`SimulateError::NoIndenter`].
     pub fn shape(&self, indenter: &str) -> Result<&Shape, SimulateError> {
-        let indenters = &self.sensor().indenters;
-        let found = indenters.iter().find(|described| described.name == indenter);
-        found
+        let sensor = self.sensor();
+        sensor
+            .indenter(indenter)
             .map(|described| &described.shape)
             .ok_or_else(|| SimulateError::NoIndenter {
                 asked_for: indenter.to_owned(),
-                described: indenters.iter().map(|described| described.name.clone()).collect(),
+                described: sensor
+                    .indenters
+                    .iter()
+                    .map(|described| described.name.clone())
+                    .collect(),
             })
     }
 }
