@@ -21,11 +21,11 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// The whole road on the emulated bench: no hardware, no data, minutes.
+    /// Run every stage on the emulated bench: needs no hardware and no data, and takes minutes.
     Demo(Demo),
-    /// The whole road on recordings of a real sensor.
+    /// Run every stage on recordings of a real sensor.
     Reproduce(Reproduce),
-    /// Look at a sensor description.
+    /// Show a sensor description.
     #[command(subcommand)]
     Sensor(SensorCommand),
     /// Mesh a sensor's gel, or check a Gmsh mesh.
@@ -34,13 +34,13 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
-    /// Find out what a sensor does from recorded presses: sensitivity, noise, hysteresis, and more.
+    /// Measure a sensor's properties in recorded presses: sensitivity, noise, hysteresis, and more.
     Characterize(Characterize),
-    /// Watch a sensor as it is touched: on a dashboard, or as rows of text.
+    /// Show a sensor's frames live: on a dashboard, or as rows of text.
     Stream(Stream),
     /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
     Record(Record),
-    /// Write the frames of logs as Parquet tables; make logs that were cut whole.
+    /// Write the frames of logs as Parquet tables; recover logs that were cut.
     Export(Export),
     /// Read recordings of a real sensor.
     Import(Import),
@@ -48,7 +48,7 @@ pub(crate) enum Command {
     Align(Align),
     /// Train a twin on paired frames.
     Train(Train),
-    /// Judge a twin on recordings.
+    /// Evaluate a twin on recordings.
     Evaluate(Evaluate),
     /// Write the report of a run.
     Report(Report),
@@ -59,7 +59,7 @@ pub(crate) struct Demo {
     /// Folder of the run.
     #[arg(long, value_name = "DIR", default_value = "runs/demo")]
     pub(crate) out: PathBuf,
-    /// Seed of all that chance decides.
+    /// Seed of all random choices.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
 }
@@ -67,10 +67,10 @@ pub(crate) struct Demo {
 /// What every run is started with.
 #[derive(Args, Debug)]
 pub(crate) struct Start {
-    /// Settings (TOML) that differ from the usual ones: any of those in a run's run.json, in tables like [simulate] and [train].
+    /// Settings (TOML) that differ from the defaults: any of those in a run's run.json, in tables like [simulate] and [train].
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
-    /// Seed of all that chance decides.
+    /// Seed of all random choices.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
 }
@@ -131,7 +131,7 @@ pub(crate) struct Mesh {
     /// Number of nodes, met within a tenth.
     #[arg(long, value_name = "N", conflicts_with = "check")]
     pub(crate) nodes: Option<usize>,
-    /// Read a Gmsh file instead and say how good it is.
+    /// Read a Gmsh file instead and print its quality.
     #[arg(long, value_name = "FILE")]
     pub(crate) check: Option<PathBuf>,
     /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
@@ -156,13 +156,13 @@ pub(crate) struct Simulate {
     /// Path of one indenter (TOML): prints force and pressures along it.
     #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with = "protocol")]
     pub(crate) path: Option<PathBuf>,
-    /// Say what a path's frames spend their time on.
+    /// Print what the computing time of a path's frames is spent on.
     #[arg(long, requires = "path")]
     pub(crate) profile: bool,
-    /// Print what comes of a path as JSON.
+    /// Print the results of a path as JSON.
     #[arg(long, requires = "path")]
     pub(crate) json: bool,
-    /// Settings (TOML) that differ from the usual ones, in a table [simulate].
+    /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE", requires = "sensor")]
     pub(crate) settings: Option<PathBuf>,
     /// Also write the pressed gel of every frame for ParaView.
@@ -184,23 +184,23 @@ pub(crate) struct Calibrate {
     /// Name of the sensor's indenter that the CSV files were measured with.
     #[arg(long, value_name = "NAME")]
     pub(crate) indenter: Option<String>,
-    /// Place of the press in the gel's plane, mm.
+    /// Place of the press along the gel's x axis, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) x_mm: f64,
-    /// Place of the press in the gel's plane, mm.
+    /// Place of the press along the gel's y axis, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) y_mm: f64,
     /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
     pub(crate) curves: Option<PathBuf>,
-    /// What is free: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
+    /// Free parameters: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
     /// bulk_modulus_kpa), poissons_ratio, depth_offset_mm, force_scale, force_offset_n.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
     pub(crate) free: Vec<String>,
-    /// Frames to simulate of each curve, about.
+    /// About how many frames of each curve to simulate.
     #[arg(long, value_name = "N", default_value_t = 40)]
     pub(crate) frames: usize,
-    /// Settings (TOML) that differ from the usual ones, in a table [simulate].
+    /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     /// Folder to write material.toml, calibration.json and the plot to.
@@ -234,16 +234,16 @@ pub(crate) struct Record {
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) protocol: PathBuf,
-    /// The emulated bench, with a reality of its own (TOML) [default: realities/default.toml].
+    /// Record on the emulated bench; FILE has its physics and imperfections (TOML) [default: realities/default.toml].
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     pub(crate) lab: Option<Option<PathBuf>>,
-    /// How presses are carried out (TOML) and, without --lab, where the devices are [default: rigs/lab.toml].
+    /// How presses are carried out (TOML); without --lab also where the devices are [default: rigs/lab.toml].
     #[arg(long, value_name = "FILE", required_unless_present_any = ["lab", "dry_run"])]
     pub(crate) bench: Option<PathBuf>,
     /// Sensor description (TOML) [default: PhysTac].
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: Option<PathBuf>,
-    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "lab")]
     pub(crate) scale: Option<u16>,
     /// Altitude of the bench, m, whose free air the scale is checked against [default: anything up to 2000].
@@ -252,16 +252,16 @@ pub(crate) struct Record {
     /// Folder of the run [default: runs/<protocol>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Only say and draw what would be done, and how long it would take.
+    /// Print and draw what would be done, and how long it would take; move nothing.
     #[arg(long)]
     pub(crate) dry_run: bool,
-    /// What goes wrong on the emulated bench (TOML), in tables [[faults]].
+    /// Faults of the emulated bench (TOML), in tables [[faults]].
     #[arg(long, value_name = "FILE", requires = "lab")]
     pub(crate) faults: Option<PathBuf>,
     /// Compute what the emulated bench would record, without devices and without waiting.
     #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json"])]
     pub(crate) at_once: bool,
-    /// End with one line of JSON on standard output.
+    /// Print the result as one line of JSON.
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
@@ -308,10 +308,10 @@ pub(crate) struct Train {
 
 #[derive(Args, Debug)]
 pub(crate) struct Evaluate {
-    /// Folder of a run: judge its twin on the presses that it held back.
+    /// Folder of a run: evaluate its twin on the held-out presses.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["model", "recordings", "import"], required_unless_present = "model")]
     pub(crate) run: Option<PathBuf>,
-    /// Folder of a model to judge on other recordings of its sensor.
+    /// Folder of a model to evaluate on other recordings of its sensor.
     #[arg(long, value_name = "DIR", requires = "recordings")]
     pub(crate) model: Option<PathBuf>,
     /// Recordings: CSV files, presses.parquet files, or patterns.
@@ -345,7 +345,7 @@ pub(crate) struct Stream {
     /// Sensor description (TOML) [default: PhysTac].
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: Option<PathBuf>,
-    /// Counts per Pa of the barometers, confirmed by who knows the parts [default: the sensor description's].
+    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) scale: Option<u16>,
     /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
