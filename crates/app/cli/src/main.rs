@@ -4,7 +4,9 @@
 //! 3 when a bench was stopped: what was recorded until then is kept.
 
 mod arguments;
+mod caller;
 mod command;
+mod output;
 mod progress;
 
 use std::io::Write;

@@ -15,7 +15,7 @@ pub struct BuiltIn {
 }
 
 /// The protocol of the demo.
-pub const DEMO_PROTOCOL: BuiltIn = BuiltIn {
+pub(crate) const DEMO_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/demo.toml",
     text: include_str!("../built_in/demo.toml"),
 };

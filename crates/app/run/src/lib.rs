@@ -46,6 +46,7 @@ mod caller;
 pub mod characterization;
 mod demo;
 mod depth_tables;
+mod doubtful;
 mod error;
 pub mod export;
 mod files;

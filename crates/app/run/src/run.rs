@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
-use twintac_sensor::Sensor;
 use twintac_simulate::Gel;
 
 use crate::cache::{self, Inputs};
+use crate::doubtful::left_out;
 use crate::error::At;
 use crate::files::{read_json, write_file, write_json};
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
@@ -192,13 +192,4 @@ impl Run {
         self.progress().stage(name, outcome);
         Ok(())
     }
-}
-
-/// Taxels of a sensor whose readings are not to be trusted, by index.
-pub(crate) fn left_out(sensor: &Sensor) -> BTreeSet<usize> {
-    let taxels = sensor.taxels.iter().enumerate();
-    taxels
-        .filter(|(_, taxel)| taxel.doubtful.is_some())
-        .map(|(index, _)| index)
-        .collect()
 }

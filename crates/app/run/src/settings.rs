@@ -67,7 +67,7 @@ impl RunSettings {
         let mut resolved = self.clone();
         resolved.split.seed = seed;
         resolved.train.seed = seed;
-        resolved.bench.left_out = crate::run::left_out(sensor);
+        resolved.bench.left_out = crate::doubtful::left_out(sensor);
         if !has_unknown_tip(sensor, recording) {
             resolved.bench.tip_radii_mm.clear();
         }

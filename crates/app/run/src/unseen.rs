@@ -13,9 +13,9 @@ use twintac_recording::{Provenance, Recording};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::depth_tables::DepthTableStore;
+use crate::doubtful::left_out;
 use crate::metrics::{self, BaselineFigures, Figures, TwinFigures, baselines, names};
 use crate::progress::Work;
-use crate::run::left_out;
 use crate::{Progress, RunError, SensorFile};
 
 /// Largest correction of an unseen file's contact height, mm.

@@ -10,6 +10,7 @@ use twintac_run::{RunSettings, SensorFile};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;
+use crate::output::print;
 use crate::progress::Bars;
 
 /// Fits, and prints or writes what came of it.
@@ -25,9 +26,9 @@ pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     }
     tell(&found.fit, &found.kinds())?;
     if arguments.json {
-        super::print(&serde_json::to_string_pretty(&found)?)
+        print(&serde_json::to_string_pretty(&found)?)
     } else {
-        super::print(found.material_toml()?.trim_end())
+        print(found.material_toml()?.trim_end())
     }
 }
 

@@ -6,6 +6,7 @@ use twintac_run::characterization::Recorded;
 
 use super::files::expand;
 use crate::arguments::Characterize;
+use crate::output::print;
 use crate::progress::Bars;
 
 /// Characterizes, and prints or writes what was found.
@@ -17,13 +18,13 @@ pub(crate) fn run(arguments: &Characterize) -> Result<()> {
         recorded.write(&found, &sensor, folder)?;
     }
     if arguments.json {
-        return super::print(&serde_json::to_string_pretty(&found)?);
+        return print(&serde_json::to_string_pretty(&found)?);
     }
     for [name, value, condition] in found.rows(&sensor) {
-        super::print(&format!("{name:<26} {value:<28} {condition}"))?;
+        print(&format!("{name:<26} {value:<28} {condition}"))?;
     }
     if let Some(folder) = &arguments.out {
-        super::print(&format!("report  {}", folder.join("report.html").display()))?;
+        print(&format!("report  {}", folder.join("report.html").display()))?;
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use twintac_run::export::export;
 
 use super::files::expand;
 use crate::arguments::Export;
+use crate::output::print;
 use crate::progress::say;
 
 pub(super) fn run(arguments: &Export) -> Result<()> {
@@ -13,7 +14,7 @@ pub(super) fn run(arguments: &Export) -> Result<()> {
         if let Some(recovered) = &exported.recovered {
             say(&format!("{} was cut; {recovered}", log.display()));
         }
-        super::print(&if arguments.json {
+        print(&if arguments.json {
             serde_json::to_string(&exported)?
         } else {
             format!(

@@ -1,8 +1,9 @@
-//! Patterns of files.
+//! Files that are given by name or by pattern.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use twintac_run::SensorFile;
 
 /// The files that names and patterns stand for, sorted; each must stand for at least one.
 pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
@@ -22,4 +23,9 @@ pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
     files.sort_unstable();
     files.dedup();
     Ok(files)
+}
+
+/// Reads a sensor description, or without a file that of PhysTac.
+pub(crate) fn sensor_or_phystac(file: Option<&Path>) -> Result<SensorFile> {
+    Ok(file.map_or_else(SensorFile::phystac, SensorFile::read)?)
 }

@@ -5,6 +5,7 @@ use twintac_run::SensorFile;
 use twintac_run::mesh::{Fineness, MeshedGel, check_mesh};
 
 use crate::arguments::Mesh;
+use crate::output::print;
 
 /// Meshes a gel or checks a mesh, and prints its quality as JSON.
 pub(crate) fn run(arguments: &Mesh) -> Result<()> {
@@ -25,5 +26,5 @@ pub(crate) fn run(arguments: &Mesh) -> Result<()> {
             gel.quality
         }
     };
-    super::print(&serde_json::to_string_pretty(&quality)?)
+    print(&serde_json::to_string_pretty(&quality)?)
 }

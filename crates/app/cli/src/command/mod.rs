@@ -14,14 +14,9 @@ mod simulate;
 mod stages;
 mod stream;
 
-use std::path::Path;
-use std::sync::Arc;
-
-use anyhow::{Context, Result};
-use twintac_run::{Caller, SensorFile, sha256_of_file};
+use anyhow::Result;
 
 use crate::arguments::{Command, SensorCommand};
-use crate::progress::Bars;
 
 pub(crate) use record::Stopped;
 
@@ -44,28 +39,4 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Evaluate(arguments) => stages::evaluate(&arguments),
         Command::Report(arguments) => stages::report(&arguments),
     }
-}
-
-/// Prints a line of data to standard output; a closed pipe is no error.
-pub(crate) fn print(text: &str) -> Result<()> {
-    use std::io::{ErrorKind, Write};
-    match writeln!(std::io::stdout(), "{text}") {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(()),
-    }
-}
-
-/// Reads a sensor description, or without a file that of PhysTac.
-pub(crate) fn sensor_or_phystac(file: Option<&Path>) -> Result<SensorFile> {
-    Ok(file.map_or_else(SensorFile::phystac, SensorFile::read)?)
-}
-
-/// This program, for runs: its own file is what tells one build from another.
-pub(crate) fn caller() -> Result<Caller> {
-    let program = std::env::current_exe().context("finding this program's own file")?;
-    Ok(Caller {
-        program: sha256_of_file(&program)?,
-        command: std::env::args().collect::<Vec<_>>().join(" "),
-        progress: Arc::new(Bars::default()),
-    })
 }

@@ -15,7 +15,10 @@ use twintac_run::bench::{OpenBench, preview, read_faults};
 use twintac_run::built_in::{LAB_RIG, REALITY};
 use twintac_run::{Caller, Planned, Progress, Run, RunSettings, SensorFile};
 
+use super::files::sensor_or_phystac;
 use crate::arguments::Record;
+use crate::caller::caller;
+use crate::output::print;
 use crate::progress::say;
 
 /// Set by Ctrl-C: the bench stops.
@@ -40,14 +43,14 @@ struct Summary {
 }
 
 pub(super) fn run(arguments: &Record) -> Result<()> {
-    let sensor = super::sensor_or_phystac(arguments.sensor.as_deref())?;
+    let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
     let planned = Planned::read(&arguments.protocol, &sensor.sensor, arguments.start.seed)?;
     let reality = arguments.lab.as_ref().map(|file| read_reality(file.as_deref()));
     let reality = reality.transpose()?;
     if let (Some(reality), true) = (&reality, arguments.at_once) {
         let n_presses = planned.presses.len() + planned.loads.len();
         let source = format!("{n_presses} presses on the emulated bench");
-        let run = start(arguments, sensor, &source, super::caller()?)?;
+        let run = start(arguments, sensor, &source, caller()?)?;
         return Ok(run.emulate(reality, &planned)?);
     }
     let n_loads = planned.loads.len();
@@ -93,9 +96,9 @@ fn dry_run(
 ) -> Result<()> {
     let preview = preview(settings, plans, &sensor.sensor, &out(arguments).join("plan"))?;
     if arguments.json {
-        return super::print(&serde_json::to_string(&preview)?);
+        return print(&serde_json::to_string(&preview)?);
     }
-    super::print(&format!(
+    print(&format!(
         "{} presses with {} indenters take {}, without the time to change indenters",
         preview.presses,
         preview.indenters,
@@ -106,7 +109,7 @@ fn dry_run(
         .iter()
         .map(|path| path.display().to_string())
         .collect();
-    super::print(&format!("drawings {}", drawings.join(" ")))
+    print(&format!("drawings {}", drawings.join(" ")))
 }
 
 /// Carries the presses out, and stops on Ctrl-C.
@@ -126,7 +129,7 @@ fn press(
     };
     check_folder(&out(arguments).join("logs"), plans)?;
     let source = format!("{} presses on {whose} bench, over its wires", plans.len());
-    let caller = super::caller()?;
+    let caller = caller()?;
     let run = start(arguments, sensor, &source, caller.clone())?;
     let mut bench = match reality {
         Some(reality) => OpenBench::emulate(&run, reality, plans, &settings, faults.unwrap_or_default())?,
@@ -179,7 +182,7 @@ fn ask_for(indenter: &str, progress: &dyn Progress) -> Receiver<bool> {
 fn tell(summary: &RunSummary, presses: usize, run: &Run, provenance: Provenance, json: bool) -> Result<()> {
     let stopped = summary.stopped.as_ref().map(ToString::to_string);
     if json {
-        super::print(&serde_json::to_string(&Summary {
+        print(&serde_json::to_string(&Summary {
             rate_hz: summary.rate_hz,
             frames: summary.frames,
             lost_unmarked: summary.lost_unmarked,
@@ -190,11 +193,11 @@ fn tell(summary: &RunSummary, presses: usize, run: &Run, provenance: Provenance,
             provenance,
         })?)?;
     } else {
-        super::print(&format!(
+        print(&format!(
             "{} of {presses} presses are done ({} data): {} frames at {:.1} Hz, {} lost without a mark",
             summary.presses_done, provenance, summary.frames, summary.rate_hz, summary.lost_unmarked
         ))?;
-        super::print(&format!("logs    {}", run.logs_folder().display()))?;
+        print(&format!("logs    {}", run.logs_folder().display()))?;
     }
     match stopped {
         None => Ok(()),

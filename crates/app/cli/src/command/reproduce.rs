@@ -7,6 +7,7 @@ use twintac_run::{Run, RunSettings, SensorFile};
 
 use super::files::expand;
 use crate::arguments::{Import, Recorded, Reproduce, Start};
+use crate::caller::caller;
 
 /// Runs every stage on recordings.
 pub(crate) fn run(arguments: &Reproduce) -> Result<()> {
@@ -39,7 +40,7 @@ fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> 
         .filter_map(|file| file.file_name())
         .map(|name| name.to_string_lossy());
     let source = names.collect::<Vec<_>>().join(", ");
-    let run = Run::start(&folder, sensor, &source, start.seed, settings, super::caller()?)?;
+    let run = Run::start(&folder, sensor, &source, start.seed, settings, caller()?)?;
     run.import(&import, &files)?;
     Ok(run)
 }

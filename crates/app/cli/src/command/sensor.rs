@@ -4,11 +4,12 @@ use anyhow::Result;
 use twintac_run::SensorFile;
 
 use crate::arguments::SensorShow;
+use crate::output::print;
 
 /// Prints a description with units, and draws it.
 pub(crate) fn show(arguments: &SensorShow) -> Result<()> {
     let sensor = SensorFile::read(&arguments.file)?.sensor;
-    super::print(sensor.describe().trim_end())?;
+    print(sensor.describe().trim_end())?;
     if let Some(path) = &arguments.draw {
         twintac_drawing::drawing(&sensor).write(path)?;
     }

@@ -8,12 +8,13 @@ use twintac_run::{Planned, Run, RunSettings, SensorFile};
 use twintac_simulate::Gel;
 
 use crate::arguments::Simulate;
+use crate::caller::caller;
 use crate::progress::Bars;
 
 /// Simulates and writes one table over depth for each press.
 pub(crate) fn run(arguments: &Simulate) -> Result<()> {
     if let Some(folder) = &arguments.run {
-        let run = Run::open(folder, super::caller()?)?;
+        let run = Run::open(folder, caller()?)?;
         run.mesh()?;
         return Ok(run.simulate()?);
     }

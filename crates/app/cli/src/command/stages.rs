@@ -5,6 +5,8 @@ use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_fil
 
 use super::files::expand;
 use crate::arguments::{Align, Evaluate, Report, Train};
+use crate::caller::caller;
+use crate::output::print;
 use crate::progress::Bars;
 
 /// Everything after the recordings; prints the headline.
@@ -15,23 +17,23 @@ pub(crate) fn finish(run: &Run) -> Result<()> {
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
 pub(crate) fn align(arguments: &Align) -> Result<()> {
-    let run = Run::open(&arguments.run, super::caller()?)?;
+    let run = Run::open(&arguments.run, caller()?)?;
     run.simulate()?;
     Ok(run.pair()?)
 }
 
 /// `twintac train`.
 pub(crate) fn train(arguments: &Train) -> Result<()> {
-    Ok(Run::open(&arguments.run, super::caller()?)?.train()?)
+    Ok(Run::open(&arguments.run, caller()?)?.train()?)
 }
 
 /// `twintac evaluate`: a run's held-out presses, or a model on recordings from elsewhere.
 pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
     if let Some(folder) = &arguments.run {
-        let run = Run::open(folder, super::caller()?)?;
+        let run = Run::open(folder, caller()?)?;
         let metrics = run.evaluate()?;
         if arguments.json {
-            return super::print(&serde_json::to_string_pretty(&metrics)?);
+            return print(&serde_json::to_string_pretty(&metrics)?);
         }
         return print_headline(&run, &metrics);
     }
@@ -44,20 +46,20 @@ pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
     };
     let found = evaluate_elsewhere(model, &recording, &Bars::default())?;
     if arguments.json {
-        return super::print(&serde_json::to_string_pretty(&found)?);
+        return print(&serde_json::to_string_pretty(&found)?);
     }
-    super::print(&unseen(&found))
+    print(&unseen(&found))
 }
 
 /// `twintac report`.
 pub(crate) fn report(arguments: &Report) -> Result<()> {
-    Ok(Run::open(&arguments.run, super::caller()?)?.report()?)
+    Ok(Run::open(&arguments.run, caller()?)?.report()?)
 }
 
 fn print_headline(run: &Run, metrics: &Metrics) -> Result<()> {
-    super::print(&headline(metrics))?;
-    super::print(&format!("report  {}", run.report_path().display()))?;
-    super::print(&format!("model   {}", run.model_folder().display()))
+    print(&headline(metrics))?;
+    print(&format!("report  {}", run.report_path().display()))?;
+    print(&format!("model   {}", run.model_folder().display()))
 }
 
 fn headline(metrics: &Metrics) -> String {

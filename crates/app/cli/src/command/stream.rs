@@ -5,12 +5,13 @@ use std::path::Path;
 use anyhow::Result;
 use twintac_live::{Format, Known, Live, StopAfter, Tally, dashboard, stream_rows};
 
+use super::files::sensor_or_phystac;
 use crate::arguments::{RowFormat, Stream};
 use crate::progress::say;
 use twintac_run::SensorFile;
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
-    let sensor = super::sensor_or_phystac(arguments.sensor.as_deref())?;
+    let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
     let known = Known {
         counts_per_pa: arguments.scale,
         altitude_m: arguments.altitude_m,

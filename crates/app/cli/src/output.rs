@@ -1,0 +1,13 @@
+//! Data on standard output; what is for people goes to standard error.
+
+use std::io::{ErrorKind, Write};
+
+use anyhow::Result;
+
+/// Prints a line of data to standard output; a closed pipe is no error.
+pub(crate) fn print(text: &str) -> Result<()> {
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}
