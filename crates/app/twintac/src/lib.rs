@@ -24,9 +24,9 @@
 //! }
 //! ```
 //!
-//! The same press, drawn by [`PressureMap::write`], with the taxels marked:
+//! What is pressed, as its description says (`twintac sensor show sensors/phystac.toml --draw phystac.svg`):
 //!
-#![doc = include_str!("../pressed.svg")]
+#![doc = concat!("<div style=\"background: white; padding: 1em\">", include_str!("../phystac.svg"), "</div>")]
 //!
 //! # What there is
 //!
