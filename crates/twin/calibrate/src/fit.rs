@@ -7,8 +7,8 @@ use twintac_softbody::Material;
 use crate::curve::Curve;
 use crate::least_squares::{minimize, normal_equations};
 use crate::problem::{Evaluation, Problem};
-use crate::statistics::{HARD_TO_TELL, covariance, neighbour_correlation, student_quantile};
-use crate::unknown::poissons_ratio;
+use crate::statistics::{Covariance, HARD_TO_TELL, covariance, neighbour_correlation, student_quantile};
+use crate::unknown::{Unknown, poissons_ratio};
 use crate::{CalibrateError, FitSettings, Parameter};
 
 /// Correlation of neighbouring residuals above which they are not noise.
@@ -153,6 +153,7 @@ fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool
     any
 }
 
+/// Says how well the unknowns are known, and what to doubt.
 fn judge(
     problem: &Problem,
     start: &[f64],
@@ -171,6 +172,43 @@ fn judge(
     if !converged {
         warnings.push(format!("the fit had not settled after {iterations} steps"));
     }
+    let unknowns = fitted_unknowns(all, [start, x], &known, quantile, &mut warnings);
+    warnings.extend(hard_to_tell(all, &known));
+    let correlations = correlations(all, &known, &mut warnings);
+    let signals = signals(problem, evaluation);
+    let worst = signals
+        .iter()
+        .map(|signal| signal.neighbour_correlation)
+        .fold(0.0, f64::max);
+    if worst > NOT_NOISE {
+        warnings.push(format!(
+            "residuals are no noise (correlation of neighbours up to {worst:.2}): the model is wrong somewhere, and intervals are too narrow"
+        ));
+    }
+    let material = problem.unknowns.material(x);
+    Fit {
+        poissons_ratio: poissons_ratio(&material),
+        material,
+        unknowns,
+        correlations,
+        condition: known.condition,
+        noise_percent: 100.0 * variance.sqrt(),
+        n_samples,
+        iterations,
+        converged,
+        warnings,
+        signals,
+    }
+}
+
+/// The unknowns with their confidence intervals, `quantile` standard errors to each side.
+fn fitted_unknowns(
+    all: &[Unknown],
+    [start, x]: [&[f64]; 2],
+    known: &Covariance,
+    quantile: f64,
+    warnings: &mut Vec<String>,
+) -> Vec<FittedUnknown> {
     let mut unknowns = Vec::new();
     for (index, unknown) in all.iter().enumerate() {
         let half = quantile * known.covariance[index][index].sqrt();
@@ -197,22 +235,33 @@ fn judge(
             identified: !is_untold && !at_bound,
         });
     }
+    unknowns
+}
+
+/// A warning if the data do not tell some unknowns, or hardly tell them apart.
+fn hard_to_tell(all: &[Unknown], known: &Covariance) -> Option<String> {
     let names = |indices: &[usize]| -> String {
         let names: Vec<&str> = indices.iter().map(|&i| all[i].name.as_str()).collect();
         names.join(", ")
     };
     if !known.untold.is_empty() {
-        warnings.push(format!(
+        Some(format!(
             "the data do not tell {}: fix some of them",
             names(&known.untold)
-        ));
+        ))
     } else if known.condition > HARD_TO_TELL {
-        warnings.push(format!(
+        Some(format!(
             "{} are hard to tell apart: condition {:.0}, expected below {HARD_TO_TELL:.0}",
             names(&known.worst),
             known.condition
-        ));
+        ))
+    } else {
+        None
     }
+}
+
+/// The correlation of each pair of unknowns.
+fn correlations(all: &[Unknown], known: &Covariance, warnings: &mut Vec<String>) -> Vec<Correlation> {
     let mut correlations = Vec::new();
     for i in 0..all.len() {
         for j in 0..i {
@@ -232,30 +281,7 @@ fn judge(
             }
         }
     }
-    let signals = signals(problem, evaluation);
-    let worst = signals
-        .iter()
-        .map(|signal| signal.neighbour_correlation)
-        .fold(0.0, f64::max);
-    if worst > NOT_NOISE {
-        warnings.push(format!(
-            "residuals are no noise (correlation of neighbours up to {worst:.2}): the model is wrong somewhere, and intervals are too narrow"
-        ));
-    }
-    let material = problem.unknowns.material(x);
-    Fit {
-        poissons_ratio: poissons_ratio(&material),
-        material,
-        unknowns,
-        correlations,
-        condition: known.condition,
-        noise_percent: 100.0 * variance.sqrt(),
-        n_samples,
-        iterations,
-        converged,
-        warnings,
-        signals,
-    }
+    correlations
 }
 
 fn signals(problem: &Problem, evaluation: &Evaluation) -> Vec<FittedSignal> {

@@ -5,6 +5,11 @@
 //! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
 //! [`Split`] says which presses teach and which judge; [`train()`] makes a [`Twin`] of each [`Variant`];
 //! [`score()`] says how wrong it is; and a [`Model`] keeps it in a folder.
+//!
+//! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
+//! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this
+//! crate are called, says at its front what it does; `numerics` and `features` come first, then `bench_fit`, `alignment`, `network`,
+//! `evaluation`, `training` and `model_folder`.
 
 mod alignment;
 mod bench_fit;
@@ -28,7 +33,7 @@ pub use evaluation::{
     Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score, StaticPolynomial,
     evaluate, recalibrate, repeatability, score,
 };
-pub use features::{Features, Gains, TIME_CONSTANTS_S};
+pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
-pub use network::{Normalization, Twin, Variant};
+pub use network::{Twin, Variant};
 pub use training::{Epoch, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train};

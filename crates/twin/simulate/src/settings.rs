@@ -19,7 +19,7 @@ pub struct SimulateSettings {
     /// Edges along a path over the radius to which an indenter is rounded, where that makes them shorter than elsewhere: the force of a punch is
     /// made at its rim. The pressure has half as many. Tables go without.
     pub edges_per_rounding: f64,
-    /// Mean distance of a table's frames over depth, mm. Shallow tables have [`MIN_DEPTH_STEPS`](Self::MIN_DEPTH_STEPS).
+    /// Mean distance of a table's frames over depth, mm. Shallow tables have five.
     pub depth_step_mm: f64,
     /// The solver's own settings.
     pub solver: SolverSettings,
@@ -27,7 +27,7 @@ pub struct SimulateSettings {
 
 impl SimulateSettings {
     /// Frames of the shallowest table, after the untouched one.
-    pub const MIN_DEPTH_STEPS: f64 = 5.0;
+    pub(crate) const MIN_DEPTH_STEPS: f64 = 5.0;
 }
 
 impl Default for SimulateSettings {

@@ -121,7 +121,7 @@ impl Warp {
 
     /// Brings marks of usable rows along: a warped row is usable where both rows that it is made of are.
     #[must_use]
-    pub fn apply_valid(&self, rows: &[Vec<bool>]) -> Vec<Vec<bool>> {
+    pub(crate) fn apply_valid(&self, rows: &[Vec<bool>]) -> Vec<Vec<bool>> {
         self.measured_index
             .iter()
             .map(|&index| {

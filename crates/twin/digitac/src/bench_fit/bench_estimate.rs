@@ -31,7 +31,7 @@ pub struct BenchEstimate {
 impl BenchEstimate {
     /// A bench that is exactly as described.
     #[must_use]
-    pub fn nominal() -> Self {
+    pub(crate) fn nominal() -> Self {
         Self {
             tip_radius_mm: None,
             contact_offset_mm: BTreeMap::new(),

@@ -90,7 +90,7 @@ impl Places {
     /// The same requests for a gel `stiffness` times as stiff as the simulated one, which has to be pressed with less or more force to
     /// be pressed as deep.
     #[must_use]
-    pub fn with_stiffness(mut self, stiffness: f64) -> Self {
+    pub(crate) fn with_stiffness(mut self, stiffness: f64) -> Self {
         for request in &mut self.requests {
             request.enough_force_n = request.enough_force_n.map(|force_n| force_n / stiffness);
         }
@@ -106,7 +106,7 @@ impl Places {
 
     /// The same requests with a tip of another radius.
     #[must_use]
-    pub fn with_tip_radius(mut self, tip_radius_mm: Option<f64>) -> Self {
+    pub(crate) fn with_tip_radius(mut self, tip_radius_mm: Option<f64>) -> Self {
         for request in &mut self.requests {
             request.tip_radius_mm = tip_radius_mm;
         }

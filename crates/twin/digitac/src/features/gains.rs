@@ -19,7 +19,7 @@ pub struct Gains {
 
 /// Time constants that fits start from, s: two are enough for barometers cast into rubber, one while the load
 /// moves and one in a hold.
-pub const TIME_CONSTANTS_S: [f64; 2] = [0.25, 4.0];
+pub(crate) const TIME_CONSTANTS_S: [f64; 2] = [0.25, 4.0];
 /// How far from its start a time constant is looked for, as a factor.
 const TIME_CONSTANT_REACH: f64 = 4.0;
 

@@ -4,7 +4,7 @@ mod gains;
 mod overstress;
 mod press_features;
 
-pub(crate) use gains::Sample;
-pub use gains::{Gains, TIME_CONSTANTS_S};
+pub use gains::Gains;
+pub(crate) use gains::{Sample, TIME_CONSTANTS_S};
 pub(crate) use overstress::matrix as overstress_matrix;
 pub use press_features::Features;

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
-use crate::{BenchEstimate, Evaluation, Gains, Normalization, Score, Split, TrainSettings, Twin, Variant};
+use crate::network::Normalization;
+use crate::{BenchEstimate, Evaluation, Gains, Score, Split, TrainSettings, Twin, Variant};
 
 /// A twin and its record.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ mod variant;
 
 pub(crate) use elastic::Pass;
 pub(crate) use matrix::Matrix;
-pub use normalization::Normalization;
+pub(crate) use normalization::Normalization;
 pub(crate) use parameters::{Parameters, Weights};
 pub(crate) use physics::Physics;
 pub use twin::Twin;

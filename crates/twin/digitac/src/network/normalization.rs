@@ -6,15 +6,15 @@ use crate::PairedPress;
 
 /// Scales of features and readings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Normalization {
+pub(crate) struct Normalization {
     /// Largest reading, kPa.
-    pub reading_kpa: f64,
+    pub(crate) reading_kpa: f64,
     /// Root mean square of the port pressures under load, kPa; `[n_taxels]`.
-    pub pressure_rms_kpa: Vec<f64>,
+    pub(crate) pressure_rms_kpa: Vec<f64>,
     /// Mean of the stress features, kPa/mm; `[n_taxels]`.
-    pub stress_mean_kpa_per_mm: Vec<f64>,
+    pub(crate) stress_mean_kpa_per_mm: Vec<f64>,
     /// Standard deviation of the stress features, kPa/mm; `[n_taxels]`.
-    pub stress_deviation_kpa_per_mm: Vec<f64>,
+    pub(crate) stress_deviation_kpa_per_mm: Vec<f64>,
 }
 
 impl Normalization {

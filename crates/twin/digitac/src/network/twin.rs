@@ -1,6 +1,6 @@
 //! A trained twin: from a simulated gel to what the barometers would read.
 
-use super::{Normalization, Parameters, Physics, Variant};
+use super::{Parameters, Physics, Variant};
 use crate::Features;
 use crate::features::Gains;
 
@@ -56,12 +56,6 @@ impl Twin {
     #[must_use]
     pub fn gains(&self) -> &Gains {
         &self.gains
-    }
-
-    /// The scales of its inputs and outputs.
-    #[must_use]
-    pub fn normalization(&self) -> &Normalization {
-        &self.physics.normalization
     }
 
     pub(crate) fn physics(&self) -> &Physics {

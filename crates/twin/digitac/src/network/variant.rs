@@ -46,13 +46,13 @@ impl Variant {
 
     /// Whether it has a multilayer perceptron.
     #[must_use]
-    pub fn has_perceptron(self) -> bool {
+    pub(crate) fn has_perceptron(self) -> bool {
         matches!(self, Self::Paper | Self::PressureMlp | Self::PressureMemoryMlp)
     }
 
     /// Whether it remembers earlier frames.
     #[must_use]
-    pub fn has_memory(self) -> bool {
+    pub(crate) fn has_memory(self) -> bool {
         matches!(self, Self::PressureMemory | Self::PressureMemoryMlp)
     }
 }

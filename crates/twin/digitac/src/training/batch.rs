@@ -261,9 +261,10 @@ mod tests {
     use rand::Rng;
 
     use super::*;
+    use crate::Variant;
     use crate::features::Gains;
+    use crate::network::Normalization;
     use crate::synthetic::by_hand;
-    use crate::{Normalization, Variant};
 
     fn physics(variant: Variant) -> Physics {
         Physics {
