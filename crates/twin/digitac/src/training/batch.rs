@@ -284,11 +284,12 @@ mod tests {
         }
     }
 
-    /// A press of `n_frames` whose features and readings wander, two taxels.
+    /// A press of `n_frames` whose features wander, two taxels. Its readings are far from any prediction, on both sides: the loss has a corner
+    /// where they meet.
     fn press(n_frames: usize, phase: f64) -> PairedPress {
         let wave = |i: usize, shift: f64| 1.0 + (0.7 * i as f64 + phase + shift).sin();
         let frames: Vec<_> = (0..n_frames)
-            .map(|i| (1.0, [wave(i, 0.3), wave(i, 1.9)]))
+            .map(|i| (1.0, if i % 2 == 0 { [20.0, -20.0] } else { [-20.0, 20.0] }))
             .collect();
         let mut press = by_hand("press", "file", [0.0, 0.0], &frames);
         let rows = |shift: f64| (0..n_frames).map(move |i| vec![wave(i, shift), wave(i, 2.0 * shift)]);
