@@ -1,4 +1,4 @@
-//! House rules and checks. `cargo xtask ci` lints and tests as `.ci/run` does, which first installs Python programs that some tests compare ours with:
+//! House rules and checks. `cargo xtask ci` lints, packages and tests as `.ci/run` does, which first installs Python programs that some tests compare ours with:
 //! where these are missing and `TWINTAC_PYTHON` is not set, those tests say so and look at nothing.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
@@ -9,12 +9,13 @@ use anyhow::Result;
 use xtask::cargo::{cargo, run};
 use xtask::{fuzz, readme, rooms};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | test | readme | rooms | bench softbody [--json] | bench scaling | bench peers | bench recording |
+const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | bench softbody [--json] | bench scaling | bench peers | bench recording |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
-  ci     lint, then test, as CI does; CI also installs the Python programs that some tests want
+  ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
+  package every crate that can be published, without building it again; nothing may be uncommitted
   test   every test, optimised
-  readme the commands of README.md, word for word; xtask/readme.toml says which are not run, and why
+  readme the commands of README.md and docs/guide.md in blocks that are tagged `sh`, word for word; those of `cargo test` last
   rooms  writes the tables of ARCHITECTURE.md from xtask/rooms.toml
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
@@ -27,8 +28,11 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | test | readme | rooms | ben
 fn main() -> ExitCode {
     let task = std::env::args().nth(1).unwrap_or_default();
     let result = match task.as_str() {
-        "ci" => lint().and_then(|()| test()),
+        "ci" => lint()
+            .and_then(|()| package())
+            .and_then(|()| readme::run(&xtask::root())),
         "lint" => lint(),
+        "package" => package(),
         "test" => test(),
         "readme" => readme::run(&xtask::root()),
         "rooms" => rooms::page::write(&xtask::root()),
@@ -58,6 +62,10 @@ fn lint() -> Result<()> {
         "--deny",
         "warnings",
     ])
+}
+
+fn package() -> Result<()> {
+    cargo(&["package", "--workspace", "--no-verify", "--quiet"])
 }
 
 fn test() -> Result<()> {

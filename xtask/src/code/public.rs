@@ -45,7 +45,13 @@ impl Words {
 }
 
 /// Public names of a library that nobody uses outside it, one text each.
-pub fn unused(sources: &Crate, graph: &Graph, words: &Words) -> Result<Vec<String>> {
+/// Methods of types that `passed_on` names are for strangers, and need no user here.
+pub fn unused(
+    sources: &Crate,
+    graph: &Graph,
+    words: &Words,
+    passed_on: &BTreeSet<String>,
+) -> Result<Vec<String>> {
     let folder = &graph.package(&sources.package)?.folder;
     let outside = words.outside(folder, sources);
     let mut exported = Exported::default();
@@ -82,6 +88,8 @@ pub fn unused(sources: &Crate, graph: &Graph, words: &Words) -> Result<Vec<Strin
         let place = &sources.files[sources.modules[module].file].path;
         if !named.contains(name) {
             found.push(format!("{place}:{}: `{name}`", item.line));
+        }
+        if !named.contains(name) || passed_on.contains(name) {
             continue;
         }
         for module in sources.modules.values() {
@@ -143,4 +151,11 @@ impl Exported {
             None => {}
         }
     }
+}
+
+/// Names of other crates that a library exports.
+pub fn passed_on(sources: &Crate) -> BTreeSet<String> {
+    let imports = sources.modules.values().flat_map(|module| &module.imports);
+    let public = imports.filter(|(_, (path, is_public))| *is_public && sources.resolve(&[], path).is_none());
+    public.map(|(name, _)| name.clone()).collect()
 }
