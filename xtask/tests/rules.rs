@@ -62,7 +62,6 @@ const NOT_YET: &[&str] = &[
     "sources::crates/sensor/recording::long_functions_say_why",
     "sources::crates/twin/calibrate::long_functions_say_why",
     "sources::crates/twin/report::long_functions_say_why",
-    "sources::digitac::library_has_no_circles",
     "sources::digitac::what_is_public_is_used",
     "sources::twintac-characterize::library_has_no_circles",
     "sources::twintac-characterize::what_is_public_is_used",
@@ -87,7 +86,6 @@ const NOT_YET: &[&str] = &[
     "sources::twintac-run::what_is_public_is_used",
     "sources::twintac-sensor::what_is_public_is_used",
     "sources::twintac-shape::library_has_no_circles",
-    "sources::twintac-simulate::what_is_public_is_used",
     "sources::twintac-softbody::what_is_public_is_used",
 ];
 
