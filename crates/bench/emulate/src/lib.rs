@@ -1,11 +1,11 @@
 //! The devices of a bench, emulated at the level of their protocols, with faults on demand.
 //!
-//! A sensor's eight barometers behind their I²C switch ([`i2c`]), a robot arm that listens on TCP ([`robot`]) and a force/torque sensor
-//! that streams by UDP ([`force`]) share one [`LabClock`] and one [`Workcell`]: where the robot's tool is, and what a [`Physics`] of the
-//! caller's says that is felt there. [`EmulatedBench`] puts them together.
+//! There are a sensor's eight barometers behind their I²C switch ([`i2c`]), a robot arm that listens on TCP ([`robot`]), and a force/torque
+//! sensor that streams by UDP ([`force`]). They share one [`LabClock`] and one [`Workcell`]. The workcell moves the robot's tool and asks a
+//! [`Physics`], which the caller provides, what the sensors feel there. [`EmulatedBench`] connects all of them.
 //!
-//! What devices report depends on times of the lab's clock and on seeds alone, and not on how often or in which order they are asked.
-//! In virtual time the whole bench therefore repeats itself bit for bit, as far as requests come at the same times of that clock.
+//! What devices report depends only on times of the lab's clock and on seeds, and not on how often or in which order they are asked.
+//! In virtual time the whole bench therefore repeats itself bit for bit, if requests come at the same times of that clock.
 //!
 //! ```
 //! use embedded_hal::i2c::I2c;

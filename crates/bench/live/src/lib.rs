@@ -1,7 +1,7 @@
-//! Seeing touch: frames of a sensor as they come, as rows of text or as a dashboard on the terminal.
+//! Frames of a sensor as they come: as rows of text, or as a dashboard on the terminal.
 //!
-//! A [`FrameSource`] reads a sensor on a thread of its own and hands frames out through a bounded channel; what does not fit is counted as
-//! missed, and the bus waits for nobody. The sensor stands on any bus of `embedded_hal`: `/dev/i2c-N` of Linux, or an
+//! A [`FrameSource`] reads a sensor on a thread of its own and hands its frames out through a bounded channel. Frames that do not fit are counted
+//! as missed: the bus waits for nobody. The sensor is on any bus of `embedded_hal`: `/dev/i2c-N` of Linux, or an
 //! emulated one ([`emulated_phystac`]). [`stream_rows`] writes rows, [`dashboard::run`] draws.
 //!
 //! ```

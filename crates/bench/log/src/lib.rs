@@ -1,10 +1,10 @@
 //! Records what a bench streams, as it happens, and reads it back as presses.
 //!
-//! A log is an MCAP file with ROS 2 messages, which Foxglove, Rerun and `ros2 bag` open: tactile frames, wrenches, robot poses
-//! and events, all stamped on one bench clock, beside each source's own. It is flushed at least every second: a file that was
-//! cut anywhere is readable up to there, and [`recover`] makes it whole. [`Recorder`] writes it on a thread of its own,
-//! [`LogReader`] reads it, and [`read_presses`] makes a [`Recording`](twintac_recording::Recording) of it, to be stored as
-//! Parquet and learned from.
+//! A log is an MCAP file with ROS 2 messages, which Foxglove, Rerun and `ros2 bag` open. It holds tactile frames, wrenches, robot poses
+//! and events. Each message has a time of the bench's clock, beside the time of its source's own clock. The file is flushed at least every
+//! second: a log that a power cut ended can be read up to the last flush, and [`recover`] completes it. [`Recorder`] writes a log on a thread
+//! of its own, [`LogReader`] reads it, and [`read_presses`] makes a [`Recording`](twintac_recording::Recording) of it, which can be
+//! stored as Parquet and learned from.
 //!
 //! ```
 //! # use std::path::Path;

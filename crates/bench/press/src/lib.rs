@@ -1,9 +1,11 @@
 //! Carries out a press protocol on a bench.
 //!
-//! [`Motion`] turns one planned press into servo poses: travel above the gel, a slow approach until first touch, depth counted from
-//! there, hold, retreat. [`Streams`] hears all devices, each on a thread of its own and stamped on one bench clock. [`Runner`] takes
-//! press after press through one loop: what was heard goes to the log and to the [`Supervisor`](twintac_rig::Supervisor) first, and a pose goes
-//! out only if that lets it. Each press is a log of its own, so that a run that ended goes on with the first press that is not done.
+//! [`Motion`] turns one planned press into servo poses: travel above the gel, a slow approach until first touch, the depth counted from
+//! there, hold, and return. [`Streams`] hears all devices, each on a thread of its own, and gives every message a time of one bench clock.
+//! [`Runner`] carries out press after press. In each servo period, what was heard goes to the log and to the
+//! [`Supervisor`](twintac_rig::Supervisor) first, and a pose is sent only if the supervisor allows it. There is no runner without checked
+//! limits: [`Runner::new`] refuses settings that make no sense, and a real bench whose devices may be silent for too long.
+//! Each press has a log of its own, so that a run that was stopped continues with the first press that is not done.
 //! [`dry_run`] says what would be done, and how long it would take.
 
 mod arm;

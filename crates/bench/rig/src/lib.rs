@@ -1,8 +1,9 @@
-//! The clients of a real bench: robot arm, force/torque sensor, wrench sources and the safety supervisor.
+//! The clients of a real bench: robot arm, force/torque sensor, other sources of wrenches, and the safety supervisor.
 //!
-//! Each device is a codec without input and output (bytes in, values out, and back: an emulator uses the same), what
-//! must be remembered between messages, and a thin transport over `std::net`. The [`Supervisor`] is pure as well: it is
-//! told what the devices say and when, and decides in each servo period whether the next pose may go out.
+//! Each device has three parts: a codec without input and output, which turns bytes into values and values into bytes and which
+//! emulators use as well; the state that must be kept between messages; and a thin transport over `std::net`. The [`Supervisor`] has no input
+//! and output either: it is told what the devices say and when, and it decides in each servo period whether the next pose may be sent. NaN
+//! counts as beyond every limit.
 //!
 //! Lengths are in mm, forces in N, torques in N mm, angles in radians, times in seconds of the [`BenchClock`].
 

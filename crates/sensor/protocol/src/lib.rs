@@ -1,8 +1,7 @@
 //! The press protocol: which indenter, where, how deep, how fast.
 //!
-//! A protocol is a TOML file that people write; [`Protocol::plan`] turns it into presses. What is drawn at
-//! random in a press depends on the seed and the press's name alone. A [`Load`] puts weights on instead. A [`PressPath`] takes one indenter through given poses
-//! and forces.
+//! A protocol is a TOML file that people write; [`Protocol::plan`] turns it into presses. What is drawn at random in a press depends on the seed
+//! and on the press's name only. A [`Load`] puts weights on the gel instead. A [`PressPath`] moves one indenter through given poses and forces.
 
 mod load;
 mod part;

@@ -1,6 +1,6 @@
-//! The schema of recordings and paired frames; Parquet and CSV.
+//! Recordings of presses: their schema, Parquet files, and CSV files of other labs.
 //!
-//! A press is the unit of work: a named indenter, a time-stamped pose, and what was measured or simulated meanwhile.
+//! A press is the unit of work: a named indenter, a pose with a time, and what was measured or simulated meanwhile.
 
 mod append;
 mod check;

@@ -142,7 +142,7 @@ impl Collected {
     }
 }
 
-/// Forces along the axis of the description, less the last tare's. Readings that are no numbers are missing.
+/// Forces along the axis of the description, less the last tare's. Readings that are NaN are missing.
 fn forces(
     wrenches: &[(u64, WrenchReading)],
     events: &[(u64, Event)],
@@ -174,7 +174,7 @@ fn forces(
     forces
 }
 
-/// Where the indenter stands in the gel's frame. Poses that are no numbers are missing.
+/// Where the indenter stands in the gel's frame. Poses that are NaN are missing.
 fn gel_from_indenter(poses: &[(u64, PoseReading)], description: &Description) -> Vec<(u64, Pose, bool)> {
     let gel = &description.base_from_gel;
     let indenter = &description.tool_from_indenter;

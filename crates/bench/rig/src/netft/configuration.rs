@@ -31,7 +31,7 @@ impl Configuration {
     /// Reads the page; `file` names it in errors.
     ///
     /// # Errors
-    /// Text that is not the page, an element that is missing, a number that is none or not above zero, an unknown unit.
+    /// Text that is not the page, an element that is missing, a number that cannot be read or is not above zero, an unknown unit.
     pub fn parse(file: &str, text: &str) -> Result<Self, RigError> {
         let document = roxmltree::Document::parse(text)
             .map_err(|found| RigError::file(file, format!("is not XML: {found}")))?;

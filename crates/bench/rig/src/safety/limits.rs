@@ -76,7 +76,7 @@ pub struct Setup {
 }
 
 impl Workspace {
-    /// Whether a position is inside, to within a tolerance in mm; one that is no number is not.
+    /// Whether a position is inside, to within a tolerance in mm; NaN is not.
     #[must_use]
     pub fn contains(&self, position_mm: DVec3, tolerance_mm: f64) -> bool {
         position_mm.cmpge(self.min_mm - tolerance_mm).all()

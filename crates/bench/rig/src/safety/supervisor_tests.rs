@@ -384,7 +384,7 @@ proptest! {
                 }
             }
             if before.is_some() {
-                // By their words: a cause may hold a number that is none, and is then unequal to itself.
+                // By their words: a cause may hold NaN, and is then unequal to itself.
                 prop_assert_eq!(supervisor.cause().map(ToString::to_string), before.map(|cause| cause.to_string()));
             }
         }

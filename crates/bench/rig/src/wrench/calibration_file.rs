@@ -13,7 +13,7 @@ impl AnalogCalibration {
     /// `BasicTransform` already. The bias is zero: take it from voltages without load ([`AnalogCalibration::with_bias`]).
     ///
     /// # Errors
-    /// Text that is no such file; an element, an attribute or an axis that is missing; numbers that are none; unknown units.
+    /// Text that is no such file; an element, an attribute or an axis that is missing; numbers that cannot be read; unknown units.
     pub fn parse_cal(file: &str, text: &str) -> Result<Self, RigError> {
         let document =
             Document::parse(text).map_err(|found| RigError::file(file, format!("is not XML: {found}")))?;

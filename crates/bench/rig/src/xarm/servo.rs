@@ -36,7 +36,7 @@ impl<W: Wire> Client<W> {
     /// sooner, after 2 ms at the soonest. After any error the stream has ended, and the robot holds the last pose that it took.
     ///
     /// # Errors
-    /// Those of [`Client::hear`]; a pose that is no number, too far from the last one or too fast; no stream begun.
+    /// Those of [`Client::hear`]; a pose with a NaN, too far from the last one or too fast; no stream begun.
     pub fn servo(&mut self, pose: &TcpPose) -> Result<(), RigError> {
         if let Some(servo) = self.servo {
             std::thread::sleep(servo.due.saturating_duration_since(Instant::now()));

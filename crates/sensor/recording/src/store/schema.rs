@@ -41,10 +41,11 @@ pub(super) const COUNTS: &str = "_counts";
 pub(super) const TEMPERATURE_C: &str = "_temperature_c";
 pub(super) const FAULT: &str = "_fault";
 
-/// The columns of a recording, in the order of the file.
-pub(super) fn schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
+/// The columns of a recording, in the order of the file. `mounting` is what the column [`MOUNTING`] is called.
+pub(super) fn schema(taxels: &[String], mounting: &str) -> Result<TypePtr, ParquetError> {
     let mut columns = vec![required(PRESS_INDEX, Physical::INT32)?];
     for name in TEXTS {
+        let name = if name == MOUNTING { mounting } else { name };
         columns.push(required(name, Physical::BYTE_ARRAY)?);
     }
     for name in [TIME].into_iter().chain(POSE) {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use twintac_shape::Pose;
 
+use super::schema;
 use crate::{Control, Press, Provenance, Recording};
 
 fn recording() -> Recording {
@@ -36,7 +37,7 @@ fn read(bytes: &[u8]) -> Result<Recording, String> {
 /// What reading says after every occurrence of some bytes was replaced by as many others.
 fn error_with(old: &[u8], new: &[u8]) -> String {
     assert_eq!(old.len(), new.len());
-    let mut bytes = recording().to_parquet().unwrap();
+    let mut bytes = recording().to_parquet(schema::MOUNTING).unwrap();
     let places: Vec<usize> = (0..bytes.len())
         .filter(|&at| bytes[at..].starts_with(old))
         .collect();
@@ -52,7 +53,17 @@ fn error_with(old: &[u8], new: &[u8]) -> String {
 
 #[test]
 fn a_file_without_a_seal_is_read() {
-    assert_eq!(read(&recording().to_parquet().unwrap()).unwrap(), recording());
+    assert_eq!(
+        read(&recording().to_parquet(schema::MOUNTING).unwrap()).unwrap(),
+        recording()
+    );
+}
+
+#[test]
+fn the_mounting_may_have_its_old_name() {
+    let old = recording().to_parquet(schema::OLD_MOUNTING).unwrap();
+    assert!(!old.windows(8).any(|bytes| bytes == b"mounting"));
+    assert_eq!(read(&old).unwrap(), recording());
 }
 
 #[test]
@@ -86,7 +97,7 @@ fn impossible_numbers_are_named() {
 
 #[test]
 fn no_altered_byte_makes_the_reader_panic() {
-    let whole = recording().to_parquet().unwrap();
+    let whole = recording().to_parquet(schema::MOUNTING).unwrap();
     for place in 0..whole.len() {
         let mut bytes = whole.clone();
         bytes[place] ^= [0x01, 0x80, 0xff][place % 3];

@@ -28,12 +28,13 @@ impl Recording {
     pub fn write_parquet(&self, path: &Path) -> Result<(), RecordingError> {
         self.check()?;
         let problem = |e: ParquetError| RecordingError::write(path, std::io::Error::other(e));
-        let bytes = self.to_parquet().map_err(problem)?;
+        let bytes = self.to_parquet(schema::MOUNTING).map_err(problem)?;
         let bytes = seal::seal(bytes).map_err(|e| RecordingError::write(path, std::io::Error::other(e)))?;
         twintac_files::write_whole(path, &bytes).map_err(|source| RecordingError::write(path, source))
     }
 
-    pub(super) fn to_parquet(&self) -> Result<Vec<u8>, ParquetError> {
+    /// The bytes of a file, without a seal; `mounting` is what the column of the mounting is called.
+    pub(super) fn to_parquet(&self, mounting: &str) -> Result<Vec<u8>, ParquetError> {
         let pair = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::UNCOMPRESSED)
@@ -48,7 +49,8 @@ impl Recording {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
         let properties = Arc::new(properties.build());
-        let mut writer = SerializedFileWriter::new(Vec::new(), schema::schema(&self.taxels)?, properties)?;
+        let mut writer =
+            SerializedFileWriter::new(Vec::new(), schema::schema(&self.taxels, mounting)?, properties)?;
         self.put_columns(writer.next_row_group()?)?;
         writer.into_inner()
     }
