@@ -52,7 +52,16 @@ fn streaming(
     let server = ForceServer::start(workcell(clock), settings, faults).unwrap();
     let mut client = Client::connect(server.requests(), configuration(&server)).unwrap();
     client.set_patience(LATEST);
-    client.start(buffered).unwrap();
+    std::thread::scope(|scope| {
+        let started = scope.spawn(|| client.start(buffered).unwrap());
+        while !started.is_finished() {
+            // The first datagram is sent when its records are measured. In virtual time somebody has to wait for them.
+            std::thread::sleep(Duration::from_millis(100));
+            if buffered {
+                clock.wait_s(0.01);
+            }
+        }
+    });
     (server, client)
 }
 
