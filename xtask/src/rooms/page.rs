@@ -7,9 +7,11 @@ use anyhow::{Context, Result, ensure};
 
 use super::{Rooms, Term};
 
-/// Each part's name; it stands between `<!-- rooms: NAME -->` and `<!-- end -->`.
-const PARTS: [(&str, fn(&Rooms) -> String); 3] =
-    [("table", table), ("terms", terms), ("invariants", invariants)];
+/// A part's name, and what it says.
+type Part = (&'static str, fn(&Rooms) -> String);
+
+/// Each part stands between `<!-- rooms: NAME -->` and `<!-- end -->`.
+const PARTS: [Part; 3] = [("table", table), ("terms", terms), ("invariants", invariants)];
 
 /// Writes the parts of ARCHITECTURE.md anew.
 pub fn write(root: &Path) -> Result<()> {
