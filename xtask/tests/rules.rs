@@ -68,9 +68,6 @@ const NOT_YET: &[&str] = &[
     "sources::twintac-log::library_has_no_circles",
     "sources::twintac-map::library_has_no_circles",
     "sources::twintac-map::what_is_public_is_used",
-    "sources::twintac-material::library_has_no_circles",
-    "sources::twintac-material::what_is_public_is_used",
-    "sources::twintac-mesh::what_is_public_is_used",
     "sources::twintac-plot::library_has_no_circles",
     "sources::twintac-plot::what_is_public_is_used",
     "sources::twintac-press::what_is_public_is_used",
@@ -80,7 +77,6 @@ const NOT_YET: &[&str] = &[
     "sources::twintac-rig::what_is_public_is_used",
     "sources::twintac-sensor::what_is_public_is_used",
     "sources::twintac-shape::library_has_no_circles",
-    "sources::twintac-softbody::what_is_public_is_used",
 ];
 
 /// A test that ends well if `check` does.

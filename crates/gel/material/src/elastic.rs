@@ -1,4 +1,4 @@
-//! What every model says of itself.
+//! What every model provides.
 
 use crate::{Law, MaterialError};
 
@@ -15,7 +15,7 @@ pub trait Elastic: Sized {
     /// Constants of a soft silicone, with a shear modulus of about 23 kPa: what tests of all models use.
     fn example() -> Self;
 
-    /// Refuses constants that make no material.
+    /// Refuses constants that are not those of a material.
     ///
     /// # Errors
     /// The first constant that is wrong.
@@ -24,11 +24,11 @@ pub trait Elastic: Sized {
     /// Shear modulus at small strain, kPa.
     fn shear_modulus_kpa(&self) -> f64;
 
-    /// The constants for people to read, beyond what the shear modulus says: `C10 8 kPa, C01 3.5 kPa`. May be empty.
+    /// The constants besides the shear modulus, for people to read: `C10 8 kPa, C01 3.5 kPa`. May be empty.
     fn in_words(&self) -> String;
 
-    /// The modulus κ that the mean volume change has to act with, kPa, so that the bulk modulus at small strain is the one given: less than that
-    /// by what the law itself opposes to a change of volume. Positive in a material that can be.
+    /// The modulus κ of the mean volume change, kPa, with which the bulk modulus at small strain is the one given: the difference between that and
+    /// the law's own resistance to a change of volume. Positive for a valid material.
     fn volume_modulus_kpa(&self, bulk_modulus_kpa: f64) -> f64 {
         bulk_modulus_kpa
     }

@@ -1,6 +1,6 @@
-//! What can be wrong with a material.
+//! Errors of this crate.
 
-/// A constant that makes no material.
+/// An invalid constant.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{field}` {problem}; {hint}")]
 pub struct MaterialError {
@@ -13,7 +13,7 @@ pub struct MaterialError {
 }
 
 impl MaterialError {
-    /// A value that is not what it has to be.
+    /// A value that is not as expected.
     pub(crate) fn value(field: impl Into<String>, found: f64, expected: &str) -> Self {
         Self {
             field: field.into(),

@@ -7,7 +7,7 @@ use crate::wide::{Real, Wide};
 pub struct Invariants<T> {
     /// `I1`
     pub first: Wide<T>,
-    /// `I2`; zero for laws that do not ask for it.
+    /// `I2`; zero for laws that do not use it.
     pub second: Wide<T>,
     /// `J`
     pub volume_ratio: Wide<T>,
@@ -20,13 +20,13 @@ pub struct Invariants<T> {
 pub struct Slopes<T> {
     /// In `I1`.
     pub first: Wide<T>,
-    /// In `I2`; counts only if the law uses it.
+    /// In `I2`; read only if the law uses it.
     pub second: Wide<T>,
     /// In `J`.
     pub volume: Wide<T>,
 }
 
-/// Second derivatives of an energy in the invariants; those in `I2` count only if the law uses it, those in `I1` and `I2` alone only if it is
+/// Second derivatives of an energy in the invariants. Those in `I2` are read only if the law uses it, those in `I1` and `I2` alone only if the law is
 /// curved.
 #[derive(Clone, Copy, Debug)]
 pub struct Curvatures<T> {
@@ -45,7 +45,7 @@ pub struct Curvatures<T> {
 }
 
 impl<T: Real> Slopes<T> {
-    /// Those of no energy.
+    /// All zero.
     #[inline(always)]
     #[must_use]
     pub fn none() -> Self {
@@ -59,7 +59,7 @@ impl<T: Real> Slopes<T> {
 }
 
 impl<T: Real> Curvatures<T> {
-    /// Those of no energy.
+    /// All zero.
     #[inline(always)]
     #[must_use]
     pub fn none() -> Self {

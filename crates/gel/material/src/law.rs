@@ -1,18 +1,18 @@
-//! What the finite elements ask of a material: its energy and the derivatives.
+//! A material's law: its energy and the derivatives, as finite elements need them.
 
 use crate::wide::{Real, Wide};
-use crate::{Curvatures, Invariants, NoStretches, Slopes, StretchLaw};
+use crate::{Curvatures, Invariants, Slopes, StretchLaw};
 
-/// The energy per volume at rest of everything but the mean volume change: `W(I1, I2, J)`, and what a [`StretchLaw`] adds. Zero, with its slope
-/// in any deformation, at rest.
+/// The energy per volume at rest, without the part of the mean volume change: `W(I1, I2, J)`, and the part of a [`StretchLaw`]. At rest the energy is
+/// zero and a minimum.
 pub trait Law: Copy + Sync {
-    /// What it adds in the isochoric principal stretches.
+    /// The type of its part in the isochoric principal stretches.
     type Stretches: StretchLaw;
     /// Whether it depends on `I2`.
     const USES_SECOND: bool;
     /// Whether any of its second derivatives in `I1` and `I2` is other than zero.
     const IS_CURVED: bool;
-    /// Whether only the change of shape counts, so that its stress has no hydrostatic part.
+    /// Whether it depends on the change of shape alone, so that its stress has no hydrostatic part.
     const IS_ISOCHORIC: bool;
     /// Whether it is defined, and smooth, at `J <= 0`.
     const BEARS_INVERSION: bool;
@@ -26,11 +26,11 @@ pub trait Law: Copy + Sync {
     /// Its second derivatives.
     fn curvatures<T: Real>(&self, at: &Invariants<T>) -> Curvatures<T>;
 
-    /// What it adds in the stretches.
+    /// Its part in the stretches.
     fn stretches(&self) -> Option<Self::Stretches>;
 }
 
-/// What is known of a law before it is evaluated. It tells a solver what to compute.
+/// What a solver has to know of a law before it evaluates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LawProperties {
     /// See [`Law::USES_SECOND`].
@@ -56,97 +56,5 @@ impl LawProperties {
             bears_inversion: L::BEARS_INVERSION,
             uses_stretches: law.stretches().is_some(),
         }
-    }
-}
-
-/// An energy of the change of shape: a function of `Ī1 = J^(-2/3) I1` and `Ī2 = J^(-4/3) I2`.
-pub trait IsochoricLaw: Copy + Sync {
-    /// Whether it depends on `Ī2`.
-    const USES_SECOND: bool;
-    /// Whether any of its second derivatives is other than zero.
-    const IS_CURVED: bool;
-
-    /// The energy.
-    fn energy<T: Real>(&self, first: Wide<T>, second: Wide<T>) -> Wide<T>;
-
-    /// Its derivatives in `Ī1` and `Ī2`.
-    fn slopes<T: Real>(&self, first: Wide<T>, second: Wide<T>) -> [Wide<T>; 2];
-
-    /// Its second derivatives: in `Ī1` twice, in both, in `Ī2` twice.
-    fn curvatures<T: Real>(&self, first: Wide<T>, second: Wide<T>) -> [Wide<T>; 3];
-}
-
-/// The law that an isochoric one is by the chain rule.
-#[derive(Clone, Copy, Debug)]
-pub struct Isochoric<L>(pub L);
-
-#[inline(always)]
-fn isochoric_invariants<T: Real>(at: &Invariants<T>) -> [Wide<T>; 2] {
-    [at.isochoric * at.first, at.isochoric * at.isochoric * at.second]
-}
-
-impl<L: IsochoricLaw> Law for Isochoric<L> {
-    type Stretches = NoStretches;
-    const USES_SECOND: bool = L::USES_SECOND;
-    const IS_CURVED: bool = L::IS_CURVED;
-    const IS_ISOCHORIC: bool = true;
-    const BEARS_INVERSION: bool = false;
-
-    #[inline(always)]
-    fn energy<T: Real>(&self, at: &Invariants<T>) -> Wide<T> {
-        let [first, second] = isochoric_invariants(at);
-        self.0.energy(first, second)
-    }
-
-    #[inline(always)]
-    fn slopes<T: Real>(&self, at: &Invariants<T>) -> Slopes<T> {
-        let [first, second] = isochoric_invariants(at);
-        let [in_first, in_second] = self.0.slopes(first, second);
-        let mut volume = in_first * first * Wide::splat(-2.0 / 3.0);
-        if L::USES_SECOND {
-            volume += in_second * second * Wide::splat(-4.0 / 3.0);
-        }
-        Slopes {
-            first: in_first * at.isochoric,
-            second: in_second * at.isochoric * at.isochoric,
-            volume: volume / at.volume_ratio,
-        }
-    }
-
-    #[inline(always)]
-    fn curvatures<T: Real>(&self, at: &Invariants<T>) -> Curvatures<T> {
-        let [first, second] = isochoric_invariants(at);
-        let [in_first, in_second] = self.0.slopes(first, second);
-        let inverse = Wide::splat(1.0) / at.volume_ratio;
-        // Derivatives of Ī1 and Ī2 in I1, I2 and J.
-        let (scale_1, scale_2) = (at.isochoric, at.isochoric * at.isochoric);
-        let volume_1 = first * inverse * Wide::splat(-2.0 / 3.0);
-        let volume_2 = second * inverse * Wide::splat(-4.0 / 3.0);
-        let mut found = Curvatures {
-            first_first: Wide::zero(),
-            first_second: Wide::zero(),
-            second_second: Wide::zero(),
-            first_volume: in_first * scale_1 * inverse * Wide::splat(-2.0 / 3.0),
-            second_volume: in_second * scale_2 * inverse * Wide::splat(-4.0 / 3.0),
-            volume_volume: in_first * first * inverse * inverse * Wide::splat(10.0 / 9.0)
-                + in_second * second * inverse * inverse * Wide::splat(28.0 / 9.0),
-        };
-        if L::IS_CURVED {
-            let [both_1, mixed, both_2] = self.0.curvatures(first, second);
-            found.first_first += both_1 * scale_1 * scale_1;
-            found.first_second += mixed * scale_1 * scale_2;
-            found.second_second += both_2 * scale_2 * scale_2;
-            found.first_volume += scale_1 * (both_1 * volume_1 + mixed * volume_2);
-            found.second_volume += scale_2 * (both_2 * volume_2 + mixed * volume_1);
-            found.volume_volume += both_1 * volume_1 * volume_1
-                + mixed * volume_1 * volume_2 * Wide::splat(2.0)
-                + both_2 * volume_2 * volume_2;
-        }
-        found
-    }
-
-    #[inline(always)]
-    fn stretches(&self) -> Option<NoStretches> {
-        None
     }
 }

@@ -1,4 +1,4 @@
-//! A material: model, bulk modulus, and what fades.
+//! A material: model, bulk modulus and relaxation.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,27 +9,27 @@ use crate::{MaterialError, Model, NeoHookean};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Answer to a sudden change of shape.
+    /// Response to a sudden change of shape.
     pub model: Model,
     /// Bulk modulus at small strain, kPa.
     pub bulk_modulus_kpa: f64,
-    /// How the answer to a change of shape fades; empty for an elastic material.
+    /// Relaxation of the deviatoric stress; empty for an elastic material.
     #[serde(default)]
     pub prony: Vec<PronyTerm>,
 }
 
-/// One term of a Prony series: this part of the instantaneous stress fades with this time constant.
+/// One term of a Prony series: this part of the instantaneous stress relaxes with this time constant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PronyTerm {
-    /// Part of the instantaneous deviatoric stress that fades, in (0, 1); the sum over all terms stays below 1.
+    /// Part of the instantaneous deviatoric stress that relaxes, in (0, 1); the sum over all terms stays below 1.
     pub weight: f64,
     /// Time constant, s.
     pub time_s: f64,
 }
 
 impl Material {
-    /// A neo-Hookean material from what it does at small strain: Young's modulus, kPa, and Poisson's ratio below 1/2.
+    /// A neo-Hookean material from its constants at small strain: Young's modulus, kPa, and Poisson's ratio below 1/2.
     #[must_use]
     pub fn neo_hookean(youngs_modulus_kpa: f64, poissons_ratio: f64) -> Self {
         Self {
@@ -47,7 +47,7 @@ impl Material {
         self.model.volume_modulus_kpa(self.bulk_modulus_kpa)
     }
 
-    /// Refuses constants that make no material.
+    /// Refuses constants that are not those of a material.
     ///
     /// # Errors
     /// The first constant that is wrong.

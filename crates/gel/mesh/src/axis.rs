@@ -3,7 +3,7 @@
 use crate::size::SizeField;
 use crate::{MeshError, Stretch};
 
-/// A focus as one axis sees it.
+/// The extent of a focus along one axis.
 pub(crate) struct Core<'a> {
     pub(crate) center_mm: f64,
     pub(crate) radius_mm: f64,
@@ -12,16 +12,16 @@ pub(crate) struct Core<'a> {
     pub(crate) stretches: &'a [Stretch],
 }
 
-/// Lines across one axis: where the contact wants them, and where the inclusions want them.
+/// The lines across one axis, in two versions: ideal for the contact, and snapped to the faces of the inclusions.
 ///
-/// The two can't agree in a tensor grid, as an inclusion's face may lie anywhere under the press. So the ideal lines hold in the
-/// upper gel, the snapped ones from the board to the top of the inclusions, and in between the lines lean.
+/// One tensor grid cannot have both, as the face of an inclusion may lie anywhere under the press. So the ideal lines are used in the upper gel,
+/// the snapped ones from the board to the top of the inclusions, and in between the lines lean from one to the other.
 pub(crate) struct Axis {
     /// Lines laid outwards from the focus, mm.
     pub(crate) ideal_mm: Vec<f64>,
     /// The same lines, moved so that one lies in each face of the inclusions, mm.
     pub(crate) snapped_mm: Vec<f64>,
-    /// The line about which cells are cut in mirrored ways.
+    /// The line about which the cuts of cells are mirrored.
     pub(crate) mirror: usize,
 }
 
@@ -60,7 +60,7 @@ impl Axis {
         })
     }
 
-    /// Position of a line where the inclusions have the given say, from 0 to 1.
+    /// Position of a line where the snapped version has this weight, from 0 to 1.
     pub(crate) fn at_mm(&self, line: usize, inclusion_share: f64) -> f64 {
         self.ideal_mm[line] + inclusion_share * (self.snapped_mm[line] - self.ideal_mm[line])
     }
@@ -72,7 +72,7 @@ impl Axis {
 }
 
 impl Core<'_> {
-    /// Lines across the focus, evenly spaced but for its stretches; those left out that would be within half an edge of an end.
+    /// Lines across the focus, evenly spaced except in its stretches, without those within half an edge of an end of the axis.
     fn lines_mm(&self, [low_mm, high_mm]: [f64; 2]) -> Result<Vec<f64>, MeshError> {
         let [below_mm, above_mm] = [self.side_mm(-1.0)?, self.side_mm(1.0)?];
         let offsets_mm = below_mm
@@ -143,7 +143,7 @@ fn choose(lines_mm: &[f64], faces_mm: &[f64], mirror: usize) -> Vec<usize> {
     let n = lines_mm.len();
     let cost = |line: usize, face_mm: f64| {
         let inward = (lines_mm[line] - lines_mm[mirror]).abs() < (face_mm - lines_mm[mirror]).abs();
-        // Of two equally near lines the outer one, on both sides of the mirror.
+        // Of two equally near lines the outer one is taken, on both sides of the mirror line.
         (lines_mm[line] - face_mm).powi(2) * if inward { 1.0 + 1e-9 } else { 1.0 }
     };
     // best[f][l]: least cost of the first f faces with lines below l; came[f][l]: the line of face f then.

@@ -1,4 +1,4 @@
-//! Blocks whose nodes lie exactly where one wants them: for checks against closed forms and other codes.
+//! Blocks with nodes at given coordinates, for checks against closed forms and other codes.
 
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ pub fn graded(edge: f64, fine: f64, growth: f64, to: f64) -> Vec<f64> {
         at += step;
         values.push(at);
     }
-    // Fit the last value to the end.
+    // Stretch the graded part so that the last value is `to`.
     let last = values[values.len() - 1];
     let scale_from = fine.min(to);
     for value in &mut values {
@@ -84,7 +84,7 @@ pub fn block(x_mm: &[f64], y_mm: &[f64], z_mm: &[f64]) -> TetMesh {
     mesh
 }
 
-/// Bonds the boundary nodes at these places and no others; the rest of the boundary is free.
+/// Bonds the boundary nodes at these positions and no others; the rest of the boundary is free.
 pub fn bond(mesh: &mut TetMesh, is_bonded: impl Fn(DVec3) -> bool) {
     let bonded: Vec<bool> = mesh.nodes_mm.iter().map(|&at| is_bonded(at)).collect();
     mesh.name_nodes(|node| bonded[node as usize]);

@@ -1,11 +1,11 @@
-//! What can go wrong.
+//! Errors of this crate.
 
 use glam::DVec3;
 
 /// A mesh that can't be made or read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    /// A setting that makes no sense.
+    /// An invalid setting.
     #[error("`{field}` is {found}, expected {expected}")]
     Setting {
         /// The offending field.
@@ -15,7 +15,7 @@ pub enum MeshError {
         /// What was found.
         found: String,
     },
-    /// A solid that can't be.
+    /// An invalid solid.
     #[error("the gel's {0}")]
     Solid(#[from] twintac_shape::ShapeError),
     /// An inclusion that is not a box inside the solid.
@@ -44,7 +44,7 @@ pub enum MeshError {
         /// What was found.
         found: String,
     },
-    /// The mesh would be larger than the generator is willing to make.
+    /// The mesh would be larger than the limit of the generator.
     #[error("the mesh would have {found} lattice points, at most {most} are made; increase `edge_mm`")]
     TooFine {
         /// Lattice points of the wanted mesh.

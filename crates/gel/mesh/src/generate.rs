@@ -1,4 +1,4 @@
-//! From a solid to a mesh.
+//! Generating a mesh of a solid.
 
 use twintac_shape::{SignedDistance, Solid, Surfaces};
 
@@ -8,7 +8,7 @@ use crate::quality::{check_volumes, least_dihedral_deg};
 use crate::region::Region;
 use crate::{Cuboid, MeshError, MeshSettings, TetMesh, grid, stuffing};
 
-/// Part of the volume of a regular tetrahedron with the same longest edge that every tetrahedron has.
+/// Least volume of a tetrahedron, as part of that of a regular one with the same longest edge.
 const LEAST_VOLUME_SHARE: f64 = 1e-3;
 
 /// Smallest dihedral angle of a stuffed mesh that needs no second try, degrees.
@@ -23,8 +23,8 @@ const OFF_BOARD_MM: f64 = 0.01;
 /// their path, must be closed and stand on z = 0, and are meshed by isosurface stuffing. The same input gives the same mesh, bit for bit.
 ///
 /// # Errors
-/// Settings, solids or inclusions that make no sense; more than 20 million lattice points; a tetrahedron that came out flat, as where
-/// faces of inclusions lie almost in line along two axes: those closer than a twentieth of the shortest edge are merged, others not.
+/// Invalid settings, solids or inclusions; more than 20 million lattice points; a flat tetrahedron, as where faces of inclusions are almost
+/// aligned along two axes: faces closer than a twentieth of the shortest edge are merged, others are not.
 pub fn generate(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -77,8 +77,8 @@ fn stuff(
     for (index, inclusion) in inclusions.iter().enumerate() {
         inclusion.check(index, [low_mm, high_mm], high_mm.z)?;
     }
-    // Where a surface happens to graze lattice points, a slightly different lattice does better, and upright lines do where narrow
-    // cells between inclusions lean over their neighbours.
+    // Where a surface nearly touches lattice points, a slightly different lattice gives better angles; where narrow cells between
+    // inclusions lean over their neighbours, upright lines do.
     let mut best: Option<(f64, TetMesh)> = None;
     for factor in [1.0, 0.97, 1.03, 0.94, 1.06] {
         // The lattice has two points a cell.
@@ -107,8 +107,8 @@ fn stuff(
 /// settings with the edge lengths that were found.
 ///
 /// # Errors
-/// Those of [`generate`]; [`MeshError::NodeCount`] where no factor gives such a number: lines come and go as a whole, often two at a
-/// time or along several axes at once, which is a large step where there are few.
+/// Those of [`generate`], and [`MeshError::NodeCount`] where no factor gives such a number: lines are added as a whole, often two at a time or
+/// along several axes at once, which is a large step where there are few.
 pub fn generate_with_node_count(
     solid: &Solid,
     surfaces: &Surfaces,
@@ -146,7 +146,7 @@ fn search(
         }
         Ok::<_, MeshError>((n_nodes, best))
     };
-    // The count goes roughly with the cube of the edge length, in jumps: follow that, with shorter and shorter steps.
+    // The count is roughly proportional to the inverse cube of the edge length, with jumps: follow that with ever shorter steps.
     let (mut too_fine, mut too_coarse) = (0.0_f64, f64::INFINITY);
     let mut factor = 1.0;
     for step in 0..24 {
@@ -162,7 +162,7 @@ fn search(
         }
         factor *= (n_nodes as f64 / target.max(1) as f64).powf(exponent);
     }
-    // Between two jumps there may be a step too narrow for that: halve the way until a single jump is left.
+    // The wanted count may be in a range too narrow for that: bisect until a single jump is left.
     while too_fine > 0.0 && too_coarse < f64::INFINITY && (too_coarse / too_fine - 1.0).abs() > 1e-9 {
         factor = (too_fine * too_coarse).sqrt();
         let (n_nodes, best) = attempt(factor)?;

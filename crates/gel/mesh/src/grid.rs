@@ -1,8 +1,8 @@
 //! Meshes of blocks and domes: a bent tensor grid whose hexahedra are cut into six tetrahedra each.
 //!
-//! Each hexahedron is cut along the diagonal from its lower corner nearest to the mirror lines (through the place of contact)
+//! Each hexahedron is cut along the diagonal from its lower corner nearest to the mirror lines (through the centre of contact)
 //! to its upper corner farthest from them (Kuhn's cut). Every hexahedron of a quadrant is cut alike, so inner nodes all have
-//! the same neighbours and surface nodes the same share of area, which contact forces and nodal pressures ask for; alternating cuts
+//! the same neighbours and surface nodes the same share of area, which contact forces and nodal pressures need. Alternating cuts
 //! into five have better angles but two kinds of nodes, one with twice the area of the other. The four quadrants mirror each
 //! other, so a centred press of a symmetric gel stays symmetric. And the diagonals end in the top edges, which can then
 //! be rounded: a cut across a rounded edge would leave flat tetrahedra.
@@ -37,7 +37,7 @@ pub(crate) fn lattice(
     for focus in &mut settings.focuses {
         focus.center_mm = footprint.unbend_mm(focus.center_mm, tallest_mm);
     }
-    // A cut across a rounded edge, the wrong way round, would be flat.
+    // A tetrahedron that is cut across a rounded edge would be flat.
     Lattice::new(
         footprint.box_mm,
         inclusions,

@@ -21,7 +21,7 @@ pub(crate) struct Lattice {
     boxes: Vec<IndexBox>,
 }
 
-/// A box of cells, from `low` up to, without, `high`.
+/// A box of cells, from `low` to `high`, the latter excluded.
 struct IndexBox {
     low: [usize; 3],
     high: [usize; 3],
@@ -113,7 +113,7 @@ impl Lattice {
         })
     }
 
-    /// The same lattice without leaning lines: they stay where the inclusions want them up to the top.
+    /// The same lattice with the snapped lines up to the top, so that none lean.
     pub(crate) fn upright(mut self) -> Self {
         for axis in [&mut self.x, &mut self.y] {
             axis.ideal_mm.clone_from(&axis.snapped_mm);
@@ -133,7 +133,7 @@ impl Lattice {
         DVec3::new(self.x.at_mm(i, share), self.y.at_mm(j, share), z_mm)
     }
 
-    /// One up to the top of the inclusions, falling to zero half-way to the top of the lattice.
+    /// Weight of the snapped lines at a height: 1 up to the top of the inclusions, then falling to 0 half-way to the top of the lattice.
     fn inclusion_share(&self, z_mm: f64) -> f64 {
         let from_mm = self.z_mm[self.inclusion_top];
         let to_mm = 0.5 * (from_mm + self.z_mm[self.z_mm.len() - 1]);

@@ -1,15 +1,15 @@
 //! Tetrahedral meshes of gels: generated from a solid, imported from Gmsh, exported to VTK and STL. Lengths in mm.
 //!
-//! The gel stands on a board, the plane z = 0, and may have boxes of something rigid in it (sensor chips). It is glued to both: the
-//! nodes there are [`NodeSets::bonded`]. It is pressed from above: on [`NodeSets::top`].
+//! The gel stands on a board, the plane z = 0, and may have rigid boxes in it (sensor chips). It is glued to both: the nodes
+//! there are [`NodeSets::bonded`]. It is pressed from above, on [`NodeSets::top`].
 //!
 //! - [`generate`] meshes a [`twintac_shape::Solid`]. A [`Focus`] makes the mesh fine where a press and the taxels need it;
-//!   the pattern of nodes around the first focus does not depend on where it stands, so that presses at different places
-//!   are discretised alike. Inclusions are left out, exactly.
-//! - [`generate_with_node_count`] finds the edge length for a budget of nodes.
-//! - [`gmsh::read`] imports what Gmsh and fTetWild write, [`gmsh::write`] keeps a mesh for later.
-//! - [`vtk::write`] shows it and fields on it in ParaView, [`stl::write`] its surface anywhere.
-//! - [`Quality`] says how good it is.
+//!   the pattern of nodes around the first focus does not depend on its position, so that presses at different positions
+//!   are discretised alike. Inclusions are cut out exactly.
+//! - [`generate_with_node_count`] finds the edge length for a given number of nodes.
+//! - [`gmsh::read`] imports files of Gmsh and fTetWild, [`gmsh::write`] writes a mesh for later use.
+//! - [`vtk::write`] writes a mesh and fields on it for ParaView, [`stl::write`] its surface for any viewer.
+//! - [`Quality`] has figures of the quality of a mesh.
 //!
 //! Meshes are the same bit for bit on every run.
 //!
@@ -46,9 +46,9 @@
 //! # Ok::<(), twintac_mesh::MeshError>(())
 //! ```
 //!
-//! # How
-//! Blocks and domes: a graded tensor grid, bent into the solid, each cell cut into six tetrahedra (`grid.rs` says why six). Its lines
-//! lean from where the inclusions want them at the board to where the contact wants them at the top. Triangle surfaces:
+//! # Method
+//! Blocks and domes: a graded tensor grid, bent into the solid, each cell cut into six tetrahedra (`grid.rs` explains why six). At the
+//! board its lines follow the inclusions, at the top the contact, and in between they lean. Triangle surfaces:
 //! isosurface stuffing on the body-centred version of the same lattice (`stuffing.rs`).
 
 mod axis;

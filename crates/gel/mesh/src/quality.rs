@@ -1,11 +1,11 @@
-//! How good a mesh is.
+//! Figures of the quality of a mesh.
 
 use serde::{Deserialize, Serialize};
 
 use crate::tet_mesh::signed_volume_mm3;
 use crate::{MeshError, TetMesh};
 
-/// Figures of a mesh, to be written beside it.
+/// The quality of a mesh, to be written beside it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quality {
@@ -29,7 +29,7 @@ pub struct Quality {
     pub volume_error: Option<f64>,
 }
 
-/// How numbers are distributed.
+/// The distribution of some numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
@@ -56,7 +56,7 @@ const EDGES: [[usize; 4]; 6] = [
 ];
 
 impl Quality {
-    /// Measures a mesh. `solid_volume_mm3` is what its volume ought to be, see [`crate::gel_volume_mm3`].
+    /// Measures a mesh. `solid_volume_mm3` is the volume of the solid without its inclusions, see [`crate::gel_volume_mm3`].
     #[must_use]
     pub fn of(mesh: &TetMesh, solid_volume_mm3: Option<f64>) -> Self {
         let volume_mm3 = mesh.volume_mm3();
@@ -92,7 +92,7 @@ impl Spread {
     }
 }
 
-/// Fails for a tetrahedron that is inverted or flat: its volume is less than a small part of that of a regular one with its
+/// Fails for a tetrahedron that is inverted or flat: its volume is less than a small part of the volume of a regular tetrahedron with the same
 /// longest edge.
 pub(crate) fn check_volumes(mesh: &TetMesh, least_share: f64) -> Result<(), MeshError> {
     for tet in 0..mesh.tets.len() {

@@ -1,4 +1,4 @@
-//! Every tetrahedron cut into eight, so that a mesh and its refinement are a pair: fine displacements, coarse pressures.
+//! Refinement of a mesh: every tetrahedron is cut into eight. Displacements are unknowns on the refined mesh, pressures on the coarse one.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,7 +14,7 @@ pub struct Refinement {
     pub coarse_tets: Vec<[u32; 4]>,
     /// Nodes of the coarse mesh.
     pub n_coarse_nodes: usize,
-    /// The coarse nodes that each further node lies midway between, the smaller first. `[n_nodes - n_coarse_nodes]`
+    /// The two coarse nodes of each further node, which lies midway between them; the smaller index first. `[n_nodes - n_coarse_nodes]`
     pub midpoints: Vec<[u32; 2]>,
 }
 
@@ -42,8 +42,8 @@ impl TetMesh {
         self.nodes_mm.len() + edges.len()
     }
 
-    /// Cuts every tetrahedron into eight, the octahedron inside along its shortest diagonal (Bey, Computing 55, 1995, leaves the choice
-    /// free); of equally short ones along that from the longest edge, so that mirror images are cut alike. A new node is bonded if it lies on a boundary triangle whose corners are.
+    /// Cuts every tetrahedron into eight. The octahedron inside is cut along its shortest diagonal (Bey, Computing 55, 1995, leaves the choice
+    /// open), and of equally short ones along that from the longest edge, so that mirror images are cut alike. A new node is bonded if it lies on a boundary triangle whose corners are.
     #[must_use]
     pub fn refined(&self) -> Refinement {
         let mut mesh = TetMesh {

@@ -1,4 +1,4 @@
-//! Inside or outside of a gel bounded by a triangle surface, the board and inclusions.
+//! Whether a point is inside a gel that is bounded by a triangle surface, the board and inclusions.
 
 use glam::DVec3;
 use twintac_shape::SignedDistance;
@@ -22,7 +22,7 @@ impl<'a> Region<'a> {
         board_mm: f64,
         tolerance_mm: f64,
     ) -> Self {
-        // What stands on the board reaches through it: the board cuts the gel off, not the inclusion's underside.
+        // Inclusions on the board are extended below it, so that the board bounds the gel there and not their underside.
         let through_board = |c: &Cuboid| {
             let below = if c.min_mm.z <= board_mm + tolerance_mm {
                 DVec3::Z
@@ -42,8 +42,8 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// How far a point is outside (negative: inside), mm. Near the board the surface goes straight down, so that the board itself is no
-    /// boundary: it is a plane of the lattice.
+    /// How far a point is outside (negative: inside), mm. Near the board the surface is continued straight down: the board
+    /// itself is not part of the boundary here, as it is a plane of the lattice.
     pub(crate) fn outside_mm(&self, point_mm: DVec3) -> f64 {
         let lifted = point_mm.with_z(point_mm.z.max(self.board_mm + 10.0 * self.tolerance_mm));
         let outside_mm = self.surface.signed_distance(lifted).distance_mm;
@@ -92,7 +92,7 @@ impl<'a> Region<'a> {
             if value.abs() <= 0.01 * self.tolerance_mm {
                 break;
             }
-            // An end that stays twice is made to count less.
+            // The value of an end that stays twice is halved.
             if value < 0.0 {
                 low = (share, value);
                 high.1 *= if kept_low == Some(false) { 0.5 } else { 1.0 };

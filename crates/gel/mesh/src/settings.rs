@@ -1,4 +1,4 @@
-//! How fine a mesh is, and where.
+//! Edge lengths of a mesh, and the boxes that are left out.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -9,14 +9,14 @@ use crate::MeshError;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MeshSettings {
-    /// Edge length away from everything special, mm. Default 1.
+    /// Edge length away from all focuses, inclusions and rounded edges, mm. Default 1.
     pub edge_mm: f64,
-    /// Edge length along z at the pressed surface over `edge_mm`, in (0, 1]. Default 1: no grading of its own.
+    /// Edge length along z at the pressed surface over `edge_mm`, in (0, 1]. Default 1: no grading towards the surface.
     pub top_edge_ratio: f64,
     /// Largest ratio of the lengths of neighbouring edges where the mesh coarsens, in [1.05, 2]. Default 1.25.
     pub growth: f64,
-    /// Places that need a finer mesh. The lines of the mesh are laid outwards from the centre of the **first** one, the place of
-    /// contact: within its radius the surface pattern depends on its radius and edge length only, not on where it stands, so that
+    /// Where a finer mesh is needed. The lines of the mesh are laid outwards from the centre of the **first** focus, the centre of
+    /// contact. Within its radius the surface pattern depends on its radius and edge length only, not on its position, so that
     /// moving a press does not change its discretisation.
     pub focuses: Vec<Focus>,
 }

@@ -1,11 +1,11 @@
-//! Wanted edge length along one axis.
+//! The wanted edge length along one axis.
 
 use crate::MeshError;
 
 /// Lines that one axis may have.
 const MOST_LINES: usize = 4096;
 
-/// The edge length as a function of one coordinate: short near some places, growing linearly away from them up to a largest one.
+/// The edge length as a function of one coordinate: short near some positions, growing linearly away from them up to a largest one.
 pub(crate) struct SizeField {
     edge_mm: f64,
     /// Growth of the edge length per length: cells of a length that grows with slope `s` grow by `exp(s)` from one to the next.
@@ -29,7 +29,7 @@ impl SizeField {
         }
     }
 
-    /// Asks for edges of at most `edge_mm` within `reach_mm` of a place.
+    /// Limits edges to `edge_mm` within `reach_mm` of a position.
     pub(crate) fn refine(&mut self, at_mm: f64, reach_mm: f64, edge_mm: f64) {
         self.pits.push(Pit {
             at_mm,
@@ -38,7 +38,7 @@ impl SizeField {
         });
     }
 
-    /// Asks for at least one cell between every two of these planes (sorted).
+    /// Limits edges so that there is a cell between every two of these planes (sorted).
     pub(crate) fn separate(&mut self, planes_mm: &[f64]) {
         for pair in planes_mm.windows(2) {
             let gap_mm = pair[1] - pair[0];

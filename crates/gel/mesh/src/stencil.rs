@@ -10,7 +10,7 @@ pub(crate) enum Side {
     Outside,
 }
 
-/// A corner of the inner part: a number that all tetrahedra around it agree on, and its position.
+/// A corner of the inner part: a number that is the same for all tetrahedra around it, and its position.
 pub(crate) type Corner = (u32, DVec3);
 
 /// Cuts the inner part of a tetrahedron into tetrahedra that are oriented like it.
@@ -71,7 +71,7 @@ pub(crate) fn inner_part(
                 out,
             );
         }
-        // Four corners leave no other case.
+        // With four corners there is no other case.
         _ => {}
     }
 }

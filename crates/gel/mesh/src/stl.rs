@@ -24,7 +24,7 @@ pub fn write(mesh: &TetMesh) -> Vec<u8> {
                 .iter()
                 .for_each(|number| bytes.extend(number.to_le_bytes()));
         }
-        // The attribute that nobody uses.
+        // The attribute, which is not used.
         bytes.extend([0; 2]);
     }
     bytes

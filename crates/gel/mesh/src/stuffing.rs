@@ -25,7 +25,7 @@ struct Background {
     tets: Vec<[u32; 4]>,
 }
 
-/// Meshes what is inside of a region. The lattice covers the region's box.
+/// Meshes the inside of a region. The lattice covers the region's box.
 pub(crate) fn mesh(lattice: &Lattice, region: &Region) -> Result<TetMesh, MeshError> {
     let mut background = background(lattice);
     let mut sides: Vec<Side> = background
@@ -49,7 +49,7 @@ pub(crate) fn mesh(lattice: &Lattice, region: &Region) -> Result<TetMesh, MeshEr
     for nodes in &background.tets {
         let cut = |a: usize, b: usize| {
             let edge = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
-            // Every edge from inside to outside was cut above, and moving points only takes edges off that list.
+            // Every edge from inside to outside was cut above, and moving points only removes edges from that list.
             let place = edges.binary_search(&edge).unwrap_or_default();
             (n_points + place as u32, cuts_mm[place])
         };
@@ -229,7 +229,7 @@ fn move_points(
             continue;
         }
         let cut_mm = cuts_mm[place];
-        // Inclusions lie between planes of the lattice, which cut them well as they are.
+        // Faces of inclusions are planes of the lattice, so points need not move onto them.
         if region.is_on_inclusion(cut_mm) {
             continue;
         }
@@ -249,7 +249,7 @@ fn move_points(
     }
 }
 
-/// How far points may move along the board, mm: three of them that move onto a wall must not end up in line.
+/// How far points may move along the board, mm: three of them that move onto a wall must not become collinear.
 fn board_reach_mm(background: &Background) -> Vec<f64> {
     let mut reach_mm = vec![f64::INFINITY; background.points_mm.len()];
     for nodes in &background.tets {

@@ -1,4 +1,4 @@
-//! The mesh itself.
+//! A tetrahedral mesh and its node sets.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ pub struct TetMesh {
     pub nodes_mm: Vec<DVec3>,
     /// Node indices of each tetrahedron.
     pub tets: Vec<[u32; 4]>,
-    /// Which nodes lie where.
+    /// The bonded, free and pressed nodes.
     pub sets: NodeSets,
 }
 
@@ -73,7 +73,7 @@ impl TetMesh {
 
     /// Area that belongs to each node counting only these triangles, mm². `[n_nodes]`
     #[must_use]
-    pub fn node_areas_of_mm2(&self, triangles: &[[u32; 3]]) -> Vec<f64> {
+    fn node_areas_of_mm2(&self, triangles: &[[u32; 3]]) -> Vec<f64> {
         let mut areas_mm2 = vec![0.0; self.nodes_mm.len()];
         for triangle in triangles {
             let share = self.area_vector_mm2(triangle).length() / 3.0;
@@ -91,7 +91,7 @@ impl TetMesh {
         0.5 * (b - a).cross(c - a)
     }
 
-    /// Also bonds the boundary nodes within a tolerance of an inclusion, as an imported mesh does not say which those are.
+    /// Also bonds the boundary nodes within a tolerance of an inclusion: an imported mesh does not say which those are.
     pub fn bond_to(&mut self, inclusions: &[Cuboid], tolerance_mm: f64) {
         let bonded = std::mem::take(&mut self.sets.bonded);
         let is_near: Vec<bool> = self

@@ -1,11 +1,11 @@
-//! What the volume of a gel ought to be.
+//! The exact volume of a gel.
 
 use glam::DVec3;
 use twintac_shape::{Solid, Surfaces};
 
 use crate::Cuboid;
 
-/// Volume of a solid without its inclusions, exact where those do not reach out of an uneven surface, mm³.
+/// Volume of a solid without its inclusions, mm³. Exact unless inclusions reach through a curved surface.
 #[must_use]
 pub fn gel_volume_mm3(solid: &Solid, surfaces: &Surfaces, inclusions: &[Cuboid]) -> f64 {
     let (low_mm, high_mm) = solid.bounds_mm(surfaces);

@@ -1,4 +1,4 @@
-//! VTK unstructured grids (`.vtu`), for ParaView and its like.
+//! VTK unstructured grids (`.vtu`), for ParaView and similar programs.
 
 use std::fmt::Write;
 

@@ -116,12 +116,6 @@ impl SoftBody {
         &self.material
     }
 
-    /// Entries of the factors of the coarse linear system.
-    #[must_use]
-    pub fn n_factor_entries(&self) -> usize {
-        self.coarse.n_factor_entries()
-    }
-
     /// The nodes of the boundary, and where they are, mm.
     pub(crate) fn boundary_mm(
         &self,

@@ -5,8 +5,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::positive;
+use crate::stretch_law::NoStretches;
 use crate::wide::{Real, Wide};
-use crate::{Curvatures, Elastic, Invariants, Law, MaterialError, NoStretches, Slopes};
+use crate::{Curvatures, Elastic, Invariants, Law, MaterialError, Slopes};
 
 /// `μ/2 (I1 - 3) - μ ln J`, which also resists a change of volume
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! All models, each a file here: two lines make one known, its module and its entry in the list at the end.
+//! All models, each a file here. A new one needs two lines below: its module, and its entry in the list at the end.
 
 mod logarithmic_neo_hookean;
 mod mooney_rivlin;
@@ -13,12 +13,12 @@ use crate::{Elastic, Law, LawProperties, MaterialError};
 
 pub use ogden::OgdenTerm;
 
-/// Work that is done with whichever law a model has.
+/// Work that is done with the law of a model, whichever that is.
 pub trait Visitor {
-    /// What comes of it.
+    /// The result.
     type Output;
 
-    /// Does it.
+    /// Does the work.
     fn visit<L: Law>(self, law: L) -> Self::Output;
 }
 
@@ -27,7 +27,7 @@ macro_rules! models {
     ($($file:ident::$model:ident = $name:literal,)+) => {
         $(pub use $file::$model;)+
 
-        /// The answer to a change of shape: a model with its constants.
+        /// The elastic response to a change of shape: a model with its constants.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(tag = "model")]
         pub enum Model {
@@ -65,7 +65,7 @@ macro_rules! models {
                 }
             }
 
-            /// Refuses constants that make no material.
+            /// Refuses constants that are not those of a material.
             ///
             /// # Errors
             /// The first constant that is wrong.

@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::positive;
+use crate::isochoric::{Isochoric, IsochoricLaw};
 use crate::wide::{Real, Wide};
-use crate::{Elastic, Isochoric, IsochoricLaw, MaterialError};
+use crate::{Elastic, MaterialError};
 
 /// `C10 (Ī1 - 3) + C01 (Ī2 - 3)` (Mooney, 1940; Rivlin, 1948)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

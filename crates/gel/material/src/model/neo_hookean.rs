@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::positive;
+use crate::isochoric::{Isochoric, IsochoricLaw};
 use crate::wide::{Real, Wide};
-use crate::{Elastic, Isochoric, IsochoricLaw, MaterialError};
+use crate::{Elastic, MaterialError};
 
 /// `μ/2 (Ī1 - 3)` (Treloar, 1943)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,8 +5,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::finite;
+use crate::stretches::Stretches;
 use crate::wide::{Real, Wide};
-use crate::{Elastic, MaterialError, StretchLaw, StretchSlopes, Stretches};
+use crate::{Elastic, MaterialError, StretchLaw, StretchSlopes};
 
 /// `Σ μ_p/α_p (λ̄1^α_p + λ̄2^α_p + λ̄3^α_p - 3)` in the isochoric principal stretches (Ogden, 1972)
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

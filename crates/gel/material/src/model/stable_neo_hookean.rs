@@ -8,8 +8,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::positive;
+use crate::stretch_law::NoStretches;
 use crate::wide::{Real, Wide};
-use crate::{Curvatures, Elastic, Invariants, Law, MaterialError, NoStretches, Slopes};
+use crate::{Curvatures, Elastic, Invariants, Law, MaterialError, Slopes};
 
 /// `m/2 (I1 - 3) - m/2 ln((I1 + 1)/4) - 3/4 m (J - 1)` with `m = 4/3 μ`, for inverted tetrahedra as well (Smith, de Goes and Kim, 2018)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

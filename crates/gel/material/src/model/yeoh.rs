@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{finite, positive};
+use crate::isochoric::{Isochoric, IsochoricLaw};
 use crate::wide::{Real, Wide};
-use crate::{Elastic, Isochoric, IsochoricLaw, MaterialError};
+use crate::{Elastic, MaterialError};
 
 /// `C10 (Ī1 - 3) + C20 (Ī1 - 3)² + C30 (Ī1 - 3)³` (Yeoh, 1993)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! Elementary functions in straight lines of arithmetic: they go into lanes, and give the same bits on every machine.
+//! Elementary functions as arithmetic without branches: the compiler can use vectors for them, and they give the same bits on every machine.
 
 /// A number that has a logarithm and an exponential.
 pub trait Elementary: Sized {

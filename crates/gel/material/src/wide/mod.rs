@@ -1,10 +1,10 @@
-//! Eight numbers side by side, which the compiler puts into the lanes of the processor's vectors.
+//! Eight numbers side by side, for which the compiler uses the vectors of the processor.
 
 mod elementary;
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-pub use elementary::Elementary;
+use elementary::Elementary;
 
 /// Numbers side by side.
 pub const LANES: usize = 8;
@@ -21,7 +21,7 @@ pub trait Real:
     + Neg<Output = Self>
     + Elementary
 {
-    /// A part of a number that is lost in it.
+    /// A relative difference below round-off.
     const ROUND_OFF: Self;
 
     /// The nearest number.
@@ -189,7 +189,7 @@ impl Wide<f64> {
         out
     }
 
-    /// The smallest, or the last that is not a number.
+    /// The smallest, or NaN if one is NaN.
     #[inline(always)]
     #[must_use]
     pub fn least(self) -> f64 {
@@ -205,7 +205,7 @@ impl Wide<f64> {
     }
 }
 
-/// The smaller of two, or the one that is not a number.
+/// The smaller of two, or NaN if one is NaN.
 #[inline(always)]
 #[must_use]
 pub fn least(a: f64, b: f64) -> f64 {
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_none_is_never_lost() {
+    fn nan_is_never_lost() {
         let mut wide = Wide::<f64>::splat(1.0);
         wide.0[3] = f64::NAN;
         assert!(wide.least().is_nan());

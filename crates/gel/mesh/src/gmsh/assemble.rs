@@ -1,4 +1,4 @@
-//! From what a file holds to a mesh.
+//! Making a mesh of the contents of a file.
 
 use glam::DVec3;
 
@@ -7,13 +7,13 @@ use crate::quality::check_volumes;
 use crate::tet_mesh::signed_volume_mm3;
 use crate::{MeshError, TetMesh};
 
-/// Bonded is what lies within this part of the mesh's diagonal above its lowest node: twice fTetWild's default envelope.
+/// Nodes within this part of the mesh's diagonal above its lowest node are bonded: twice fTetWild's default envelope.
 const BOARD_TOLERANCE: f64 = 2e-3;
 
 /// Part of the volume of a regular tetrahedron with the same longest edge that every tetrahedron must have.
 const LEAST_VOLUME_SHARE: f64 = 1e-6;
 
-/// What a file holds.
+/// The contents of a file.
 #[derive(Default)]
 pub(super) struct Contents {
     pub(super) nodes: Vec<NodeEntry>,
@@ -101,7 +101,7 @@ pub(super) fn assemble(input: &Input, contents: Contents) -> Result<TetMesh, Mes
     Ok(mesh)
 }
 
-/// Bonds what lies on the board.
+/// Bonds the nodes on the board.
 fn bond_lowest(mesh: &mut TetMesh) {
     let low = mesh.nodes_mm.iter().fold(DVec3::MAX, |low, &node| low.min(node));
     let high = mesh

@@ -1,4 +1,4 @@
-//! A cursor over a `.msh` file that knows where it is.
+//! A cursor over a `.msh` file that tracks its position.
 
 use crate::MeshError;
 
@@ -177,7 +177,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Checks that the file is long enough for a number of items of so many numbers each, so that no count is believed blindly.
+    /// Checks that the file is long enough for a number of items of so many numbers each, so that no count is trusted without a check.
     pub(super) fn fits(&self, count: u64, numbers_each: u64, expected: &str) -> Result<usize, MeshError> {
         // A number takes two bytes of text (digit and blank) or four in binary, at least.
         let least = if self.encoding == Encoding::Text { 2 } else { 4 };

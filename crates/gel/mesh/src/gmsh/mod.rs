@@ -1,7 +1,7 @@
 //! Gmsh's `.msh` files, as Gmsh and fTetWild write them.
 //!
-//! Read are versions 2.2 and 4.1, text and binary of either byte order. Kept are tetrahedra (of those with ten nodes the corners)
-//! and the nodes that they use. Formats: Gmsh reference manual, section "MSH file format" (4.1) and "Legacy formats" (2.2).
+//! Versions 2.2 and 4.1 are read, as text and as binary of either byte order. Tetrahedra (of those with ten nodes the corners) and the nodes
+//! that they use are kept. Formats: Gmsh reference manual, section "MSH file format" (4.1) and "Legacy formats" (2.2).
 
 mod assemble;
 mod elements;

@@ -1,4 +1,4 @@
-//! Reading.
+//! Reading a `.msh` file.
 
 use glam::DVec3;
 
@@ -7,13 +7,13 @@ use super::elements::{TET_4, TET_10, nodes_of};
 use super::input::{Encoding, Input, shown};
 use crate::{MeshError, TetMesh};
 
-/// Coordinates beyond this are taken for damage, mm.
+/// Coordinates beyond this count as a damaged file, mm.
 const FARTHEST_MM: f64 = 1e6;
 
 /// Reads a mesh, coordinates in mm.
 ///
-/// Inverted tetrahedra are turned, nodes that no tetrahedron uses are dropped. Bonded are the boundary nodes that node data named
-/// "bonded" say (as [`super::write`] leaves them), without such data those within 0.2 % of the mesh's diagonal of its lowest node.
+/// Inverted tetrahedra are turned, nodes that no tetrahedron uses are dropped. The bonded nodes are those that the node data named
+/// "bonded" tell, as [`super::write`] writes them; without such data, those within 0.2 % of the mesh's diagonal above its lowest node.
 ///
 /// # Errors
 /// [`MeshError::File`] with the line or byte where the file is not what it should be, [`MeshError::Degenerate`] for a

@@ -1,4 +1,4 @@
-//! Writing.
+//! Writing a `.msh` file.
 
 use std::fmt::Write;
 

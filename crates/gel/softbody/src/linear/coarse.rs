@@ -137,11 +137,6 @@ impl CoarseSystem {
         }
     }
 
-    /// Entries of `L`, with those stored as zero.
-    pub(crate) fn n_factor_entries(&self) -> usize {
-        self.symbolic.len_val()
-    }
-
     fn n_displacements(&self, node: u32) -> usize {
         if self.free[node as usize] { 3 } else { 0 }
     }
