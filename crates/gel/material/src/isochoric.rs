@@ -53,7 +53,11 @@ impl<L: IsochoricLaw> Law for Isochoric<L> {
         }
         Slopes {
             first: in_first * at.isochoric,
-            second: in_second * at.isochoric * at.isochoric,
+            second: if L::USES_SECOND {
+                in_second * at.isochoric * at.isochoric
+            } else {
+                Wide::zero()
+            },
             volume: volume / at.volume_ratio,
         }
     }
@@ -72,7 +76,11 @@ impl<L: IsochoricLaw> Law for Isochoric<L> {
             first_second: Wide::zero(),
             second_second: Wide::zero(),
             first_volume: in_first * scale_1 * inverse * Wide::splat(-2.0 / 3.0),
-            second_volume: in_second * scale_2 * inverse * Wide::splat(-4.0 / 3.0),
+            second_volume: if L::USES_SECOND {
+                in_second * scale_2 * inverse * Wide::splat(-4.0 / 3.0)
+            } else {
+                Wide::zero()
+            },
             volume_volume: in_first * first * inverse * inverse * Wide::splat(10.0 / 9.0)
                 + in_second * second * inverse * inverse * Wide::splat(28.0 / 9.0),
         };

@@ -88,16 +88,16 @@ impl Sources {
 }
 
 impl SoftBody {
-    /// Adds a rigid shape that stands still, best one without hollow corners: walls that meet are added one by one. States made before do not
-    /// know it.
+    /// Adds a rigid shape that does not move. It should have no concave corners: walls that meet are added as separate shapes. States made before do
+    /// not have it.
     #[must_use]
     pub fn with_obstacle(mut self, shape: Arc<dyn SignedDistance>, gel_from_obstacle: Pose) -> Self {
         self.obstacles.push((shape, gel_from_obstacle));
         self
     }
 
-    /// Solves each step on two threads, of which the second is busy as long as a step takes: for one press that is waited for. Many presses
-    /// at once had better take a thread each. The results are the same, bit for bit.
+    /// Solves each step on two threads, both busy for the whole step: for a single press that has to be fast. For many presses at the same time, one
+    /// thread each is better. The results are the same, bit for bit.
     #[must_use]
     pub fn on_two_threads(mut self) -> Self {
         self.on_two_threads = true;

@@ -18,7 +18,7 @@ const STENCIL: [(f64, f64); 4] = [
     (2.0, -1.0 / 12.0),
 ];
 
-/// How far derivatives are from differences, relative to their size.
+/// Errors of the derivatives compared with differences, relative to their size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DerivativeErrors {
     /// Of the nodal forces from differences of the energy, along the direction.

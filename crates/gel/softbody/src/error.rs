@@ -1,12 +1,12 @@
-//! What can go wrong.
+//! Errors of this crate.
 
-/// A model that can't be built.
+/// A body that can't be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SoftBodyError {
     /// A mesh without tetrahedra.
     #[error("the mesh has no tetrahedra")]
     Empty,
-    /// A mesh that nothing holds.
+    /// A mesh without bonded nodes.
     #[error("the mesh has no bonded nodes, so nothing holds it in place")]
     NotBonded,
     /// A reference to a node that does not exist.
@@ -33,10 +33,10 @@ pub enum SoftBodyError {
         /// Its signed volume, mm³.
         volume_mm3: f64,
     },
-    /// A material that can't be.
+    /// An invalid material.
     #[error("material: {0}")]
     Material(#[from] twintac_material::MaterialError),
-    /// A setting that makes no sense.
+    /// An invalid setting.
     #[error("solver setting `{field}` is {found}, expected {expected}")]
     Setting {
         /// The offending field.
@@ -46,7 +46,7 @@ pub enum SoftBodyError {
         /// What was found.
         found: f64,
     },
-    /// A direction that the body's material can't be changed in.
+    /// An invalid direction of differentiation.
     #[error("a direction must have a step above 0, and as many Prony terms as the body's material")]
     Direction,
     /// The analysis of the sparse system failed.
@@ -84,14 +84,14 @@ pub enum SolveError {
         /// Part of the step that did converge.
         fraction: f64,
     },
-    /// The indenter would reach into something rigid.
+    /// The indenter would enter something rigid.
     #[error("blocked: the indenter would be at least {depth_mm:.3} mm deep in {by} at {at_mm:.3} mm")]
     Blocked {
         /// What it would reach into.
         by: Blocker,
-        /// A place inside both, mm.
+        /// A point inside both, mm.
         at_mm: glam::DVec3,
-        /// How deep inside there, mm; elsewhere it may be deeper.
+        /// The depth there, mm; elsewhere it may be deeper.
         depth_mm: f64,
     },
     /// The force asked for is not met anywhere within the travel.
@@ -106,7 +106,7 @@ pub enum SolveError {
         /// Travel that was allowed, mm.
         travel_mm: f64,
     },
-    /// A pose or time that is no number, or a time that runs backwards.
+    /// A pose or time that is not finite, or a negative time step.
     #[error("{what} is {found}, expected {expected}")]
     Input {
         /// Which argument.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 
-/// What a step came to. Forces act on the gel, in the gel's frame; their sum is zero but for the residual.
+/// The result of a step. Forces act on the gel, in the gel's frame; their sum is zero except for the residual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Force of the indenter, N.
@@ -16,7 +16,7 @@ pub struct Frame {
     pub obstacle_reaction_n: DVec3,
     /// Always true: a step that does not converge is an error. Kept for records of frames.
     pub converged: bool,
-    /// Newton iterations, those of sub-steps that were given up included.
+    /// Newton iterations, including those of failed sub-steps.
     pub iterations: u32,
     /// 2-norm of the unbalanced nodal forces over the load.
     pub residual: f64,
@@ -24,13 +24,13 @@ pub struct Frame {
     pub penetration_mm: f64,
     /// Smallest volume of a tetrahedron over its volume at rest.
     pub smallest_volume_ratio: f64,
-    /// Time spent, s.
+    /// Wall time, s.
     pub wall_time_s: f64,
-    /// What it was spent on.
+    /// How it was spent.
     pub cost: Cost,
 }
 
-/// What a step's time was spent on.
+/// How the time of a step was spent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Cost {
     /// Energy and forces of the elements, s.

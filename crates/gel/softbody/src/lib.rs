@@ -1,7 +1,10 @@
 //! Finite-strain FEM of a soft body pressed by rigid shapes.
 //!
-//! Quasi-static, on tetrahedra whose pressure is linear and whose displacements are of twice the resolution, so that nearly incompressible
-//! gels neither lock nor report a meaningless pressure. Lengths in mm, forces in N, stresses in kPa at the interface and in MPa = N/mm² inside.
+//! The solver is quasi-static. Its tetrahedra have a linear pressure, and displacements of twice the resolution, so that nearly incompressible
+//! gels do not lock and their pressure is accurate. Lengths are in mm, forces in N, stresses in kPa at the interface and in MPa = N/mm² inside.
+//!
+//! A [`SoftBody`] is built once from a mesh, a [`Material`] and [`SolverSettings`], and shared by many presses. Each press has a [`State`], which
+//! [`SoftBody::advance`] takes from pose to pose of the indenter; every step returns a [`Frame`].
 
 #![allow(clippy::needless_range_loop)] // matrices are written with indices
 

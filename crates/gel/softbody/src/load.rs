@@ -9,7 +9,7 @@ use crate::body::SoftBody;
 const ROWS: u32 = 4;
 
 impl SoftBody {
-    /// Loads the surface with a traction, kPa, given by place at rest. It keeps its size and direction however the body moves, and acts in
+    /// Loads the surface with a traction, kPa, as a function of the position at rest. It keeps its size and direction when the body moves, and acts in
     /// full from the next step on; between the nodes of the finer mesh it is spread linearly.
     #[must_use]
     pub fn with_surface_load(mut self, traction_kpa: &dyn Fn(DVec3) -> DVec3) -> Self {

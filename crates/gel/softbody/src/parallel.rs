@@ -6,7 +6,7 @@
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Pauses of a helper between two looks for work, which cost the other thread something: a microsecond or so.
+/// Spins of the helper between two looks for work, about a microsecond: looking for work slows the other thread.
 const SPINS: u32 = 32;
 
 thread_local! {
@@ -19,7 +19,7 @@ pub(crate) fn dispatch<K: pulp::NullaryFnOnce>(kernel: K) -> K::Output {
     pulp::Arch::new().dispatch(kernel)
 }
 
-/// Does both, side by side where [`on_two_threads`] allows it.
+/// Does both, at the same time inside [`on_two_threads`].
 pub(crate) fn join_halves<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
@@ -31,7 +31,7 @@ pub(crate) fn join_halves<A: Send, B: Send>(
     }
 }
 
-/// Runs a piece of work whose halves may run side by side. They do not split further.
+/// Runs a piece of work whose halves may run at the same time. They do not split further.
 pub(crate) fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let is_done = AtomicBool::new(false);
     let (result, ()) = rayon::join(
@@ -39,7 +39,7 @@ pub(crate) fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
             let _guard = Splitting::new(&is_done);
             work()
         },
-        // Halves take a fraction of a millisecond: a helper that fell asleep between them would come too late.
+        // Halves take a fraction of a millisecond: a helper that sleeps between them would wake too late.
         || {
             while !is_done.load(Ordering::Relaxed) {
                 rayon::yield_now();
@@ -52,7 +52,7 @@ pub(crate) fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     result
 }
 
-/// While it lives this thread may split its work; when it goes, be it in a panic, the helper is let go.
+/// While this lives, its thread may split its work. When it is dropped, even in a panic, the helper ends.
 struct Splitting<'a> {
     is_done: &'a AtomicBool,
     before: bool,

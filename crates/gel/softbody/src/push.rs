@@ -8,20 +8,20 @@ use crate::body::SoftBody;
 use crate::frame::Frame;
 use crate::state::State;
 
-/// First step into the body, and first step from a place whose stiffness is not known, mm.
+/// First step into the body, and first step from a position at which the stiffness is not known, mm.
 const FIRST_STEP_MM: f64 = 0.1;
 
 /// A gap that counts as touch, mm.
 const TOUCH_MM: f64 = 1e-3;
 
-/// How much farther than the last step the next may go.
+/// Largest ratio of a step to the last one.
 const MAX_GROWTH: f64 = 4.0;
 
-/// Tries after which the force is given up.
+/// Tries after which the search fails.
 const MAX_TRIES: u32 = 40;
 
-/// Part of the force, and width of what is left of the way, mm, below which the rest is taken up in steps of no time from place to place: what
-/// penetration is left of a motion makes the force at a place uncertain by more, but not that of a body that hardly moves.
+/// Below this part of the force, or this width of the bracket, mm, the rest is found in steps of no time, each from the last position. The penetration
+/// left after a large motion changes the force by more than this; after a very small motion it does not.
 const NEAR: f64 = 1e-3;
 
 /// How far from the force asked for the one found may be, in tolerances of the solver.
@@ -39,11 +39,11 @@ pub struct Push {
 }
 
 impl SoftBody {
-    /// Takes the indenter within a time to where it presses with a force: to the pose, moved along the force's direction as far as it takes.
-    /// [`State::gel_from_indenter`] then tells where that is. The force is met to ten times the relative tolerance of the settings.
+    /// Moves the indenter within a time to the position at which it presses with a force: the given pose, shifted along the force's direction.
+    /// [`State::gel_from_indenter`] has that position afterwards. The force is met to ten times the relative tolerance of the settings.
     ///
-    /// Secant steps, each a whole solution from where the body was before, so that a body that remembers is asked about one motion only; the
-    /// last ones, about a thousandth of the force apart, from one to the next.
+    /// The position is found by secant steps. Each is a whole solution from the state before the call, so that the history of a viscoelastic body
+    /// contains one motion only; the last steps, about a thousandth of the force apart, start from each other.
     ///
     /// # Errors
     /// [`SolveError::ForceNotReached`] if the force is not met within the travel, and the errors of [`SoftBody::advance`] if those are what
@@ -80,7 +80,7 @@ impl SoftBody {
             last: None,
         };
         let mut spare = std::mem::take(&mut state.workspace);
-        // Where the next try starts from, and the time that it has for it.
+        // The state from which the next try starts, and its time step.
         let (mut base, mut left_s) = (state.clone(), time_step_s);
         let mut motion = state.last.clone();
         let mut is_near = false;
@@ -98,7 +98,7 @@ impl SoftBody {
                     let force_n = frame.indenter_force_n.dot(push.direction);
                     let missing_n = push.force_n - force_n;
                     reached_n = force_n;
-                    // Places that are too close tell more about what is left of penetration.
+                    // Between positions that are too close, the difference of forces is mostly that of the penetration.
                     slope = slope
                         .filter(|_| is_near)
                         .or_else(|| search.slope(next_mm, force_n))
@@ -141,7 +141,7 @@ impl SoftBody {
         }))
     }
 
-    /// How far the indenter can go along its way before a node of the boundary touches it, mm; at most `farthest_mm`.
+    /// How far the indenter can move before a node of the boundary touches it, mm; at most `farthest_mm`.
     fn approach(
         &self,
         state: &State,
@@ -170,7 +170,7 @@ impl SoftBody {
         offset_mm.min(farthest_mm)
     }
 
-    /// Force of the indenter as it stands, N.
+    /// Force of the indenter at a state, N.
     fn indenter_force_n(&self, state: &State) -> DVec3 {
         let forces = state.contacts[0].forces_n(&self.boundary);
         forces.map(|(_, force_n)| force_n).sum()
@@ -211,13 +211,13 @@ impl Push {
     }
 }
 
-/// What is known of the force over the way.
+/// What is known of the force over the travel.
 struct Search {
-    /// Farthest place that is not far enough, mm.
+    /// Farthest position that is not far enough, mm.
     low: Option<f64>,
-    /// Nearest place that is too far, or that can't be reached, mm.
+    /// Nearest position that is too far, or that can't be reached, mm.
     high: Option<f64>,
-    /// Last place and its force, mm and N.
+    /// Last position and its force, mm and N.
     last: Option<(f64, f64)>,
 }
 
@@ -230,14 +230,14 @@ impl Search {
         }
     }
 
-    /// Slope of the force from the last place to this, N/mm, if it makes sense.
+    /// Slope of the force from the last position to this one, N/mm; none unless it is finite and positive.
     fn slope(&self, at_mm: f64, force_n: f64) -> Option<f64> {
         let (last_mm, last_n) = self.last?;
         let slope = (force_n - last_n) / (at_mm - last_mm);
         (slope.is_finite() && slope > 0.0).then_some(slope)
     }
 
-    /// Where to try next after a place where the force misses by so much, mm.
+    /// The next position to try after one at which this much force is missing, mm.
     fn next(&mut self, at_mm: f64, missing_n: f64, slope: Option<f64>) -> f64 {
         let step_mm = self
             .last
@@ -258,7 +258,7 @@ impl Search {
         }
     }
 
-    /// Where to try next after a place that can't be reached, mm; none if there is nothing left to try.
+    /// The next position to try after one that can't be reached, mm; none if none is left.
     fn retreat(&mut self, at_mm: f64, safe_mm: f64) -> Option<f64> {
         self.high = Some(self.high.map_or(at_mm, |high| high.min(at_mm)));
         let low_mm = self.low.unwrap_or(safe_mm);

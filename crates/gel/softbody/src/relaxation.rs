@@ -1,10 +1,10 @@
 //! Finite viscoelasticity of the change of shape (Simo, Comput. Methods Appl. Mech. Eng. 60, 1987).
 //!
-//! The instantaneous deviatoric stress `S̃ = DEV S̄ = S̄ - (S̄:C̄)/3 C̄⁻¹` fades by a Prony series of convolutions,
-//! `H_i(t) = w_i ∫ exp(-(t - s)/τ_i) dS̃/ds ds`, and the material answers with
+//! The instantaneous deviatoric stress `S̃ = DEV S̄ = S̄ - (S̄:C̄)/3 C̄⁻¹` relaxes by a Prony series of convolutions,
+//! `H_i(t) = w_i ∫ exp(-(t - s)/τ_i) dS̃/ds ds`, and the stress of the material is
 //! `DEV[(1 - Σ w_i) S̃ + Σ H_i]`. With `S̃` linear in time within a step, the recurrence
 //! `H_i ← exp(-Δt/τ_i) H_i + w_i g_i (S̃_new - S̃_old)`, `g = (1 - exp(-x))/x`, `x = Δt/τ_i`, is exact
-//! (Taylor, Pister and Goudreau, 1970). What a step adds is `factor S̄_new + offset` with a constant `offset`: the derivative
+//! (Taylor, Pister and Goudreau, 1970). The stress at the end of a step is `factor S̄_new + offset` with a constant `offset`: the derivative
 //! of the potential `factor W̄(C̄) + offset:C̄/2`, so that every step stays a minimisation with a symmetric tangent.
 
 use twintac_material::PronyTerm;

@@ -1,4 +1,4 @@
-//! How hard the solver tries.
+//! Settings of the solver.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,20 +14,20 @@ pub struct SolverSettings {
     pub linear: LinearSolver,
     /// A step has converged when the 2-norm of the unbalanced nodal forces is below this part of the load. Default 1e-6.
     pub tolerance: f64,
-    /// Newton iterations before a sub-step is given up and halved. Default 100.
+    /// Newton iterations after which a sub-step is halved. Default 100.
     pub max_iterations: u32,
     /// Farthest the indenter moves in one sub-step, mm. Default 0.5.
     pub max_travel_mm: f64,
     /// Smallest sub-step as part of that or of the step asked for, whichever is smaller. Default 1/16.
     pub min_substep: f64,
-    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 100: contacts carry their forces over
-    /// from step to step, so that it decides how fast steps converge, not what they converge to.
+    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 100. Multipliers take over the
+    /// contact forces, so that it affects how fast steps converge, but not their result.
     pub contact_stiffness: f64,
     /// Largest depth of a node inside a shape after a step, mm; contact is stiffened until it is reached. Default 0.005.
     pub penetration_mm: f64,
-    /// Coulomb's coefficient of friction between the body and the indenter. Default 0. A node in touch gives way elastically, by up to the
-    /// friction over its contact stiffness, before it slips: `μ p / (contact_stiffness G)` local edge lengths at a contact pressure `p` and a
-    /// shear modulus `G`, far less than the body itself gives.
+    /// Coulomb's coefficient of friction between the body and the indenter. Default 0. Before it slips, a node in touch moves elastically, by up to the
+    /// friction over its contact stiffness: `μ p / (contact_stiffness G)` local edge lengths at a contact pressure `p` and a
+    /// shear modulus `G`, far less than the body itself deforms.
     pub friction: f64,
     /// Coulomb's coefficient of friction between the body and its obstacles. Default 0.
     pub obstacle_friction: f64,
@@ -37,10 +37,10 @@ pub struct SolverSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LinearSolver {
-    /// Conjugate gradients, preconditioned on two levels, with factors that are kept for as long as they serve.
+    /// Conjugate gradients with a preconditioner on two levels, whose factors are kept as long as they converge fast.
     #[default]
     TwoLevel,
-    /// Factors of the whole system in double precision, made anew for every direction: slow, to compare with.
+    /// Factors of the whole system in double precision, computed anew for every direction: slow, for comparison.
     Direct,
 }
 

@@ -19,7 +19,7 @@ pub struct State {
     /// The indenter first, then the obstacles.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) gel_from_indenter: Option<Pose>,
-    /// Last accepted motion, to start the next from.
+    /// Last accepted motion, from which the next one is extrapolated.
     pub(crate) last: Option<Motion>,
     /// Slope of the force over the indenter's travel, of the last press by a force, N/mm.
     pub(crate) stiffness_n_per_mm: Option<f64>,
@@ -46,19 +46,19 @@ impl Motion {
 }
 
 impl State {
-    /// Where the indenter is; none before the first step.
+    /// The pose of the indenter; none before the first step.
     #[must_use]
     pub fn gel_from_indenter(&self) -> Option<Pose> {
         self.gel_from_indenter
     }
 
-    /// How far a node has moved from its place at rest, mm.
+    /// Displacement of a node from its position at rest, mm.
     #[must_use]
     pub fn displacement_mm(&self, node: usize) -> DVec3 {
         self.displacements_mm[node]
     }
 
-    /// How far each node has moved from its place at rest, mm. `[n_nodes]`
+    /// Displacements of the nodes from their positions at rest, mm. `[n_nodes]`
     #[must_use]
     pub fn displacements_mm(&self) -> &[DVec3] {
         &self.displacements_mm
@@ -73,7 +73,7 @@ impl State {
 }
 
 impl SoftBody {
-    /// The body at rest, where it has been for ever.
+    /// The body at rest, with no load in its past.
     #[must_use]
     pub fn rest(&self) -> State {
         State {
@@ -92,11 +92,11 @@ impl SoftBody {
         }
     }
 
-    /// The body at rest, to be pressed with the rates of all results along some directions kept up to date.
+    /// The body at rest, for a press whose results are differentiated along some directions.
     ///
     /// # Errors
-    /// A direction with a step that is not above zero, impossible materials, or another number of Prony terms; a body with friction, whose
-    /// rates are not followed.
+    /// A direction with a step that is not above zero, impossible materials, or another number of Prony terms; a body with friction, which cannot be
+    /// differentiated.
     pub fn rest_with_sensitivities(&self, directions: &[Direction]) -> Result<State, SoftBodyError> {
         let mut state = self.rest();
         let SolverSettings {

@@ -9,14 +9,14 @@ use crate::contact::{RigidBody, clash};
 use crate::state::State;
 use crate::{Blocker, SolveError};
 
-/// Where an indenter with no past starts from if it can't be put in place at once: this far off the body, mm.
+/// Distance from the body at which the first motion of an indenter starts, mm.
 const CLEARANCE_MM: f64 = 0.01;
 
-/// Moves after which an indenter is taken to be out of the body.
+/// Most steps for moving an indenter out of the body.
 const MAX_RETREATS: u32 = 50;
 
 impl SoftBody {
-    /// Refuses an indenter that would reach into something rigid on its way: no gel is left there that could stop it.
+    /// Refuses a motion in which the indenter would enter something rigid: no gel is left there that could stop it.
     pub(super) fn check_way(
         &self,
         state: &State,
@@ -24,18 +24,18 @@ impl SoftBody {
         drive: &Drive,
     ) -> Result<(), SolveError> {
         let n_parts = (1.0 / drive.largest_part(self.settings.max_travel_mm)).round() as u32;
-        // The way of an indenter without a past is made up.
+        // For the first pose the motion is invented, so only its end is checked.
         let first = state.gel_from_indenter.map_or(n_parts, |_| 1);
         (first..=n_parts).try_for_each(|part| {
             let moving = RigidBody {
                 shape: indenter,
                 gel_from_shape: drive.pose(f64::from(part) / f64::from(n_parts)),
             };
-            self.check_place(state, &moving)
+            self.check_pose_is_clear(state, &moving)
         })
     }
 
-    fn check_place(&self, state: &State, indenter: &RigidBody) -> Result<(), SolveError> {
+    fn check_pose_is_clear(&self, state: &State, indenter: &RigidBody) -> Result<(), SolveError> {
         for &node in &self.mesh().sets.bonded {
             let at_mm = self.mesh().nodes_mm[node as usize] + state.displacements_mm[node as usize];
             let local_mm = indenter.gel_from_shape.inverse_transform_point(at_mm);
@@ -64,7 +64,7 @@ impl SoftBody {
         Ok(())
     }
 
-    /// Where an indenter without a past comes from: straight out of the body, along the mean of the outward normals where it is inside.
+    /// A start for the first pose of an indenter: straight out of the body, along the mean of the outward normals where the indenter is inside.
     pub(super) fn retreat(&self, state: &State, indenter: &dyn SignedDistance, pose: &Pose) -> Pose {
         let mesh = self.mesh();
         let mut normals = vec![DVec3::ZERO; mesh.nodes_mm.len()];
@@ -91,7 +91,7 @@ impl SoftBody {
             if deepest_mm == 0.0 {
                 break;
             }
-            // The first answer stays: as the indenter leaves, ever fewer nodes are asked.
+            // The first direction is kept: as the indenter leaves, ever fewer nodes are inside it.
             if way_out == DVec3::ZERO {
                 way_out = normal.normalize_or(DVec3::Z);
             }

@@ -8,7 +8,7 @@ use crate::body::SoftBody;
 /// Part of its smallest dimension by which an indenter may move at once.
 const THICKNESS_PART: f64 = 0.25;
 
-/// What moves.
+/// A motion of the indenter, or of the bonded nodes.
 pub(super) enum Drive<'a> {
     Indenter {
         shape: &'a dyn SignedDistance,
@@ -33,8 +33,7 @@ impl Drive<'_> {
         }
     }
 
-    /// Largest part of the motion that may be taken at once: a node that a moving shape has swallowed must still be nearest to the side
-    /// by which it came in.
+    /// Largest part of the motion for one step: a node inside the moved shape must still be nearest to the side through which it entered.
     pub(super) fn largest_part(&self, max_travel_mm: f64) -> f64 {
         let Self::Indenter { shape, from, to } = self else {
             return 1.0;
@@ -58,7 +57,7 @@ impl Drive<'_> {
         }
     }
 
-    /// Puts the bonded nodes where they are to be.
+    /// Moves the bonded nodes to their positions at a fraction of the motion.
     pub(super) fn hold(&self, body: &SoftBody, fraction: f64, displacements_mm: &mut [DVec3]) {
         if let Self::Bonded { from, to } = self {
             for ((&node, from), to) in body.mesh().sets.bonded.iter().zip(from).zip(*to) {

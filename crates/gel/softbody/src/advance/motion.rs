@@ -89,7 +89,7 @@ impl SoftBody {
         let largest = drive.largest_part(self.settings.max_travel_mm);
         let (mut done, mut size) = (0.0, largest);
         loop {
-            // The last part takes what round-off leaves.
+            // The last part ends at 1 exactly.
             let next = if done + size > 1.0 - 1e-9 {
                 1.0
             } else {

@@ -12,7 +12,7 @@ use crate::relaxation::Relaxation;
 use crate::sensitivity;
 use crate::state::{Motion, State};
 
-/// How far past the last motion the next may be extrapolated.
+/// Largest ratio of a motion to the last one for an extrapolation.
 const MAX_EXTRAPOLATION: f64 = 2.0;
 
 impl SoftBody {
@@ -167,7 +167,7 @@ impl SoftBody {
     }
 }
 
-/// How much of the last motion the next one is, backwards included: presses are extrapolated in depth, not in time.
+/// Ratio of the next motion to the last one, negative if it goes back: presses are extrapolated in depth, not in time.
 fn extrapolation(last_mm: DVec3, next_mm: DVec3) -> f64 {
     let size = last_mm.length_squared();
     if size > 0.0 {

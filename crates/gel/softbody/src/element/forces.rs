@@ -12,7 +12,7 @@ use super::table::{NODES, Table};
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::{LANES, Wide, least};
 
-/// Forces of the elements on their nodes, to be gathered node by node.
+/// Forces of the elements on their nodes, to be summed node by node.
 #[derive(Default)]
 pub(crate) struct Forces {
     /// By slot. N
@@ -21,7 +21,7 @@ pub(crate) struct Forces {
     pub(crate) energies: Vec<f64>,
 }
 
-/// Volume changes of the elements' corners, to be gathered corner by corner.
+/// Volume changes of the elements' corners, to be summed corner by corner.
 #[derive(Default)]
 pub(crate) struct Volumes {
     /// By slot. mm³

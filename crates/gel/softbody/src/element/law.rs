@@ -47,8 +47,8 @@ pub(super) trait Derivatives: Copy {
     /// Those of no energy.
     fn none() -> Self;
 
-    /// Those of a law.
-    fn of<L: Law>(law: &L, at: &Arguments<Self::Precision>) -> Self;
+    /// Sets those of a law. Without a part in the stretches their derivatives stay as they are, which is zero.
+    fn set<L: Law>(&mut self, law: &L, at: &Arguments<Self::Precision>);
 }
 
 impl Derivatives for FirstDerivatives {
@@ -64,16 +64,12 @@ impl Derivatives for FirstDerivatives {
     }
 
     #[inline(always)]
-    fn of<L: Law>(law: &L, at: &Arguments<f64>) -> Self {
-        let (stretch_energy, stretch_slopes) = match law.stretches() {
-            Some(stretches) => stretches.energy_and_slopes(&at.isochoric_logarithms),
-            None => (Wide::zero(), [Wide::zero(); 3]),
-        };
-        Self {
-            energy: law.energy(&at.invariants),
-            slopes: law.slopes(&at.invariants),
-            stretch_energy,
-            stretch_slopes,
+    fn set<L: Law>(&mut self, law: &L, at: &Arguments<f64>) {
+        self.energy = law.energy(&at.invariants);
+        self.slopes = law.slopes(&at.invariants);
+        if let Some(stretches) = law.stretches() {
+            (self.stretch_energy, self.stretch_slopes) =
+                stretches.energy_and_slopes(&at.isochoric_logarithms);
         }
     }
 }
@@ -95,16 +91,12 @@ impl Derivatives for SecondDerivatives {
     }
 
     #[inline(always)]
-    fn of<L: Law>(law: &L, at: &Arguments<f32>) -> Self {
-        let mut found = Self {
-            slopes: law.slopes(&at.invariants),
-            curvatures: law.curvatures(&at.invariants),
-            ..Self::none()
-        };
+    fn set<L: Law>(&mut self, law: &L, at: &Arguments<f32>) {
+        self.slopes = law.slopes(&at.invariants);
+        self.curvatures = law.curvatures(&at.invariants);
         if let Some(stretches) = law.stretches() {
-            found.stretches = stretches.derivatives(&at.isochoric_logarithms);
+            self.stretches = stretches.derivatives(&at.isochoric_logarithms);
         }
-        found
     }
 }
 
@@ -195,7 +187,7 @@ impl<D: Derivatives, L: Law> NullaryFnOnce for EvaluationOf<'_, D, L> {
     fn call(self) {
         let Self(Evaluation { at, found }, law) = self;
         for (at, found) in at.iter().zip(found) {
-            *found = D::of(&law, at);
+            found.set(&law, at);
         }
     }
 }

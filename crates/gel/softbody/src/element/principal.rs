@@ -1,9 +1,12 @@
 //! Principal axes of symmetric matrices, eight at a time.
+//!
+//! This is written here and not taken from a library because eight matrices are rotated side by side in the vectors of the processor, inside the
+//! kernels; a library such as faer decomposes one matrix at a time, with other round-off.
 
 use super::deformation::{Matrix, Vector};
 use crate::wide::{LANES, Real, Wide};
 
-/// Rounds of rotations that no matrix needs.
+/// Limit of the rounds of rotations, which no matrix reaches.
 const MAX_ROUNDS: usize = 10;
 
 /// Eigenvalues of symmetric matrices, and orthonormal eigenvectors in the same order: Jacobi's rotations (1846), which find orthonormal vectors

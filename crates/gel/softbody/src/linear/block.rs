@@ -1,4 +1,4 @@
-//! Vectors and blocks of three, padded with a fourth number that is zero: what the processor's vectors hold.
+//! Vectors of three and blocks of 3 × 3 numbers, padded with a fourth row of zeros to fit the vectors of the processor.
 
 use glam::{DVec3, Mat3, Vec3};
 
@@ -12,7 +12,7 @@ pub(crate) struct Vector(pub(crate) [f32; 4]);
 #[repr(C, align(16))]
 pub(crate) struct Block(pub(crate) [[f32; 4]; 3]);
 
-/// A sum of products of blocks and vectors: one part for each column, so that no addition waits for another.
+/// A sum of products of blocks and vectors, in three parts, one for each column, so that no addition has to wait for another.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Sum([[f32; 4]; 3]);
 
@@ -96,7 +96,7 @@ impl Block {
         }
     }
 
-    /// The inverse of a symmetric positive matrix; of one that is not, that of a number of its size.
+    /// The inverse of a symmetric positive definite matrix; for any other, that of a multiple of the unit matrix of the same size.
     #[inline(always)]
     pub(crate) fn inverse(&self) -> Self {
         let [[a, b, c, _], [_, d, e, _], [_, _, f, _]] = self.0;

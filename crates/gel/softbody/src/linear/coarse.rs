@@ -32,7 +32,7 @@ pub(crate) struct CoarseSystem {
     layout: Layout,
     /// Where each entry of each tetrahedron's tangent goes.
     blocks: Vec<TetBlocks>,
-    /// Where a node's own entries, the diagonal ones of its columns, stand. `[n_nodes]`
+    /// Indices of a node's diagonal entries. `[n_nodes]`
     diagonals: Vec<[u32; 3]>,
     /// The matrix with nothing but `-1/D`.
     base: Vec<f32>,
@@ -48,14 +48,14 @@ pub(crate) struct Factors {
     unknowns: Vec<f32>,
 }
 
-/// A matrix to factorise, and memory to do it.
+/// A matrix to factorise, and scratch memory.
 pub(crate) struct Tangent {
     matrix: Vec<f32>,
     factors: Vec<f32>,
     scratch: MemBuffer,
 }
 
-/// A matrix without factors.
+/// The matrix has no factors.
 #[derive(Debug)]
 pub(crate) struct Singular;
 
@@ -125,7 +125,7 @@ impl CoarseSystem {
         Ok(system)
     }
 
-    /// Memory for a matrix.
+    /// A matrix to be filled, with its scratch memory.
     pub(crate) fn tangent(&self) -> Tangent {
         let scratch = self
             .symbolic

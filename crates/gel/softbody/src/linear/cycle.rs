@@ -1,18 +1,18 @@
-//! The two-level cycle that preconditions the system: a sweep of Gauss–Seidel for what varies from node to node, the factors of the
-//! system on the coarse mesh for what does not, and the sweep the other way round, so that the whole stays symmetric.
+//! The two-level cycle that preconditions the system: a Gauss–Seidel sweep for errors that vary from node to node, the factors of the
+//! system on the coarse mesh for smooth errors, and a backward sweep, which makes the whole symmetric.
 
 use super::block::Vector;
 use super::coarse::{CoarseSystem, Factors};
 use super::matrix::{Matrix, Pattern};
 use super::sweep::{Step, Vectors};
 
-/// Memory of the cycle.
+/// Scratch memory of the cycle.
 pub(crate) struct Cycle {
     coarse: Vec<Vector>,
     moved_volumes: Vec<f32>,
 }
 
-/// The system and what preconditions it.
+/// The system and its preconditioner.
 pub(crate) struct TwoLevel<'a> {
     pub(crate) pattern: &'a Pattern,
     pub(crate) matrix: &'a Matrix,
@@ -23,7 +23,7 @@ pub(crate) struct TwoLevel<'a> {
     pub(crate) cycle: &'a mut Cycle,
 }
 
-/// Scalar products of a residual `r` and of what the cycle makes of it, `z`.
+/// Scalar products of a residual `r` and the result `z` of the cycle.
 #[derive(Clone, Copy)]
 pub(crate) struct Products {
     /// `zᵀ r`
@@ -42,7 +42,7 @@ impl Cycle {
 }
 
 impl TwoLevel<'_> {
-    /// Takes a step, and preconditions what it leaves of the residual. Leaves the `√D Bᵀ` of that, too.
+    /// Takes a step of conjugate gradients, and preconditions the residual after it. Also computes `√D Bᵀ z`.
     pub(crate) fn run(&mut self, step: Step, vectors: &mut Vectors, volumes: &mut [f32]) -> Products {
         let Cycle {
             coarse,

@@ -1,4 +1,4 @@
-//! Factors of the whole system in double precision, made anew for every direction: what most codes of the field do, to compare with.
+//! Factors of the whole system in double precision, computed anew for every direction: the usual method, for comparison.
 //!
 //! `[A B√D; √D Bᵀ -1]`, displacements and scaled pressures, as `L D Lᵀ` in an order of minimum degree.
 
@@ -22,12 +22,12 @@ pub(crate) struct DirectSystem {
     sources: Vec<Source>,
 }
 
-/// Where an entry comes from: the place of a block or slope, and the entry's column and row in it.
+/// Where an entry comes from: the index of a block or slope, and the entry's column and row in it.
 #[derive(Clone, Copy)]
 enum Source {
     Own { node: u32, entry: [u8; 2] },
-    Block { place: u32, entry: [u8; 2] },
-    Slope { place: u32, row: u8 },
+    Block { index: u32, entry: [u8; 2] },
+    Slope { index: u32, row: u8 },
     Pressure,
 }
 
@@ -37,11 +37,11 @@ impl DirectSystem {
         let mut blocks_below = vec![Vec::new(); n_free];
         let mut slopes_below = vec![Vec::new(); n_free];
         for row in 0..n_free {
-            for place in pattern.blocks_of(row) {
-                blocks_below[pattern.columns[place] as usize].push((row, place));
+            for index in pattern.blocks_of(row) {
+                blocks_below[pattern.columns[index] as usize].push((row, index));
             }
-            for place in pattern.slopes_of(row) {
-                slopes_below[row].push((pattern.slope_columns[place] as usize, place));
+            for index in pattern.slopes_of(row) {
+                slopes_below[row].push((pattern.slope_columns[index] as usize, index));
             }
         }
         let n_unknowns = 3 * n_free + pattern.n_coarse();
@@ -56,15 +56,15 @@ impl DirectSystem {
                     let (node, entry) = (node as u32, [column, row]);
                     push(3 * node as usize + usize::from(row), Source::Own { node, entry });
                 }
-                for &(below, place) in &blocks_below[node] {
+                for &(below, index) in &blocks_below[node] {
                     for row in 0..3_u8 {
-                        let (place, entry) = (place as u32, [column, row]);
-                        push(3 * below + usize::from(row), Source::Block { place, entry });
+                        let (index, entry) = (index as u32, [column, row]);
+                        push(3 * below + usize::from(row), Source::Block { index, entry });
                     }
                 }
-                for &(coarse, place) in &slopes_below[node] {
-                    let (place, row) = (place as u32, column);
-                    push(3 * n_free + coarse, Source::Slope { place, row });
+                for &(coarse, index) in &slopes_below[node] {
+                    let (index, row) = (index as u32, column);
+                    push(3 * n_free + coarse, Source::Slope { index, row });
                 }
                 columns.push(rows.len() as u32);
             }
@@ -148,8 +148,8 @@ impl Source {
         let of = |values: &[[f32; 4]; 3], [column, row]: [u8; 2]| values[column as usize][row as usize];
         f64::from(match self {
             Self::Own { node, entry } => of(&matrix.own[node as usize].0, entry),
-            Self::Block { place, entry } => of(&matrix.blocks[place as usize].0, entry),
-            Self::Slope { place, row } => matrix.slopes[place as usize].0[row as usize],
+            Self::Block { index, entry } => of(&matrix.blocks[index as usize].0, entry),
+            Self::Slope { index, row } => matrix.slopes[index as usize].0[row as usize],
             Self::Pressure => -1.0,
         })
     }

@@ -11,7 +11,7 @@ use pulp::NullaryFnOnce;
 
 use crate::parallel::{dispatch, join_halves};
 
-/// Entries that are worked on at once; columns are filled up to a multiple with zeros.
+/// Entries that are worked on at once. Columns are padded with zeros to a multiple.
 const LANES: usize = 16;
 
 /// Largest entry, in units of its column's scale.
@@ -44,14 +44,14 @@ struct Supernode {
 #[derive(Clone)]
 pub(crate) struct TriangularFactors {
     numbers: Arc<Numbers>,
-    /// Memory of each half: a supernode's rows, and what it adds between the halves.
+    /// Scratch memory of each half: a supernode's rows, and what the half adds between the halves.
     local: [Vec<f32>; 2],
     between: [Vec<f32>; 2],
 }
 
 struct Numbers {
     entries: Vec<i16>,
-    /// What an entry of a column is to be multiplied by. `[n_columns]`
+    /// The factor of the entries of a column. `[n_columns]`
     scales: Vec<f32>,
     /// Inverse of `D`. `[n_columns]`
     inverse: Vec<f32>,
@@ -62,7 +62,7 @@ impl Supernode {
         self.columns.len() + self.rows.len()
     }
 
-    /// Entries of a column that has this many rows below its diagonal, with the zeros that fill it up.
+    /// Entries of a column with this many rows below its diagonal, padding included.
     fn padded(n_below: usize) -> usize {
         n_below.next_multiple_of(LANES)
     }
@@ -344,7 +344,7 @@ impl Solve<'_> {
     }
 }
 
-/// The sum of all lanes. Inlined, it would make the compiler add up pairs of lanes all the way.
+/// The sum of all lanes. Not inlined: the compiler would otherwise add pairs of lanes inside the loop, which is slower.
 #[inline(never)]
 fn total(lanes: &[f32; LANES]) -> f32 {
     let [first, second] = [0, LANES / 2].map(|start| &lanes[start..][..LANES / 2]);

@@ -5,12 +5,12 @@ use super::cycle::TwoLevel;
 use super::matrix::Pattern;
 use super::sweep::{Step, Vectors};
 
-/// Memory of the iteration.
+/// Scratch memory of the iteration.
 pub(crate) struct ConjugateGradients {
     pub(crate) vectors: Vectors,
-    /// `D Bᵀ` times the solution: how much it takes off the pressures, MPa. `[n_coarse]`
+    /// `D Bᵀ` times the solution: the decrease of the pressures, MPa. `[n_coarse]`
     pub(crate) solution_mpa: Vec<f32>,
-    /// `√D Bᵀ` times the direction, and times what is preconditioned.
+    /// `√D Bᵀ` times the direction, and times the preconditioned residual.
     direction_volumes: Vec<f32>,
     volumes: Vec<f32>,
 }
@@ -21,7 +21,7 @@ pub(crate) enum Outcome {
     Converged,
     /// Not within the iterations allowed.
     Slow,
-    /// The energy curves down along a direction; the solution found before it still leads downhill.
+    /// The energy is concave along a direction; along the solution found before it, the energy still falls.
     NotConvex,
 }
 
@@ -36,7 +36,7 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves until a further iteration adds less than the square of `tolerance` to the energy won so far. Returns the iterations, too.
+    /// Solves until an iteration adds less than the square of `tolerance` to the decrease of energy so far. Also returns the number of iterations.
     pub(crate) fn solve(
         &mut self,
         system: &mut TwoLevel,
@@ -84,7 +84,7 @@ impl ConjugateGradients {
         (Outcome::Slow, max_iterations)
     }
 
-    /// Takes a solution, and its `√D Bᵀ`, that another method finds; false if it finds none that leads downhill.
+    /// Takes a solution, and its `√D Bᵀ`, from another method; false if that finds none along which the energy falls.
     pub(crate) fn take(
         &mut self,
         pattern: &Pattern,

@@ -1,4 +1,4 @@
-//! The system on the fine mesh: of `A` the diagonal and what stands below it, and `B √D`, by rows.
+//! The system on the fine mesh: the lower triangle of `A` with its diagonal, and `B √D`, by rows.
 
 use std::ops::Range;
 
@@ -11,10 +11,10 @@ use crate::element::{Elements, NODES, NodeBlock, NodeSlopes, Sink, Table};
 use crate::parallel::{dispatch, join_halves};
 use crate::wide::LANES;
 
-/// A pair of nodes of which one is bonded.
-const NOWHERE: u32 = u32::MAX;
+/// The index for a pair of nodes of which one is bonded: its block is not stored.
+const NONE: u32 = u32::MAX;
 
-/// Who neighbours whom among the free nodes.
+/// The sparsity of the system: the neighbours of each free node.
 pub(crate) struct Pattern {
     pub(crate) halves: Halves,
     /// Blocks of each row below the diagonal, ascending. `[n_free + 1]`
@@ -25,12 +25,12 @@ pub(crate) struct Pattern {
     pub(super) slope_columns: Vec<u32>,
     /// Square roots of the bulk modulus over the volume of each coarse node, `√D`.
     pub(super) root_stiffness: Vec<f32>,
-    /// Where the blocks of each slot's pairs go: a row for a node with itself, else twice a block, plus one for its transpose.
+    /// Where the blocks of each slot's pairs are added: the row for a node with itself, else twice the index of the block, plus one if transposed.
     /// `[n_slots][most_pairs]`, flat.
-    block_places: Vec<u32>,
+    block_indices: Vec<u32>,
     most_pairs: usize,
-    /// Where the slopes of each slot's nodes and corners go.
-    slope_places: Vec<[[u32; 4]; NODES]>,
+    /// Where the slopes of each slot's nodes and corners are added.
+    slope_indices: Vec<[[u32; 4]; NODES]>,
 }
 
 /// The numbers of the system.
@@ -39,9 +39,9 @@ pub(crate) struct Matrix {
     pub(super) blocks: Vec<Block>,
     /// Rows of `B √D`.
     pub(super) slopes: Vec<Vector>,
-    /// Stiffness that is added to the diagonal: of contact, of damping. `[n_free]`
+    /// Stiffness of contact and damping, to be added to the diagonal. `[n_free]`
     pub(crate) extra: Vec<Block>,
-    /// Blocks to which contact has added, and what they were before.
+    /// Blocks to which contact has added, and their values before.
     covered: Vec<(u32, Block)>,
     /// The whole diagonal of `A`. `[n_free]`
     pub(super) own: Vec<Block>,
@@ -49,7 +49,7 @@ pub(crate) struct Matrix {
     pub(super) inverse: Vec<Block>,
 }
 
-/// Adds the tangents of one half, or of what lies between.
+/// Adds the tangents of one half, or of the elements between the halves.
 pub(crate) struct FineSink<'a> {
     pattern: &'a Pattern,
     first_row: usize,
@@ -110,22 +110,22 @@ impl Pattern {
         let (rows, columns) = csr(blocks);
         let (slope_rows, slope_columns) = csr(slopes);
         let most_pairs = elements.most_pairs();
-        let mut block_places = vec![NOWHERE; elements.n_slots() * most_pairs];
-        let mut slope_places = vec![[[NOWHERE; 4]; NODES]; elements.n_slots()];
+        let mut block_indices = vec![NONE; elements.n_slots() * most_pairs];
+        let mut slope_indices = vec![[[NONE; 4]; NODES]; elements.n_slots()];
         for ((nodes, corners), &slot) in parents.iter().zip(corners).zip(&elements.slots) {
-            let slot_places = &mut block_places[slot as usize * most_pairs..];
-            for (place, &pair) in slot_places.iter_mut().zip(&elements.table_of(slot).pairs) {
+            let slot_indices = &mut block_indices[slot as usize * most_pairs..];
+            for (index, &pair) in slot_indices.iter_mut().zip(&elements.table_of(slot).pairs) {
                 if let Some((row, column, is_turned)) = pair_of(nodes, pair) {
-                    *place = if row == column {
+                    *index = if row == column {
                         row
                     } else {
                         2 * find(&rows, &columns, row, column) + u32::from(is_turned)
                     };
                 }
             }
-            for (places, &node) in slope_places[slot as usize].iter_mut().zip(nodes) {
+            for (indices, &node) in slope_indices[slot as usize].iter_mut().zip(nodes) {
                 if is_free(node) {
-                    *places = corners.map(|corner| find(&slope_rows, &slope_columns, node, corner));
+                    *indices = corners.map(|corner| find(&slope_rows, &slope_columns, node, corner));
                 }
             }
         }
@@ -139,9 +139,9 @@ impl Pattern {
                 .iter()
                 .map(|stiffness| stiffness.sqrt() as f32)
                 .collect(),
-            block_places,
+            block_indices,
             most_pairs,
-            slope_places,
+            slope_indices,
         }
     }
 
@@ -174,7 +174,7 @@ impl Pattern {
 }
 
 impl Matrix {
-    /// Empties the matrix, and returns what the two halves add to.
+    /// Clears the matrix, and returns the sinks of the two halves.
     pub(crate) fn halves<'a>(&'a mut self, pattern: &'a Pattern) -> [FineSink<'a>; 2] {
         self.covered.clear();
         self.diagonal.fill(Block::default());
@@ -208,7 +208,7 @@ impl Matrix {
         ]
     }
 
-    /// What lies between the halves adds to this.
+    /// The sink of the elements between the halves.
     pub(crate) fn between<'a>(&'a mut self, pattern: &'a Pattern) -> FineSink<'a> {
         FineSink {
             pattern,
@@ -228,10 +228,10 @@ impl Matrix {
         }
     }
 
-    /// Takes back what was added between nodes.
+    /// Restores the blocks between nodes to which contact has added.
     pub(crate) fn take_back(&mut self) {
-        for (place, block) in self.covered.drain(..).rev() {
-            self.blocks[place as usize] = block;
+        for (index, block) in self.covered.drain(..).rev() {
+            self.blocks[index as usize] = block;
         }
     }
 
@@ -247,9 +247,9 @@ impl Matrix {
             let part = part as f32;
             self.extra[node as usize].add(&Block::from_mat3(&(*stiffness * (part * part))));
             for (other, other_part) in parts.clone() {
-                let place = find(&pattern.rows, &pattern.columns, node.max(other), node.min(other));
-                let block = &mut self.blocks[place as usize];
-                self.covered.push((place, *block));
+                let index = find(&pattern.rows, &pattern.columns, node.max(other), node.min(other));
+                let block = &mut self.blocks[index as usize];
+                self.covered.push((index, *block));
                 // Symmetric, whichever comes first.
                 block.add(&Block::from_mat3(&(*stiffness * (part * other_part as f32))));
             }
@@ -315,17 +315,17 @@ impl NullaryFnOnce for Addition<'_, '_> {
         } = self;
         let n_pairs = sink.pattern.most_pairs;
         for lane in 0..LANES {
-            let places = &sink.pattern.block_places[(slot + lane) * n_pairs..][..n_pairs];
-            for ((block, &place), [a, b]) in blocks.iter().zip(places).zip(&table.pairs) {
-                if place == NOWHERE {
+            let indices = &sink.pattern.block_indices[(slot + lane) * n_pairs..][..n_pairs];
+            for ((block, &index), [a, b]) in blocks.iter().zip(indices).zip(&table.pairs) {
+                if index == NONE {
                     continue;
                 }
                 let sum = if a == b {
-                    &mut sink.diagonal[place as usize - sink.first_row]
+                    &mut sink.diagonal[index as usize - sink.first_row]
                 } else {
-                    &mut sink.blocks[place as usize / 2 - sink.first_block]
+                    &mut sink.blocks[index as usize / 2 - sink.first_block]
                 };
-                if a != b && place % 2 == 1 {
+                if a != b && index % 2 == 1 {
                     for i in 0..3 {
                         for j in 0..3 {
                             sum.0[i][j] += block[i][j].0[lane];
@@ -339,12 +339,12 @@ impl NullaryFnOnce for Addition<'_, '_> {
                     }
                 }
             }
-            for (slopes, places) in slopes.iter().zip(&sink.pattern.slope_places[slot + lane]) {
-                if places[0] == NOWHERE {
+            for (slopes, indices) in slopes.iter().zip(&sink.pattern.slope_indices[slot + lane]) {
+                if indices[0] == NONE {
                     continue;
                 }
-                for (slope, &place) in slopes.iter().zip(places) {
-                    let sum = &mut sink.slopes[place as usize - sink.first_slope].0;
+                for (slope, &index) in slopes.iter().zip(indices) {
+                    let sum = &mut sink.slopes[index as usize - sink.first_slope].0;
                     for i in 0..3 {
                         sum[i] += slope[i].0[lane];
                     }

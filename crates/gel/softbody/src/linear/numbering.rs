@@ -1,6 +1,6 @@
-//! The order of the unknowns: two halves that do not touch each other, and what lies between.
+//! The order of the unknowns: two halves that do not touch each other, and the nodes between them.
 //!
-//! The halves can be worked on side by side. A coarse node belongs to the half on its side of a plane across the body's longest
+//! The halves can be worked on at the same time. A coarse node belongs to the half on its side of a plane across the body's longest
 //! axis. A fine node belongs to a half if all the coarse tetrahedra around it have their corners there, else it lies between.
 
 use glam::DVec3;
@@ -8,7 +8,7 @@ use twintac_mesh::{NodeSets, Refinement, TetMesh};
 
 use crate::element::Side;
 
-/// Where the halves end.
+/// The number of nodes in the halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Halves {
     /// Coarse nodes of the first half.
@@ -161,7 +161,7 @@ fn by_classes(class: &[u8], nodes_mm: &[DVec3]) -> Vec<u32> {
     order
 }
 
-/// The nodes by the side of a plane that they are on, and how many are on the first.
+/// The nodes, sorted by their side of a plane across the longest axis, and how many are on the first side.
 fn by_sides(nodes_mm: &[DVec3]) -> (Vec<u32>, usize) {
     let bound = |f: fn(DVec3, DVec3) -> DVec3| nodes_mm.iter().copied().reduce(f).unwrap_or_default();
     let size_mm = bound(DVec3::max) - bound(DVec3::min);
@@ -174,7 +174,7 @@ fn by_sides(nodes_mm: &[DVec3]) -> (Vec<u32>, usize) {
     };
     let mut along: Vec<f64> = nodes_mm.iter().map(|node| node[axis]).collect();
     along.sort_by(f64::total_cmp);
-    // Just below the middle, and off the plane of nodes that may be there.
+    // Just below the middle, so that no plane of nodes is cut in itself.
     let cut_mm = along[along.len() / 2] - 1e-9 * size_mm[axis];
     let is_low = |node: u32| nodes_mm[node as usize][axis] < cut_mm;
     let mut order: Vec<u32> = (0..nodes_mm.len() as u32).collect();
@@ -186,7 +186,7 @@ fn by_sides(nodes_mm: &[DVec3]) -> (Vec<u32>, usize) {
     (order, n_low)
 }
 
-/// A number that sorts as a coordinate does, but for round-off.
+/// A number that sorts like a coordinate, without its round-off.
 fn ordered(coordinate_mm: f64) -> i64 {
     (coordinate_mm * 1e6).round() as i64
 }

@@ -31,7 +31,7 @@ impl Matrix {
         add(halves.both..halves.free, 0, volumes);
     }
 
-    /// Takes `B D Bᵀ x` off a vector, given `√D Bᵀ x`.
+    /// Subtracts `B D Bᵀ x` from a vector, given `√D Bᵀ x`.
     pub(crate) fn take_volumes(&self, pattern: &Pattern, volumes: &[f32], from: &mut [Vector]) {
         let half = pattern.halves.free / 2;
         let (first, second) = from.split_at_mut(half);

@@ -1,4 +1,4 @@
-//! Sweeps of block Gauss–Seidel on `H = L + Δ + Lᵀ`, and the step of conjugate gradients that rides on them.
+//! Sweeps of block Gauss–Seidel on `H = L + Δ + Lᵀ`, and the step of conjugate gradients that is done along with them.
 //!
 //! A backward sweep that ends in `z` leaves the residual `-L c`, `c` the change that it made to each row: at its turn a row is solved, and
 //! only the rows before it change after that. So `H z = r + L c` can be added up by the next forward sweep, which reads `L` anyway, and
@@ -15,28 +15,28 @@ use crate::parallel::{dispatch, join_halves};
 
 /// Vectors of the iteration. `[n_free]`
 pub(crate) struct Vectors {
-    /// What is left of the right-hand side.
+    /// The residual of the solution so far.
     pub(crate) residual: Vec<Vector>,
     /// The solution so far.
     pub(crate) solution: Vec<Vector>,
     /// The direction along which it moved last, and its product with `H`.
     pub(crate) direction: Vec<Vector>,
     product: Vec<Vector>,
-    /// What the preconditioner makes of the residual, and how the backward sweep changed it.
+    /// The preconditioned residual, and its change by the backward sweep.
     pub(crate) preconditioned: Vec<Vector>,
     change: Vec<Vector>,
-    /// Of a forward sweep the defect, of a backward one what stands above the diagonal of `A z`.
+    /// After a forward sweep the defect, after a backward one the part of `A z` above the diagonal.
     pub(crate) defect: Vec<Vector>,
 }
 
-/// The step to take: of the new direction, and of the old one in it.
+/// A step of conjugate gradients: its length, and the part of the old direction in the new one.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Step {
     pub(crate) length: f32,
     pub(crate) ratio: f32,
 }
 
-/// `zᵀ r`, and of `zᵀ H z - zᵀ r` what `A` makes of it and what the volumes take off it.
+/// `zᵀ r`, and the parts of `zᵀ H z - zᵀ r` from `A` and, to be subtracted, from the volumes.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Squares {
     pub(crate) residual: f64,
@@ -71,7 +71,7 @@ impl Vectors {
         }
     }
 
-    /// Takes a step, of the direction and the solution alone.
+    /// Takes a step, updating the direction and the solution only.
     pub(crate) fn finish(&mut self, step: Step) {
         let rows = self.solution.iter_mut().zip(&mut self.direction);
         for ((solution, direction), z) in rows.zip(&self.preconditioned) {
@@ -157,8 +157,8 @@ impl<'a> Part<'a> {
 }
 
 impl Matrix {
-    /// Takes a step of conjugate gradients, and sweeps from zero for what it leaves of the residual. Leaves `√D Bᵀ x` and the defect but
-    /// for the volumes' part in it. `moved_volumes` is memory.
+    /// Takes a step of conjugate gradients, and sweeps from zero for the residual after it. Computes `√D Bᵀ x`, and the defect without the volumes'
+    /// part. `moved_volumes` is scratch memory.
     pub(crate) fn sweep_forward(
         &self,
         pattern: &Pattern,
@@ -189,7 +189,7 @@ impl Matrix {
         rows(halves.both..halves.free, vectors.part(volumes, moved_volumes));
     }
 
-    /// Sweeps the other way, from `x` and its `√D Bᵀ x`.
+    /// Sweeps backward, from `x` and its `√D Bᵀ x`.
     pub(crate) fn sweep_backward(
         &self,
         pattern: &Pattern,

@@ -14,7 +14,7 @@ use crate::linear::coarse::Factors;
 use crate::relaxation::{History, Relaxation};
 use crate::wide::LANES;
 
-/// Factors of a body at rest, which all its presses start with.
+/// Factors of a body at rest, with which all its presses start.
 pub(crate) fn rest_factors(body: &SoftBody) -> Option<Factors> {
     let still = Relaxation::new(&body.material.prony, 0.0);
     let history = History::new(body.elements.n_points(), &body.material.prony);
@@ -105,7 +105,7 @@ impl Buffers {
         self.matrix.product(&body.pattern, x)
     }
 
-    /// Completes the matrix with what contact and damping add.
+    /// Adds contact and damping to the matrix.
     pub(crate) fn add_contact(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
         for (extra, stiffness) in self.matrix.extra.iter_mut().zip(&body.node_stiffness) {
             *extra = Block::diagonal((self.damping * stiffness) as f32);

@@ -1,4 +1,4 @@
-//! Newton's direction.
+//! The direction of Newton's method.
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ impl Buffers {
         forcing: f64,
     ) -> Result<(), Failure> {
         match self.try_direction(body, step, x, forcing) {
-            // Far from equilibrium, pressures foreseen can bend the tangent more than stiffening makes up for.
+            // Far from equilibrium, the foreseen pressures can make the tangent indefinite by more than stiffening corrects.
             Err(Failure::Singular) if self.foreseen_mpa.iter().any(|mpa| *mpa != 0.0) => {
                 self.foreseen_mpa.fill(0.0);
                 self.has_matrix = false;

@@ -10,12 +10,12 @@ use crate::body::SoftBody;
 use crate::parallel::join_halves;
 
 impl Buffers {
-    /// Whether no tetrahedron is inside out, or the material bears it.
+    /// Whether no tetrahedron is inside out, or the material is defined for that.
     pub(crate) fn is_valid(&mut self, body: &SoftBody, x: &mut Unknowns) -> bool {
         is_admissible(body, body.elements.volumes(x.displacements_mm, &mut self.volumes))
     }
 
-    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material does not bear it.
+    /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material is not defined for that.
     pub(crate) fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
         let started = Instant::now();
         let mut evaluation = Evaluation {

@@ -5,19 +5,19 @@ use super::workspace::Buffers;
 use crate::body::SoftBody;
 use crate::contact::Contact;
 
-/// Accuracy of a direction: iterations end when one adds less than the square of this to the energy that a direction wins.
+/// Accuracy of a direction: iterations end when one adds less than the square of this to the decrease of energy.
 const FORCING: f64 = 0.3;
 
-/// Part of the tolerance below which the start of a step needs no improvement.
+/// Part of the tolerance below which the start of a step is accepted as its solution.
 const UNTOUCHED: f64 = 0.1;
 
-/// A step that leaves more than this part of the unbalanced forces calls for a new matrix.
+/// A step after which more than this part of the unbalanced forces is left needs a new matrix.
 const SLOW: f64 = 0.3;
 
 /// Steps below this part of their direction are short.
 const SHORT: f64 = 0.2;
 
-/// Smallest damping worth having.
+/// Smallest damping above zero.
 const LEAST_DAMPING: f64 = 0.01;
 
 impl Buffers {
@@ -36,10 +36,10 @@ impl Buffers {
         let mut has_failed = false;
         for iteration in 0..=settings.max_iterations {
             let residual = now.unbalanced_n / now.load_n.max(body.least_load_n());
-            // A start is taken for the answer only if it is much better than it has to be: errors must not pile up from step to step.
+            // The start is accepted as the solution only if it is much better than the tolerance: errors must not accumulate over steps.
             let goal = if iteration == 0 { UNTOUCHED } else { 1.0 } * settings.tolerance;
             if residual <= goal {
-                // Some materials pass through inverted tetrahedra, but none may end there.
+                // Some materials pass through inverted tetrahedra, but an equilibrium must have none.
                 if now.smallest_volume_ratio <= 0.0 {
                     return Err(Failure::Inverted);
                 }
@@ -77,7 +77,7 @@ impl Buffers {
                         now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
                     }
                 }
-                // A direction that leads nowhere: once more with new factors and a short leash.
+                // No decrease along the direction: once more with new factors and damping.
                 Err(_) if !has_failed => {
                     has_failed = true;
                     self.has_matrix = false;
@@ -95,7 +95,7 @@ impl Buffers {
         })
     }
 
-    /// Short steps tell that the tangent is a poor guide: trust it less (Levenberg, 1944), and more again after whole ones.
+    /// Increases the damping after short steps, which show that the tangent is a poor guide (Levenberg, 1944), and decreases it after whole ones.
     fn adapt_damping(&mut self, length: f64) {
         if length < SHORT {
             self.damping = (4.0 * self.damping).max(LEAST_DAMPING);
@@ -118,7 +118,7 @@ fn follow_friction(contacts: &mut [Contact]) -> f64 {
         .sum()
 }
 
-/// Carries the forces of those shapes over in which a point is too deep. True if there are any.
+/// Updates the multipliers of those shapes in which a node is too deep. True if there are any.
 fn push_out(body: &SoftBody, contacts: &mut [Contact]) -> bool {
     let mut any = false;
     for contact in contacts {

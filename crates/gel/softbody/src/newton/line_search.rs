@@ -5,23 +5,23 @@ use super::workspace::Buffers;
 use crate::body::SoftBody;
 use crate::nodal::dot;
 
-/// Trial steps of a line search before the direction is given up.
+/// Trial steps of a line search after which the direction fails.
 const MAX_TRIALS: u32 = 20;
 
 /// Part of the decrease promised by the slope that a trial step must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Longest step, in directions: where a node slips off an edge, the energy bends down and a direction falls short.
+/// Longest step, in units of the direction: where a node slips off an edge, the energy is concave and the direction too short.
 const MAX_STRETCH: f64 = 16.0;
 
-/// A trial whose slope is below this part of that at the start is close enough to the lowest point.
+/// A trial whose slope is below this part of that at the start is accepted.
 const FLAT: f64 = 0.5;
 
-/// Below this part of the energy, and of the shear modulus times the volume, a change of energy is round-off, and the slope decides.
+/// A change below this part of the energy, and of the shear modulus times the volume, is round-off; the slope decides then.
 const ROUND_OFF: f64 = 1e-13;
 
 impl Buffers {
-    /// Goes along the direction to where the energy is about lowest, at most its whole length. Trials cost little beside a direction.
+    /// Finds a step along the direction to about the lowest energy. Trials cost little compared with a direction.
     pub(super) fn search(
         &mut self,
         body: &SoftBody,
@@ -33,7 +33,7 @@ impl Buffers {
         let round_off = ROUND_OFF * (start.energy.abs() + body.energy_scale_n_mm());
         self.start_mm.copy_from_slice(x.displacements_mm);
         self.start_mpa.copy_from_slice(x.pressures_mpa);
-        // The energy falls at `low`, where the best trial is; beyond `high` it rises, or a tetrahedron is inside out.
+        // At `low`, the best trial, the energy still falls; beyond `high` it rises, or a tetrahedron is inside out.
         let (mut low, mut slope_at_low, mut is_usable) = (0.0, slope_at_start, false);
         let (mut high, mut slope_at_high) = (f64::INFINITY, None);
         let mut length = 1.0;
@@ -66,7 +66,7 @@ impl Buffers {
             if is_usable && high - low < 0.1 * high {
                 break;
             }
-            // Where a line through both slopes is zero, but well inside.
+            // The zero of a line through both slopes, limited to the inner part of the interval.
             let part = slope_at_high.map_or(0.5, |high| slope_at_low / (slope_at_low - high));
             length = low + part.clamp(0.1, 0.9) * (high - low);
         }

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use crate::Material;
 
-/// A way to change a press: what it depends on a little before and a little after, as one parameter grows.
+/// A parameter of a press, given by the material and the indenter's pose a step below and a step above its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// The material where the parameter is less by a step, and where it is more; with as many Prony terms as the body's.
     pub materials: [Material; 2],
-    /// The step, in the unit of the parameter: about 1e-4 of what changes much, so that neither curvature nor round-off counts.
+    /// The step, in the unit of the parameter: about 1e-4 of its scale, so that neither curvature nor round-off matters.
     pub step: f64,
     /// Rate at which all poses of the indenter move, mm over the unit of the parameter.
     pub indenter_mm: DVec3,

@@ -25,7 +25,7 @@ pub(crate) struct Sensitivity {
     indenter_force_n: DVec3,
 }
 
-/// Takes the rates to the end of a step that has found its equilibrium.
+/// Updates the rates to the end of a step that has found its equilibrium.
 pub(crate) fn follow(
     body: &SoftBody,
     buffers: &mut Buffers,
@@ -257,7 +257,7 @@ impl Sensitivity {
             .collect()
     }
 
-    /// Takes the rates of the history to the end of the step.
+    /// Updates the rates of the history variables to the end of the step.
     fn finish(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
         let Response {
             relaxation, history, ..
