@@ -70,7 +70,7 @@ fn differentiate(
     buffers.stand_at(x);
     let mut tangent = Tangent::new(body, buffers, step, x);
     for sensitivity in sensitivities {
-        sensitivity.carry(before, x.contacts);
+        sensitivity.follow_multipliers(before, x.contacts);
         sensitivity.solve(buffers, &mut tangent)?;
     }
     Ok(())
@@ -116,16 +116,16 @@ impl Sensitivity {
     }
 
     /// Follows the contacts' multipliers from one equilibrium to the next.
-    fn carry(&mut self, before: &[Contact], now: &[Contact]) {
+    fn follow_multipliers(&mut self, before: &[Contact], now: &[Contact]) {
         let rates = self.multipliers_mm.iter_mut().zip(&self.gaps_mm);
         for ((multiplier_mm, gaps_mm), (before, now)) in rates.zip(before.iter().zip(now)) {
             let touches = before.touches.iter().zip(&now.touches);
-            for ((carried, gap), (before, now)) in multiplier_mm.iter_mut().zip(gaps_mm).zip(touches) {
+            for ((multiplier, gap), (before, now)) in multiplier_mm.iter_mut().zip(gaps_mm).zip(touches) {
                 if now.multiplier_mm == 0.0 || before.multiplier_mm == 0.0 {
-                    *carried = 0.0;
+                    *multiplier = 0.0;
                 }
                 if now.multiplier_mm > 0.0 && now.multiplier_mm != before.multiplier_mm {
-                    *carried = (*carried - *gap) * before.stiffening / now.stiffening;
+                    *multiplier = (*multiplier - *gap) * before.stiffening / now.stiffening;
                 }
             }
         }
@@ -233,8 +233,8 @@ impl Sensitivity {
         };
         let rigid = &step.shapes[shape];
         // Quadrature points inside triangles have no multiplier.
-        let carried = self.multipliers_mm[shape].iter().chain(std::iter::repeat(&0.0));
-        let touches = x.contacts[shape].each(&body.boundary).zip(carried);
+        let multipliers = self.multipliers_mm[shape].iter().chain(std::iter::repeat(&0.0));
+        let touches = x.contacts[shape].each(&body.boundary).zip(multipliers);
         touches
             .map(|((point, touch), multiplier_mm)| {
                 if touch.force_n <= 0.0 {
