@@ -8,8 +8,8 @@ const STEP: f64 = 1e-9;
 /// Monotone cubics through a table over depth: zero above the surface, the end of the table beyond it.
 ///
 /// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1
-/// under a flat punch), over which everything begins as a straight line. A table of ten depths is then as
-/// good as one of fifty.
+/// under a flat punch), because force and
+/// pressures begin as straight lines over it. A table of ten depths is then as accurate as one of fifty.
 #[derive(Clone, Debug)]
 pub struct DepthCurves {
     growth: f64,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use twintac_shape::Pose;
 
-/// How well the solver balanced a frame.
+/// Solve quality of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolveQuality {
     /// Newton iterations.
@@ -14,7 +14,7 @@ pub struct SolveQuality {
     pub penetration_mm: f64,
     /// Smallest volume ratio of a tetrahedron.
     pub smallest_volume_ratio: f64,
-    /// Wall time, s. Not part of any result that has to repeat.
+    /// Wall time, s. It is not reproducible, and no result depends on it.
     #[serde(skip)]
     pub wall_time_s: f64,
 }
@@ -31,7 +31,7 @@ pub struct PressFrame {
     /// The stress feature of TwinTac (arXiv 2509.10063, equation 6): mean over the surface nodes above each taxel of von Mises stress over
     /// distance to the taxel, kPa/mm; `[n_taxels]`.
     pub stress_feature_kpa_per_mm: Vec<f64>,
-    /// How well it is solved.
+    /// Quality of the solve.
     pub quality: SolveQuality,
 }
 

@@ -1,7 +1,7 @@
 //! Tables over depth on a regular lattice of places, and the table at any place between them.
 //!
 //! An array pressed at thousands of places need not be simulated at each: the pressure at a port varies over distances of the gel's height, so
-//! splines through a lattice of a third of that height lose less than the mesh does.
+//! splines through a lattice of a third of that height have a smaller error than the mesh.
 
 use glam::DVec2;
 use twintac_shape::Pose;
@@ -117,7 +117,7 @@ fn blend(nodes: &[(&DepthTable, f64)], nearest: &DepthTable, frame: usize) -> Pr
     }
 }
 
-/// What each node's value counts at a position (in steps), for the cubic spline through equally spaced nodes, its third derivative
+/// The weight of each node's value at a position (in steps), for the cubic spline through equally spaced nodes, its third derivative
 /// continuous at the second and the last but one (not-a-knot). There its curvature is the second difference; between, the curvatures
 /// m solve m₋ + 4 m + m₊ = 6 times the second difference. `[n_nodes]`
 fn spline_weights(position: f64, n_nodes: usize) -> Vec<f64> {

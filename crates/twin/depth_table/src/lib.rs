@@ -1,6 +1,6 @@
-//! What a simulated gel answers at one place, as a table over depth, and how it is interpolated.
+//! Simulated presses as tables over depth: force and pressures at one position, and their interpolation.
 //!
-//! The answer of an elastic gel without friction depends on the depth alone, not on how the indenter got there. So each place is simulated
+//! The state of an elastic gel without friction depends on the depth alone, not on the path of the indenter. So each place is simulated
 //! once, as a [`DepthTable`], and every press there, at any speed and with any holds, is read from the table: [`DepthCurves`] interpolates it
 //! over depth ([`MonotoneCubic`]), and a [`Lattice`] interpolates tables over places. A [`DepthTableSource`] delivers the tables; this crate
 //! solves nothing.

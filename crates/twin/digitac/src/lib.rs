@@ -3,8 +3,8 @@
 //! A recording is cut into [`Places`]; a [`DepthTableSource`](twintac_depth_table::DepthTableSource)
 //! simulates each; [`fit_bench`] finds what is unknown
 //! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
-//! [`Split`] says which presses teach and which judge; [`train()`] makes a [`Twin`] of each [`Variant`];
-//! [`score()`] says how wrong it is; and a [`Model`] keeps it in a folder.
+//! [`Split`] divides presses into training, validation and test; [`train()`] makes a [`Twin`] of each [`Variant`];
+//! [`score()`] computes its errors; and a [`Model`] keeps it in a folder.
 //!
 //! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
 //! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this

@@ -184,14 +184,14 @@ impl Truth {
 /// A press of two taxels by hand; frames are (depth, readings).
 pub(crate) fn by_hand(
     name: &str,
-    file: &str,
+    mounting: &str,
     place_mm: [f64; 2],
     frames: &[(f64, [f64; 2])],
 ) -> crate::PairedPress {
     let n_frames = frames.len();
     crate::PairedPress {
         name: name.into(),
-        file: file.into(),
+        mounting: mounting.into(),
         indenter: "tip".into(),
         place_mm,
         features: Features {

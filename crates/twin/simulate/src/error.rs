@@ -1,7 +1,7 @@
 //! What can go wrong in a simulated press.
 
-/// A press that could not be set up. A press that starts and does not converge is no error: its table ends at the last good depth, and
-/// says why.
+/// A press that could not be set up. A press that starts and then does not converge is not an error: its table ends at the last converged
+/// depth, with the reason.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulateError {
     /// The gel could not be meshed.

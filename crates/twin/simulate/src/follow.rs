@@ -13,7 +13,7 @@ use crate::history::solve_quality;
 use crate::readout::PortReadout;
 use crate::{Gel, GelMesh, SimulateError};
 
-/// Part of the gel's height that a force of unknown effect is first taken to press in.
+/// First guess of the depth that a prescribed force presses, as a fraction of the gel's height.
 const GUESSED_DEPTH: f64 = 0.25;
 
 /// The gel and the indenter at one moment of a path. Forces act on the gel, in its frame.
@@ -31,15 +31,15 @@ pub struct FollowedFrame {
     pub torque_n_mm: DVec3,
     /// Hydrostatic pressure -tr(σ)/3, averaged over the port of each taxel and over each point's disc, kPa.
     pub pressure_kpa: BTreeMap<String, f64>,
-    /// How well it is solved.
+    /// Quality of the solve.
     pub quality: SolveQuality,
-    /// Wall time of the frame, s. No part of what repeats.
+    /// Wall time of the frame, s. It is not reproducible, and no result depends on it.
     pub wall_time_s: f64,
-    /// What it was spent on.
+    /// The wall time by part of the solver.
     pub cost: Cost,
 }
 
-/// What came of a path.
+/// The result of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Followed {
     /// Nodes of the mesh.
@@ -181,9 +181,9 @@ struct Walk<'a> {
     travel_mm: f64,
     /// Time of the last frame, s.
     time_s: Option<f64>,
-    /// How far beyond its pose the indenter was when a force decided last, mm.
+    /// How far beyond its pose the indenter was at the last frame of prescribed force, mm.
     beyond_mm: f64,
-    /// Force along the direction when a pose decided last, N.
+    /// Force along the direction at the last frame of prescribed pose, N.
     force_n: f64,
 }
 

@@ -23,7 +23,7 @@ const CONTACT_DEPTH: f64 = 0.5;
 /// By how much edges grow at least when a mesh has too many nodes.
 const MIN_COARSENING: f64 = 1.01;
 
-/// Power of the excess of nodes by which edges grow: less than a third, as the number of nodes goes down in leaps.
+/// Power of the excess of nodes by which edges grow: less than a third, as the number of nodes falls in steps.
 const COARSENING_POWER: f64 = 0.2;
 
 /// Edges along a path as part of those asked for, if there are nodes for it.
@@ -32,7 +32,7 @@ const PATH_SCALE: f64 = 0.7;
 /// Nodes along a path with fine rims, as part of those that it may have without.
 const RIM_SHARE: f64 = 1.6;
 
-/// Nodes of a mesh that only tells how deep a force goes.
+/// Nodes of a coarse mesh that is only used to estimate how deep a force presses.
 const COARSE_NODES: usize = 1500;
 
 /// Shortest edge at a rim as part of the edge under the rest of the indenter.
@@ -159,7 +159,7 @@ impl Gel {
         gel
     }
 
-    /// The same gel, meshed as coarsely as tells roughly how deep a force goes.
+    /// The same gel with a coarse mesh, to estimate how deep a force presses.
     pub(crate) fn coarse(&self) -> Self {
         let mut gel = self.clone();
         gel.settings.edges_per_height = gel.settings.edges_per_height.min(4.0);
@@ -168,7 +168,7 @@ impl Gel {
         gel
     }
 
-    /// Meshes the gel for an indenter that touches first below a pose and goes this deep; for a path, with the ways that it moves on by.
+    /// Meshes the gel for an indenter that touches first below a pose and goes this deep; for a path, with its displacements after that.
     pub(crate) fn mesh_for(
         &self,
         shape: &Shape,

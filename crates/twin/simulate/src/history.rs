@@ -1,4 +1,4 @@
-//! What a press along a trajectory in time gives.
+//! The result of a press along a trajectory in time.
 
 use twintac_depth_table::{PressFrame, SolveQuality};
 use twintac_shape::Pose;

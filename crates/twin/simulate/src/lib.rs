@@ -4,7 +4,7 @@
 //! trajectory in time (for materials that relax), and [`Gel::follow`] takes an indenter along any path.
 //!
 //! Each press gets a mesh of its own, fine under the indenter and mirrored about its axis: moving the press place moves the fine cells
-//! along, so that neighbouring places differ by physics and not by where nodes happen to lie.
+//! along, so that results at neighbouring places do not differ by where nodes lie.
 
 mod error;
 mod follow;

@@ -1,4 +1,4 @@
-//! A press with the rates at which it changes with the gel's material and with where the indenter is.
+//! A press with its derivatives with respect to the constants of the gel's material and the position of the indenter.
 
 use glam::DVec3;
 use twintac_shape::Pose;
@@ -6,7 +6,7 @@ use twintac_softbody::Direction;
 
 use crate::{GelMesh, Keyframe, SimulateError};
 
-/// One moment of a press, and its rates along each direction asked for.
+/// One moment of a press, and its derivatives along each direction asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RatedFrame {
     /// Time, s.

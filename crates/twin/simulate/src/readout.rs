@@ -1,4 +1,4 @@
-//! What is read off a pressed gel at each taxel: the pressure at its port, and the stress feature of the TwinTac paper.
+//! The quantities computed at each taxel of a pressed gel: the pressure at its port, and the stress feature of the TwinTac paper.
 
 use glam::{DVec2, DVec3};
 use twintac_mesh::TetMesh;

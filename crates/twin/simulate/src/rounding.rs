@@ -1,4 +1,4 @@
-//! How round an indenter is where it presses: punches are round at their rims, and need short edges there.
+//! How round an indenter is where it presses: the rims of punches are rounded, and the mesh needs short edges there.
 
 use glam::{DVec2, DVec3};
 use twintac_mesh::Stretch;
@@ -9,7 +9,7 @@ use crate::touch::underside_mm;
 /// Samples on each side of the touched point, along each axis.
 const SAMPLES: i32 = 30;
 
-/// Half the distance between the points at which the turn of a surface is measured, mm: sharper edges than that are not told apart.
+/// Half the distance between the points at which the turn of a surface is measured, mm: sharper edges are not resolved.
 const STEP_MM: f64 = 0.05;
 
 /// Smallest radius of curvature of an indenter's underside along x and along y.

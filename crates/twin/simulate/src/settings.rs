@@ -11,13 +11,13 @@ pub struct SimulateSettings {
     pub edges_per_height: f64,
     /// Edges across the radius of the contact at full depth; never longer than away from the indenter. The pressure has half as many.
     pub edges_per_contact_radius: f64,
-    /// Nodes that a table's press may have: where the edges asked for make more, all are made longer.
+    /// Largest number of nodes of the mesh for a table. If the requested edges give more, all edges are made longer.
     pub max_nodes: usize,
-    /// Nodes that a path may have, for which somebody waits: edges are shorter than asked for where there are nodes for it, longer where there
-    /// are not. Rims then get two thirds more.
+    /// Number of nodes of the mesh for a path, which bounds its computing time: edges are made shorter or longer than requested to come close
+    /// to it. Meshes that are refined at the indenter's rim get two thirds more.
     pub max_path_nodes: usize,
-    /// Edges along a path over the radius to which an indenter is rounded, where that makes them shorter than elsewhere: the force of a punch is
-    /// made at its rim. The pressure has half as many. Tables go without.
+    /// Edges along a path over the radius to which an indenter is rounded, where that makes them shorter than elsewhere: the force of a punch comes
+    /// from its rim. The pressure has half as many. Not used for tables.
     pub edges_per_rounding: f64,
     /// Mean distance of a table's frames over depth, mm. Shallow tables have five.
     pub depth_step_mm: f64,

@@ -1,5 +1,5 @@
 //! The rigid shell around a gel, as four walls. One shape for all of them would have hollow corners, where the direction of the nearest
-//! wall jumps and contact finds no rest; a node in a corner touches two walls at once.
+//! wall jumps and the contact iteration does not converge; with four walls, a node in a corner touches two at once.
 
 use glam::{DVec2, DVec3};
 use twintac_shape::{Distance, SignedDistance};
@@ -7,7 +7,7 @@ use twintac_shape::{Distance, SignedDistance};
 /// Largest rounding of a wall's upper edge, mm.
 const RIM_RADIUS_MM: f64 = 0.5;
 
-/// A wall of endless width and thickness, up to a height.
+/// A wall of infinite width and thickness, up to a height.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wall {
     /// From the wall to the gel, in the gel's plane.

@@ -252,7 +252,7 @@ fn files(metrics: &Metrics, evaluation: &digitac::Evaluation) -> Vec<FileError> 
             let presses: Vec<_> = evaluation
                 .presses
                 .iter()
-                .filter(|press| press.file == *file)
+                .filter(|press| press.mounting == *file)
                 .collect();
             let readings = presses
                 .iter()

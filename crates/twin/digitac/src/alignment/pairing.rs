@@ -1,4 +1,4 @@
-//! What was measured, beside what the simulation says about the same moment.
+//! Pairs each measured frame with the simulated frame of the same instant.
 
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::DepthTable;
@@ -14,8 +14,9 @@ use crate::{DigitacError, Features};
 pub struct PairedPress {
     /// Name of the press in its recording.
     pub name: String,
-    /// The file that it was read from.
-    pub file: String,
+    /// The mounting of the indenter that it belongs to.
+    #[serde(alias = "file")]
+    pub mounting: String,
     /// The indenter's name.
     pub indenter: String,
     /// Place in the gel's plane, mm.
@@ -97,7 +98,7 @@ fn pair_press(
     });
     Ok(PairedPress {
         name: press.name.clone(),
-        file: press.mounting.clone(),
+        mounting: press.mounting.clone(),
         indenter: press.indenter.clone(),
         place_mm: deepest_pose(press)?.position_mm.truncate().to_array(),
         features,

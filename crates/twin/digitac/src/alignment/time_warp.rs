@@ -1,15 +1,14 @@
 //! Dynamic time warping of a measured load onto a simulated one.
 //!
 //! Both loads are sampled at the same instants, so the path would be the diagonal if the clocks agreed. What
-//! is compared is the load's *rate* (derivative dynamic time warping, Keogh and Pazzani, SDM 2001): when a
-//! load begins to rise or fall dates it, while its level also holds relaxation and hysteresis, which are
-//! physics and must survive. Leaving the diagonal costs, so plateaus and noise stay where they are; a
-//! Sakoe–Chiba window bounds how far any instant can be moved; and a warp that does not explain most of the
-//! mismatch is not believed.
+//! is compared is the load's *rate* (derivative dynamic time warping, Keogh and Pazzani, SDM 2001): the
+//! instants at which a load begins to rise or fall are the same on both sides, while its level also shows relaxation and hysteresis, which
+//! the warp must not remove. Steps off the diagonal have a cost, so plateaus and noise are not moved; a Sakoe–Chiba window bounds how far
+//! any instant can be moved; and a warp that does not remove most of the mismatch is rejected.
 
 use serde::{Deserialize, Serialize};
 
-/// How far and how willingly time is warped.
+/// Settings of the time warp.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WarpSettings {
@@ -19,7 +18,7 @@ pub struct WarpSettings {
     pub step_cost: f64,
     /// Half-width over which rates are averaged, s.
     pub smoothing_s: f64,
-    /// Share of the cost without a warp above which a warp is not believed.
+    /// Share of the cost without a warp above which a warp is rejected.
     pub believed_below: f64,
 }
 

@@ -1,5 +1,5 @@
-//! What is unknown about a bench: the tip's radius, the height at which it touches, and how stiff the gel
-//! really is.
+//! What is unknown about a bench: the tip's radius, the height at which it touches, and the true stiffness
+//! of the gel.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,7 +24,7 @@ pub struct BenchEstimate {
     pub gains: Option<Gains>,
     /// Mean absolute deviation of the fit over the largest reading, %.
     pub deviation_percent: f64,
-    /// What to doubt about the fit, in words.
+    /// Warnings about the fit, in words.
     pub doubts: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What is unknown about a bench, fitted to training presses: the tip's radius, the height at which it touches, how stiff the gel really is.
+//! What is unknown about a bench, fitted to training presses: the tip's radius, the height at which it touches, the true stiffness of the gel.
 
 mod bench_estimate;
 mod estimate;

@@ -188,7 +188,7 @@ impl<'a> Problem<'a> {
             .collect()
     }
 
-    /// Presses that touch elsewhere than the rest of their file, found with the gains held fast.
+    /// Presses that touch elsewhere than the rest of their file, found with the gains fixed.
     pub(crate) fn odd_presses(
         &self,
         curves: &[DepthCurves],

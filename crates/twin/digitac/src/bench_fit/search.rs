@@ -1,5 +1,5 @@
-//! Fits a [`BenchEstimate`] by variable projection: for every guess of radius, contact heights and stiffness the
-//! gains are solved for inside.
+//! Fits a [`BenchEstimate`] by variable projection: for every trial value of radius, contact
+//! heights and stiffness, the gains that fit best are found by a linear fit.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -79,7 +79,7 @@ fn check(settings: &BenchSettings) -> Result<(), DigitacError> {
     Ok(())
 }
 
-/// Presses at places spread evenly over the taxels, and over what the one that reads the most reads; every file has some.
+/// Presses at places spread evenly over the taxels, and over the largest readings; every file has some.
 fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usize) -> Vec<usize> {
     // By place, the taxel that reads the most, and what.
     let mut most: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
@@ -167,7 +167,7 @@ impl Problem<'_> {
         }
     }
 
-    /// The best values within bounds, seen by all places but those of one block.
+    /// The best values within bounds, from all places but those of one block.
     fn solve(&self, bounds: &Bounds, without_block: Option<usize>) -> Result<Guess, DigitacError> {
         let mut best = bounds.center.clone();
         let mut failure = None;
@@ -267,7 +267,7 @@ impl Problem<'_> {
 }
 
 /// Searches the contact heights: of all files together, then of each on its own, until none moves. One file's
-/// height pulls at the gains, and so at the others' heights.
+/// height changes the gains, and through them the best heights of the others.
 fn improve_offsets(guess: &mut Guess, limit_mm: f64, deviation: impl Fn(&Guess) -> f64) {
     let files: Vec<String> = guess.offsets_mm.keys().cloned().collect();
     let mut groups = vec![files.clone()];

@@ -1,4 +1,4 @@
-//! What a twin has to beat: predicting nothing, and a polynomial that knows no physics.
+//! Baselines that a twin is compared with: a prediction of zero, and a polynomial without physics.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,13 @@ use crate::PairedPress;
 
 /// Highest power of the depth.
 const DEPTH_DEGREE: usize = 3;
-/// Highest degree in a place along a line, and total degree in a place on a plane.
+/// Highest degree in the position if all presses lie on a line, and highest total degree if they lie on a plane.
 const LINE_DEGREE: usize = 8;
 const PLANE_DEGREE: usize = 6;
 /// Ridge over the mean diagonal of the normal matrix.
 const RIDGE: f64 = 1e-5;
 
-/// Predicts that nothing is ever felt; `[n_frames][n_taxels]`.
+/// Predicts zero for every reading, kPa; `[n_frames][n_taxels]`.
 #[must_use]
 pub(crate) fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
     press
@@ -22,8 +22,8 @@ pub(crate) fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// A polynomial of depth and place for each indenter and taxel, by ridge regression. It knows nothing of
-/// time, of other indenters, and of places beyond those it was fitted to.
+/// A polynomial in depth and position for each indenter and taxel, fitted by ridge regression. It does not use time, does not transfer
+/// between indenters, and does not extrapolate: positions are clamped to the range of the training presses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticPolynomial {
     by_indenter: BTreeMap<String, Fit>,
@@ -45,7 +45,7 @@ impl StaticPolynomial {
         }
     }
 
-    /// Readings of a press, kPa; `[n_frames][n_taxels]`. Nothing for an indenter that was not fitted.
+    /// Readings of a press, kPa; `[n_frames][n_taxels]`. Zeros for an indenter that was not fitted.
     #[must_use]
     pub fn predict(&self, press: &PairedPress) -> Vec<Vec<f64>> {
         self.by_indenter
@@ -166,7 +166,8 @@ impl Fit {
     }
 }
 
-/// Solves by Cholesky's method; only the lower triangle is looked at.
+/// Solves by Cholesky's method; only the lower triangle is read. Not faer's: `digitac` needs nothing else of faer, which takes longer to
+/// compile than `digitac` itself, and these sums have the same order, and so the same bits, on every processor.
 fn solve_symmetric(mut l: Vec<f64>, mut x: Vec<f64>) -> Vec<f64> {
     let n = x.len();
     for i in 0..n {

@@ -1,4 +1,4 @@
-//! A twin beside what was measured, press by press.
+//! A twin's predictions compared with the measurement, press by press.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,9 @@ use crate::{PairedPress, Twin, Variant};
 pub struct PressEvaluation {
     /// Name of the press in its recording.
     pub name: String,
-    /// The file that it was read from.
-    pub file: String,
+    /// The mounting of the indenter that it belongs to.
+    #[serde(rename = "file")]
+    pub mounting: String,
     /// The indenter's name.
     pub indenter: String,
     /// Place in the gel's plane, mm.
@@ -22,7 +23,7 @@ pub struct PressEvaluation {
     pub depth_mm: Vec<f64>,
     /// Readings, kPa; `[n_frames][n_taxels]`.
     pub measured_kpa: Vec<Vec<f64>>,
-    /// What the twin says, kPa; `[n_frames][n_taxels]`.
+    /// Predictions of the twin, kPa; `[n_frames][n_taxels]`.
     pub predicted_kpa: Vec<Vec<f64>>,
     /// Whether the reading counts; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
@@ -32,24 +33,24 @@ pub struct PressEvaluation {
     pub errors: Errors,
 }
 
-/// A twin judged.
+/// The errors of a twin, and of the baselines, on a set of presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
-    /// Which model it is.
+    /// The variant of the model.
     pub variant: Variant,
     /// Names of the taxels.
     pub taxels: Vec<String>,
     /// The twin's errors.
     pub twin: Score,
-    /// Errors of predicting that nothing is felt.
+    /// Errors of predicting zero.
     pub zero: Score,
-    /// Errors of a polynomial of depth and place, if one was fitted.
+    /// Errors of a polynomial in depth and position, if one was fitted.
     pub polynomial: Option<Score>,
     /// The presses.
     pub presses: Vec<PressEvaluation>,
 }
 
-/// Judges a twin by presses. The polynomial should have been fitted to the twin's training presses.
+/// Evaluates a twin on presses. The polynomial should have been fitted to the twin's training presses.
 #[must_use]
 pub fn evaluate(
     twin: &Twin,
@@ -73,7 +74,7 @@ pub fn evaluate(
             .zip(&predictions)
             .map(|(press, prediction)| PressEvaluation {
                 name: press.name.clone(),
-                file: press.file.clone(),
+                mounting: press.mounting.clone(),
                 indenter: press.indenter.clone(),
                 place_mm: press.place_mm,
                 time_s: press.features.time_s.clone(),

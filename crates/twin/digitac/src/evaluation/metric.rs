@@ -1,4 +1,4 @@
-//! How wrong a prediction is, in percent of the largest reading.
+//! The errors of predictions, in percent of the largest reading.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,12 +26,12 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Looks through the presses of whole files.
+    /// Finds the largest readings in the presses of whole files.
     #[must_use]
     pub fn of<'a>(presses: impl IntoIterator<Item = &'a PairedPress>, left_out: BTreeSet<usize>) -> Self {
         let mut largest_kpa: BTreeMap<String, f64> = BTreeMap::new();
         for press in presses {
-            let largest = largest_kpa.entry(press.file.clone()).or_insert(0.0);
+            let largest = largest_kpa.entry(press.mounting.clone()).or_insert(0.0);
             for frame in 0..press.readings_kpa.len() {
                 if let Some((taxel, reading)) = nearest(press, frame)
                     && !left_out.contains(&taxel)
@@ -67,7 +67,7 @@ pub struct Errors {
     pub peak: Mean,
 }
 
-/// Errors of presses, taken apart.
+/// Errors of presses, in total and by file and taxel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// What the numbers mean.
@@ -78,7 +78,7 @@ pub struct Score {
     pub by_file: BTreeMap<String, Errors>,
     /// By taxel, left out or not; its headline takes the frames to which it is the nearest; `[n_taxels]`.
     pub by_taxel: Vec<Errors>,
-    /// Frames that could not be judged because the simulation ended above them.
+    /// Frames that are not scored because they are deeper than the simulation went.
     pub n_frames_not_simulated: usize,
 }
 
@@ -94,11 +94,11 @@ pub fn score<'a>(
     let mut by_taxel: Vec<Sums> = Vec::new();
     let mut n_frames_not_simulated = 0;
     for (press, prediction) in presses.into_iter().zip(predictions) {
-        let largest_kpa = scale.largest_kpa.get(&press.file).copied().unwrap_or(0.0);
+        let largest_kpa = scale.largest_kpa.get(&press.mounting).copied().unwrap_or(0.0);
         if largest_kpa <= 0.0 {
             continue;
         }
-        let file = by_file.entry(press.file.clone()).or_default();
+        let file = by_file.entry(press.mounting.clone()).or_default();
         by_taxel.resize_with(
             by_taxel.len().max(press.readings_kpa.first().map_or(0, Vec::len)),
             Sums::default,

@@ -1,4 +1,4 @@
-//! How wrong a twin is, beside what it has to beat and how well presses repeat.
+//! The errors of a twin, those of the baselines it is compared with, and how well measured presses repeat.
 
 mod baseline;
 mod evaluate;

@@ -1,9 +1,8 @@
-//! Where a new recording touches the gel.
+//! The contact height of a new recording.
 //!
-//! Contact heights differ from one mounting to the next by some hundredths of a millimetre, which costs
-//! percents, and no model can know them. So a file that the bench was not fitted to gives its first presses
-//! away: its height is fitted to them against the twin as it is, by a rule fixed beforehand, and they are not
-//! scored.
+//! Contact heights differ from one mounting to the next by some hundredths of a millimetre. This changes readings by some percent, and no
+//! model can predict it. So the contact height of a file that the bench was not fitted to is fitted to its first presses, with the trained
+//! twin unchanged and by a rule that is fixed beforehand. These presses are not scored.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +14,7 @@ use crate::bench_fit::{BenchEstimate, Estimate, Places, curves, features_along};
 use crate::numerics::minimize;
 use crate::{DigitacError, Twin};
 
-/// Presses of a file that are given away.
+/// Presses of a file that its contact height is fitted to.
 const N_PRESSES: usize = 3;
 /// A press that would put the contact farther from the file's than this is worth a warning, mm.
 const SUSPICIOUS_MM: f64 = 0.08;
@@ -37,7 +36,7 @@ pub struct Recalibration {
 
 /// Fits the contact height of a file to its first three presses by least absolute deviations from the twin,
 /// within `limit_mm` of the bench's median. Taxels in `left_out` do not count. `None` if the file has no
-/// presses of prescribed pose, or none to spare.
+/// presses of prescribed pose, or too few presses.
 pub fn recalibrate(
     recording: &Recording,
     (places, tables): (&Places, &[DepthTable]),

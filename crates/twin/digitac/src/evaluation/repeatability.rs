@@ -1,4 +1,4 @@
-//! How well the same press repeats: what no twin that knows only the press can be expected to beat by much.
+//! How well measured presses repeat. A twin that is given only the press cannot be expected to have much smaller errors than this.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ pub struct Repeatability {
     pub definition: String,
     /// Pairs of presses that repeat each other.
     pub n_pairs: usize,
-    /// Errors of taking one for the other.
+    /// Errors of predicting one press's readings by the other's.
     pub errors: Errors,
 }
 

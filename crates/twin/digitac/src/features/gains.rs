@@ -84,7 +84,7 @@ impl Gains {
         self.remember(&features.time_s, elastic)
     }
 
-    /// Adds what is remembered to elastic readings; `[n_frames][n_taxels]`, any unit.
+    /// Adds the overstresses to elastic readings; `[n_frames][n_taxels]`, any unit.
     pub(crate) fn remember(&self, time_s: &[f64], mut readings: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         for (taxel, shares) in self.memory.iter().enumerate() {
             let elastic: Vec<f64> = readings.iter().map(|row| row[taxel]).collect();

@@ -1,4 +1,4 @@
-//! What the twin is told of a press: the simulated gel along it, and what each barometer makes of that by itself.
+//! The inputs of the twin: the simulated gel along a press, and the linear reading of each barometer that follows from it.
 
 mod gains;
 mod overstress;

@@ -2,7 +2,7 @@
 //!
 //! With the elastic reading r(t) each time constant τ carries dq/dt = dr/dt - q/τ, and a barometer reads r +
 //! Σ c q (a generalized Maxwell solid, Simo and Hughes, Computational Inelasticity, section 10.3). A memory
-//! in this form cannot learn the protocol: it is linear, stable, and forgets.
+//! of this form is linear, stable and fading, so it cannot learn the sequence of presses by heart.
 
 /// Shares of the old overstress that stay, and of the change that arrives, over a time step on which r
 /// changes linearly (exact).

@@ -11,7 +11,7 @@ use crate::{BenchEstimate, Evaluation, Gains, Score, Split, TrainSettings, Twin,
 pub struct Model {
     /// Where it comes from.
     pub record: ModelRecord,
-    /// What it does.
+    /// The twin itself.
     pub twin: Twin,
 }
 
@@ -36,17 +36,17 @@ pub struct ModelRecord {
     pub provenance: Provenance,
     /// Files that the training presses were read from.
     pub files: Vec<String>,
-    /// Which presses taught, decided and judged.
+    /// Which presses were used for training, validation and test.
     pub split: Split,
     /// Errors on validation presses.
     pub validation: Score,
     /// Errors on test presses at training.
     pub test: Option<Score>,
-    /// What the weights are changes of; needed to read them.
+    /// The initial values that the weights are stored relative to; needed to read them.
     pub(crate) start: Start,
 }
 
-/// What the weights are changes of.
+/// The initial values that the weights are stored relative to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Start {
     pub(crate) gains: Gains,
@@ -55,7 +55,7 @@ pub(crate) struct Start {
     pub(crate) hidden: Vec<usize>,
 }
 
-/// Where a model comes from: what [`Model::new`] cannot read off the twin.
+/// Where a model comes from: what [`Model::new`] cannot derive from the twin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
     /// The sensor description, as text.
@@ -70,12 +70,12 @@ pub struct Origin {
     pub provenance: Provenance,
     /// Files that the training presses were read from.
     pub files: Vec<String>,
-    /// Which presses taught, decided and judged.
+    /// Which presses were used for training, validation and test.
     pub split: Split,
 }
 
 impl Model {
-    /// Puts a trained twin on record.
+    /// Joins a trained twin and its record.
     #[must_use]
     pub fn new(twin: Twin, origin: Origin, validation: Score, test: Option<&Evaluation>) -> Self {
         let physics = twin.physics();

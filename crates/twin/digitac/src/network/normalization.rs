@@ -1,4 +1,4 @@
-//! The sizes of things, from training presses, so that the network sees numbers of order one.
+//! Scales of features and readings over the training presses, so that inputs and outputs of the network are of order one.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,14 +1,14 @@
-//! What a variant is built from and does not learn.
+//! The fixed part of a variant: what it computes with and does not learn.
 
 use super::{Normalization, Variant};
 use crate::Features;
 use crate::features::Gains;
 use crate::network::Matrix;
 
-/// Memory shares below this start here: from zero nothing could be learned.
+/// Memory shares below this start here: at zero the gradient vanishes.
 const SMALLEST_MEMORY: f64 = 1e-3;
 
-/// What a variant is built from and does not learn.
+/// The fixed part of a variant: what it computes with and does not learn.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Physics {
     pub(crate) variant: Variant,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the twin makes readings of, and how.
+/// The inputs of a model, and how it computes readings from them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Variant {
     /// The TwinTac paper's: its stress features through a multilayer perceptron, frame by frame.
@@ -17,7 +17,7 @@ pub enum Variant {
     /// With quasi-linear viscoelastic memory, taxel by taxel.
     #[serde(rename = "pressure+memory")]
     PressureMemory,
-    /// With both: the correction is elastic, and what it adds is remembered too.
+    /// With both: the correction is added to the elastic reading, so that the memory acts on it as well.
     #[serde(rename = "pressure+memory+mlp")]
     PressureMemoryMlp,
 }
@@ -50,7 +50,7 @@ impl Variant {
         matches!(self, Self::Paper | Self::PressureMlp | Self::PressureMemoryMlp)
     }
 
-    /// Whether it remembers earlier frames.
+    /// Whether its readings depend on earlier frames.
     #[must_use]
     pub(crate) fn has_memory(self) -> bool {
         matches!(self, Self::PressureMemory | Self::PressureMemoryMlp)

@@ -1,7 +1,7 @@
 //! Golden-section search (Kiefer, Proc. AMS 4, 1953).
 
-/// The place of the smallest value between two bounds, to a tolerance, and the value. Of several valleys it
-/// finds one.
+/// The argument between two bounds, to a tolerance, at which a function is smallest, and its value there. Of several local minima it finds
+/// one.
 pub(crate) fn minimize(
     mut low: f64,
     mut high: f64,

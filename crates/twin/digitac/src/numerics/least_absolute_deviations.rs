@@ -1,8 +1,8 @@
-//! Linear fits that outliers cannot steer, with coefficients that cannot be negative.
+//! Linear fits that are robust to outliers, with nonnegative coefficients. faer has no solver with bounds.
 
 /// Rounds of reweighting.
 const ROUNDS: usize = 12;
-/// Residuals below this fraction of the largest target count squared, not absolute: the corner of Huber's
+/// Residuals below this fraction of the largest target are weighted quadratically, larger ones linearly: the corner of Huber's
 /// loss.
 const CORNER: f64 = 2e-3;
 /// Rounds over the coefficients in coordinate descent.

@@ -1,4 +1,4 @@
-//! Searches and fits that know nothing of gels.
+//! Numerical methods that do not depend on what they are used for: a search in one dimension, and a robust linear fit.
 
 mod golden_section;
 mod least_absolute_deviations;

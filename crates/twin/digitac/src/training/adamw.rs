@@ -2,10 +2,10 @@
 
 use crate::network::Parameters;
 
-/// How fast the mean of the gradients forgets.
+/// Decay rate β₁ of the running mean of the gradients.
 const BETA_1: f32 = 0.9;
 
-/// How fast the mean of their squares forgets.
+/// Decay rate β₂ of the running mean of their squares.
 const BETA_2: f32 = 0.999;
 
 /// Keeps steps finite where gradients vanish.

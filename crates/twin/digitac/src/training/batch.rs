@@ -17,8 +17,8 @@ pub(crate) struct Batch {
     /// One where a reading counts; `[n_presses * n_frames][n_taxels]`
     mask: Vec<f32>,
     n_counted: f64,
-    /// From the elastic readings of each press to its overstresses, `[n_time_constants * n_frames][n_frames]`; empty if the variant does not
-    /// remember.
+    /// From the elastic readings of each press to its overstresses, `[n_time_constants * n_frames][n_frames]`; empty if the variant has no
+    /// memory.
     operators: Vec<Matrix>,
 }
 

@@ -1,4 +1,4 @@
-//! Training: which presses teach and which judge, how the parameters of each variant are learned, and which variant is chosen.
+//! Training: which presses are used for training, validation and test, how the parameters of each variant are learned, and which variant is chosen.
 
 mod adamw;
 mod batch;

@@ -36,8 +36,8 @@ pub struct TrainSettings {
     pub paper_hidden: Vec<usize>,
     /// Widths of a correction's hidden layers.
     pub correction_hidden: Vec<usize>,
-    /// Largest correction, as a share of the size of the frame's readings. It bounds what the twin can say
-    /// where it was never pressed.
+    /// Largest correction, as a share of the size of the frame's readings. It bounds the error
+    /// that it can make far from the training presses.
     pub correction_limit: f64,
     /// Start of the memory's time constants, s.
     pub time_constants_s: Vec<f64>,

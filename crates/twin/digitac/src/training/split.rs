@@ -1,9 +1,8 @@
-//! Which presses teach, which decide, and which judge.
+//! The division of presses into training, validation and test.
 //!
 //! Whole presses are held out, by place: presses that repeat a place are never on both sides. The places are
-//! walked in order and one of each few is drawn, so that what is held out lies between what is known and
-//! covers the whole gel. The outermost places of each indenter always teach: a twin is not asked to
-//! extrapolate beyond where it was pressed.
+//! ordered, and one is drawn at random from each run of a few, so that the held-out places lie between training places and cover the whole
+//! gel. The outermost places of each indenter are always used for training: a twin is not tested on extrapolation.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,8 +25,9 @@ pub struct SplitSettings {
     pub test_one_in: usize,
     /// One of so many of the remaining places is held out for validation.
     pub validation_one_in: usize,
-    /// Files that are held out for testing as a whole; if there are any, no places are.
-    pub test_files: BTreeSet<String>,
+    /// Mountings that are held out for testing as a whole; if there are any, no places are.
+    #[serde(alias = "test_files")]
+    pub test_mountings: BTreeSet<String>,
     /// Seed.
     pub seed: u64,
 }
@@ -38,7 +38,7 @@ impl Default for SplitSettings {
             block_mm: 0.1,
             test_one_in: 4,
             validation_one_in: 5,
-            test_files: BTreeSet::new(),
+            test_mountings: BTreeSet::new(),
             seed: 1,
         }
     }
@@ -58,8 +58,8 @@ pub struct Split {
 type Place<'a> = (&'a str, i64, i64);
 
 impl Split {
-    /// Divides the presses of a recording by place. The outermost places of each file always train: a twin is to answer between the
-    /// places that it was shown.
+    /// Divides the presses of a recording by place. The outermost places of each file are always used for training: a twin is tested
+    /// between the places that it was trained on.
     pub fn new(recording: &Recording, settings: &SplitSettings) -> Result<Self, DigitacError> {
         let presses = &recording.presses;
         if settings.test_one_in < 2 || settings.validation_one_in < 2 {
@@ -76,7 +76,7 @@ impl Split {
             test: Vec::new(),
         };
         for (index, press) in presses.iter().enumerate() {
-            if settings.test_files.contains(&press.mounting) {
+            if settings.test_mountings.contains(&press.mounting) {
                 split.test.push(index);
             } else {
                 groups
@@ -98,7 +98,7 @@ impl Split {
             .into_iter()
             .partition(|(place, _)| outermost.contains(place));
         let mut inner: Vec<Vec<usize>> = inner.into_iter().map(|(_, presses)| presses).collect();
-        if settings.test_files.is_empty() {
+        if settings.test_mountings.is_empty() {
             split.test = draw(&mut inner, settings.test_one_in, settings.seed, "test");
         }
         split.validation = draw(
@@ -222,11 +222,11 @@ mod tests {
         recording.presses[12..]
             .iter_mut()
             .for_each(|press| press.mounting = "other".into());
-        let test_files = BTreeSet::from(["other".to_owned()]);
+        let test_mountings = BTreeSet::from(["other".to_owned()]);
         let split = Split::new(
             &recording,
             &SplitSettings {
-                test_files,
+                test_mountings,
                 ..SplitSettings::default()
             },
         )

@@ -1,4 +1,4 @@
-//! Teaches the variants, and chooses among them by what they do on validation presses.
+//! Trains the variants, and chooses among them by their errors on validation presses.
 
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use crate::{DigitacError, PairedPress, Twin, Variant, seed};
 /// The learning rate does not fall below this.
 const SMALLEST_RATE: f64 = 1e-6;
 
-/// How far training is.
+/// The progress of a training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The variant in training.
@@ -47,7 +47,7 @@ pub struct Trained {
     pub twin: Twin,
     /// Its errors on the validation presses.
     pub validation: Score,
-    /// How it got there.
+    /// The losses along its training.
     pub history: Vec<Epoch>,
 }
 
