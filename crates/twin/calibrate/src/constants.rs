@@ -34,7 +34,7 @@ pub(crate) fn get(material: &Material, name: &str) -> Option<f64> {
     Value::Object(table(material)).pointer(&pointer(name))?.as_f64()
 }
 
-/// The material with other constants. What it does not have, or what is no number, leaves it as it is.
+/// The material with other constants. What it does not have, or is not a number, is ignored.
 pub(crate) fn with<'a>(material: &Material, constants: impl IntoIterator<Item = (&'a str, f64)>) -> Material {
     let mut table = Value::Object(table(material));
     for (name, value) in constants {

@@ -30,7 +30,7 @@ impl Quantity {
 pub struct Signal {
     /// What was measured.
     pub quantity: Quantity,
-    /// The numbers, in N or kPa; not a number where there is none that can be used. `[n_samples]`
+    /// The numbers, in N or kPa; NaN where there is no usable value. `[n_samples]`
     pub values: Vec<f64>,
 }
 
@@ -47,11 +47,11 @@ pub struct Curve {
     pub y_mm: f64,
     /// Tilt and spin of the indenter.
     pub rotation: DQuat,
-    /// Time, s, increasing; `[n_samples]`. Of no matter to an elastic gel, but to the order of the samples.
+    /// Time, s, increasing; `[n_samples]`. For an elastic gel only the order of the samples matters.
     pub time_s: Vec<f64>,
-    /// Depth below first touch, mm, as far as the bench knows; negative above the gel. `[n_samples]`
+    /// Depth below first touch, mm, as recorded; negative above the gel. `[n_samples]`
     pub depth_mm: Vec<f64>,
-    /// What was measured meanwhile.
+    /// The signals measured along the press.
     pub signals: Vec<Signal>,
 }
 

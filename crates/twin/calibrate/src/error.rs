@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! The errors of a fit.
 
 /// A fit that can't be made.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +19,7 @@ pub enum CalibrateError {
         /// Why not.
         reason: String,
     },
-    /// A curve that makes no sense.
+    /// A curve that cannot be fitted.
     #[error("{curve}: {problem}")]
     Curve {
         /// Its name.
@@ -27,7 +27,7 @@ pub enum CalibrateError {
         /// What is wrong with it.
         problem: String,
     },
-    /// Fewer numbers than unknowns.
+    /// Not more usable samples than unknowns.
     #[error("{found} usable samples can't tell {unknowns} unknowns; expected more samples than unknowns")]
     TooFew {
         /// Usable samples of all curves.
@@ -35,7 +35,7 @@ pub enum CalibrateError {
         /// Unknowns.
         unknowns: usize,
     },
-    /// A press that could not be simulated with the values to start from.
+    /// A press that could not be simulated with the initial values.
     #[error("{curve}: {error}")]
     Simulate {
         /// Name of the curve.

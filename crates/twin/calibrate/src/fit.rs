@@ -1,4 +1,4 @@
-//! A fit and what it says.
+//! The fit and its result.
 
 use serde::Serialize;
 use twintac_simulate::Gel;
@@ -14,7 +14,7 @@ use crate::{CalibrateError, FitSettings, Parameter};
 /// Correlation of neighbouring residuals above which they are not noise.
 const NOT_NOISE: f64 = 0.5;
 
-/// Correlation of two unknowns that deserves a word.
+/// Correlation of two unknowns above which a warning is given.
 const CORRELATED: f64 = 0.98;
 
 /// An unknown as the fit found it.
@@ -28,9 +28,9 @@ pub struct FittedUnknown {
     pub start: f64,
     /// Value found.
     pub value: f64,
-    /// Ends of the 95 % confidence interval; infinite where the data do not tell.
+    /// Ends of the 95 % confidence interval; infinite where the data do not determine the value.
     pub interval_95: [f64; 2],
-    /// Whether the data tell the value: its interval is finite, and it is not at a bound of the search.
+    /// Whether the data determine the value: its interval is finite, and it is not at a bound of the search.
     pub identified: bool,
 }
 
@@ -43,7 +43,7 @@ pub struct Correlation {
     pub correlation: f64,
 }
 
-/// A measured signal, and what the fitted gel makes of it.
+/// A measured signal, and the same signal of the fitted gel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedSignal {
     /// Name of the curve.
@@ -68,7 +68,7 @@ pub struct FittedSignal {
     pub fitted: Vec<f64>,
 }
 
-/// What came of a fit.
+/// The result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
     /// The gel's material, with the values found.
@@ -77,32 +77,32 @@ pub struct Fit {
     pub poissons_ratio: f64,
     /// The unknowns, in the order asked for; gains of taxels last.
     pub unknowns: Vec<FittedUnknown>,
-    /// Correlations of all pairs of unknowns that the data tell.
+    /// Correlations of all pairs of unknowns that the data determine.
     pub correlations: Vec<Correlation>,
-    /// Largest over smallest singular value of the Jacobian, its columns of unit length: above 30, some unknowns are hard to tell apart.
+    /// Largest over smallest singular value of the Jacobian, its columns of unit length: above 30, some unknowns are hard to separate.
     pub condition: f64,
     /// Standard deviation of the residuals over the largest measured value of their curve (forces) or of all (readings), %.
     pub noise_percent: f64,
     /// Usable samples.
     pub n_samples: usize,
-    /// Steps that the fit took, those that led nowhere included.
+    /// Steps that the fit took, rejected steps included.
     pub iterations: u32,
-    /// Whether no further step promised anything.
+    /// Whether the fit ended because no further step promised a smaller error.
     pub converged: bool,
-    /// What to doubt, in words.
+    /// Warnings, in words.
     pub warnings: Vec<String>,
-    /// How the curves are met.
+    /// The measured and the fitted signals.
     pub signals: Vec<FittedSignal>,
 }
 
-/// Fits what is free to the curves. The gel is meshed and solved with its own settings, and its material is where the fit starts.
-/// `tell` hears the root mean square of the residuals, over the largest measured value, after each step.
+/// Fits the free parameters to the curves. The gel is meshed and solved with its own settings; its material is the initial guess.
+/// `tell` is called with the root mean square of the residuals, over the largest measured value, after each step.
 ///
 /// Confidence intervals are those of the linearised model, `x ± t s √(JᵀJ)⁻¹ᵢᵢ` with Student's `t`, on the scale on which the unknown is
 /// sought (the logarithm for what is positive): right if the residuals are independent noise of one variance.
 ///
 /// # Errors
-/// Curves that make no sense, parameters that can't be free, and a press that can't be simulated with the values to start from.
+/// Invalid curves, parameters that this gel or these curves do not allow, and a press that can't be simulated with the initial values.
 pub fn fit(
     gel: &Gel,
     curves: &[Curve],
@@ -126,7 +126,7 @@ pub fn fit(
     ))
 }
 
-/// Starts each taxel's gain at what fits best on its own.
+/// Starts each taxel's gain at the value that fits best on its own.
 fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool {
     let mut any = false;
     for (unknown, start) in problem.unknowns.all.iter().zip(start) {
@@ -153,7 +153,7 @@ fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool
     any
 }
 
-/// Says how well the unknowns are known, and what to doubt.
+/// Computes confidence intervals and warnings.
 fn judge(
     problem: &Problem,
     start: &[f64],
@@ -211,7 +211,7 @@ fn fitted_unknowns(
 ) -> Vec<FittedUnknown> {
     let mut unknowns = Vec::new();
     for (index, unknown) in all.iter().enumerate() {
-        let half = quantile * known.covariance[index][index].sqrt();
+        let half = quantile * known.covariance[(index, index)].sqrt();
         let is_untold = known.untold.contains(&index);
         let at_bound = x[index] <= unknown.bounds[0] || x[index] >= unknown.bounds[1];
         if at_bound {
@@ -238,7 +238,7 @@ fn fitted_unknowns(
     unknowns
 }
 
-/// A warning if the data do not tell some unknowns, or hardly tell them apart.
+/// A warning if the data do not determine some unknowns, or hardly separate them.
 fn hard_to_tell(all: &[Unknown], known: &Covariance) -> Option<String> {
     let names = |indices: &[usize]| -> String {
         let names: Vec<&str> = indices.iter().map(|&i| all[i].name.as_str()).collect();
@@ -265,9 +265,9 @@ fn correlations(all: &[Unknown], known: &Covariance, warnings: &mut Vec<String>)
     let mut correlations = Vec::new();
     for i in 0..all.len() {
         for j in 0..i {
-            let scale = (known.covariance[i][i] * known.covariance[j][j]).sqrt();
+            let scale = (known.covariance[(i, i)] * known.covariance[(j, j)]).sqrt();
             if scale.is_finite() && scale > 0.0 {
-                let correlation = known.covariance[i][j] / scale;
+                let correlation = known.covariance[(i, j)] / scale;
                 if correlation.abs() > CORRELATED {
                     warnings.push(format!(
                         "{} and {} can hardly be told apart: correlation {correlation:.3}",

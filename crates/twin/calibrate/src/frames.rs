@@ -2,10 +2,10 @@
 
 use crate::Curve;
 
-/// Part of the depth's range by which a polygon through its turning points may be off.
+/// Largest deviation of the polygon through the turning points of the depth, as a fraction of the range of depth.
 const STRAIGHT: f64 = 0.005;
 
-/// Part of a curve's duration that counts as soon after a turning point.
+/// Fraction of a curve's duration that counts as just after a turning point.
 const SOON: f64 = 0.01;
 
 /// Frames that a sample is interpolated from.

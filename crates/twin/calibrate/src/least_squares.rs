@@ -1,36 +1,38 @@
 //! Nonlinear least squares within bounds: Levenberg (1944) and Marquardt (1963), steps scaled by the diagonal of the normal matrix.
 
+use faer::linalg::solvers::Solve;
+use faer::{ColMut, Mat, Side};
+
 use crate::CalibrateError;
-use crate::matrix::{Square, solve};
 use crate::problem::{Evaluation, Problem};
 
-/// A step that promises to lower the sum of squares by less than this part of the residuals' variance is not worth a press: it is a
+/// The search ends when a step promises to lower the sum of squares by less than this fraction of the residuals' variance: about a
 /// hundredth of a standard error.
 const ENOUGH: f64 = 1e-4;
 
-/// Sum of squares a residual below which there is nothing left to fit.
+/// Mean square of the residuals below which the fit counts as exact.
 const EXACT: f64 = 1e-16;
 
 /// Damping at first, and the largest that is tried.
 const DAMPING: [f64; 2] = [1e-4, 1e8];
 
-/// Where a search ended.
+/// The result of a search.
 pub(crate) struct Solution {
     pub(crate) x: Vec<f64>,
     pub(crate) evaluation: Evaluation,
     pub(crate) iterations: u32,
-    /// Whether no further step promised anything.
+    /// Whether the search ended because no further step promised a smaller error.
     pub(crate) converged: bool,
 }
 
 /// `JᵀJ` and `Jᵀr`.
-pub(crate) fn normal_equations(evaluation: &Evaluation, n: usize) -> (Square, Vec<f64>) {
-    let (mut matrix, mut gradient) = (vec![vec![0.0; n]; n], vec![0.0; n]);
+pub(crate) fn normal_equations(evaluation: &Evaluation, n: usize) -> (Mat<f64>, Vec<f64>) {
+    let (mut matrix, mut gradient) = (Mat::zeros(n, n), vec![0.0; n]);
     for (row, residual) in evaluation.jacobian.iter().zip(&evaluation.residuals) {
         for i in 0..n {
             gradient[i] += row[i] * residual;
             for j in 0..n {
-                matrix[i][j] += row[i] * row[j];
+                matrix[(i, j)] += row[i] * row[j];
             }
         }
     }
@@ -41,8 +43,8 @@ fn squares(evaluation: &Evaluation) -> f64 {
     evaluation.residuals.iter().map(|r| r * r).sum()
 }
 
-/// Goes downhill from `x`; `tell` hears the root mean square of the residuals after each step. A guess that can't be simulated counts as a
-/// worse one.
+/// Minimizes the sum of squares from `x`; `tell` is called with the root mean square of the residuals after each step. A trial that can't be
+/// simulated counts as worse.
 pub(crate) fn minimize(
     problem: &Problem,
     mut x: Vec<f64>,
@@ -64,19 +66,17 @@ pub(crate) fn minimize(
             let [low, high] = unknowns[i].bounds;
             x[i] <= low && gradient[i] > 0.0 || x[i] >= high && gradient[i] < 0.0
         };
-        let moving: Vec<usize> = (0..n).filter(|&i| !is_held(i) && matrix[i][i] > 0.0).collect();
+        let moving: Vec<usize> = (0..n).filter(|&i| !is_held(i) && matrix[(i, i)] > 0.0).collect();
         loop {
-            let damped: Square = moving
-                .iter()
-                .map(|&i| {
-                    let entry = |j: usize| matrix[i][j] + if i == j { damping * matrix[i][i] } else { 0.0 };
-                    moving.iter().map(|&j| entry(j)).collect()
-                })
-                .collect();
+            let damped = Mat::from_fn(moving.len(), moving.len(), |i, j| {
+                matrix[(moving[i], moving[j])] * if i == j { 1.0 + damping } else { 1.0 }
+            });
             let right: Vec<f64> = moving.iter().map(|&i| -gradient[i]).collect();
-            if let Some(step) = solve(&damped, &right) {
+            if let Ok(factors) = damped.llt(Side::Lower) {
+                let mut step = right.clone();
+                factors.solve_in_place(ColMut::from_slice_mut(&mut step));
                 let promised: f64 = (0..moving.len())
-                    .map(|k| step[k] * (right[k] + damping * matrix[moving[k]][moving[k]] * step[k]))
+                    .map(|k| step[k] * (right[k] + damping * matrix[(moving[k], moving[k])] * step[k]))
                     .sum();
                 if moving.is_empty() || promised <= ENOUGH * variance || variance <= EXACT {
                     converged = true;

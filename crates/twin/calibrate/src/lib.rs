@@ -1,9 +1,9 @@
 //! A gel's material, fitted to measured presses.
 //!
-//! [`fit`] finds the constants of a gel's material, and what a bench leaves open (where the surface is, how a load cell or a taxel is scaled),
+//! [`fit`] finds the constants of a gel's material, and unknowns of the bench (the height of the surface, the scale of a load cell or a taxel),
 //! by least squares between measured [`Curve`]s and simulated ones. The derivatives come from the solver
-//! ([`twintac_softbody::Direction`]): exact, and without a step to choose. A [`Fit`] says how well each unknown is known, and which ones the
-//! data do not tell.
+//! ([`twintac_softbody::Direction`]): exact, and without a step size to choose. A [`Fit`] gives a confidence interval for each unknown, and says which ones the
+//! data do not determine.
 
 mod constants;
 mod curve;
@@ -11,7 +11,6 @@ mod error;
 mod fit;
 mod frames;
 mod least_squares;
-mod matrix;
 mod parameter;
 mod problem;
 mod scale;

@@ -1,10 +1,10 @@
-//! What can be free in a fit.
+//! Parameters that a fit can vary.
 
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-/// Something that a fit can leave open.
+/// A parameter that a fit can vary.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// A constant of the material, by the name that files have for it: `shear_modulus_kpa`, `terms[0].alpha`, `prony[0].time_s`. If neither the
@@ -12,7 +12,7 @@ pub enum Parameter {
     Constant(String),
     /// Poisson's ratio at small strain.
     PoissonsRatio,
-    /// By how much the indenter is deeper than a curve says, mm; each curve has its own.
+    /// True depth of the indenter less the recorded depth, mm; each curve has its own.
     DepthOffset,
     /// Measured over true force, the same for all curves.
     ForceScale,
@@ -32,7 +32,7 @@ const KNOWN: [(&str, Parameter); 5] = [
 ];
 
 impl Parameter {
-    /// The parameter of a name; what is no other is taken for a constant of the material.
+    /// The parameter of a name; any other name is taken for a constant of the material.
     #[must_use]
     pub fn named(name: &str) -> Self {
         let known = KNOWN.into_iter().find(|(known, _)| *known == name);

@@ -9,10 +9,10 @@ use crate::frames::Frames;
 use crate::unknown::Unknowns;
 use crate::{CalibrateError, Parameter};
 
-/// Farther above the gel than this nothing is simulated, mm: it is the same everywhere.
+/// Depths farther above the gel than this are simulated as this one, mm: nothing changes there.
 const ABOVE_MM: f64 = -0.05;
 
-/// How hard a fit tries.
+/// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSettings {
     /// Frames simulated of each curve, about: samples between them are interpolated.
@@ -30,20 +30,20 @@ impl Default for FitSettings {
     }
 }
 
-/// Curves, and what is sought in them.
+/// The curves and the unknowns of a fit.
 pub(crate) struct Problem<'a> {
     pub(crate) gel: &'a Gel,
     pub(crate) curves: &'a [Curve],
     pub(crate) unknowns: Unknowns,
-    /// What is simulated of each curve.
+    /// The simulated frames of each curve.
     frames: Vec<Frames>,
-    /// What residuals are counted in, by curve and signal: the largest force of a curve, N, or the largest reading of all, kPa.
+    /// Scales of the residuals, by curve and signal: the largest force of a curve, N, or the largest reading of all, kPa.
     pub(crate) scales: Vec<Vec<f64>>,
 }
 
 /// All curves at one guess.
 pub(crate) struct Evaluation {
-    /// What each signal should be. `[n_curves][n_signals][n_samples]`
+    /// The modelled signals. `[n_curves][n_signals][n_samples]`
     pub(crate) model: Vec<Vec<Vec<f64>>>,
     /// Model less measured in units of the signals' scales, of all usable samples.
     pub(crate) residuals: Vec<f64>,
@@ -167,7 +167,7 @@ impl<'a> Problem<'a> {
         Ok((unknowns, frames))
     }
 
-    /// Adds the residuals of a signal; returns what it should be.
+    /// Adds the residuals of a signal; returns the modelled signal.
     fn compare(
         &self,
         curve: usize,

@@ -1,4 +1,4 @@
-//! Unknowns: where each is sought, and what it does to the material.
+//! The unknowns of a fit: the range of each, and how the material depends on it.
 
 use glam::DVec3;
 use twintac_softbody::{Direction, Material};
@@ -8,7 +8,7 @@ use crate::curve::{Curve, Quantity};
 use crate::scale::Scale;
 use crate::{CalibrateError, Parameter};
 
-/// Part of an unknown's reach over which materials are compared.
+/// Step of the difference quotient of the material, as a fraction of an unknown's reach.
 const DIFFERENCE: f64 = 1e-4;
 
 /// One number that a fit seeks.
@@ -21,9 +21,9 @@ pub(crate) struct Unknown {
     pub(crate) scale: Scale,
     /// Coordinate to start from.
     pub(crate) start: f64,
-    /// Coordinates that are not left.
+    /// Smallest and largest coordinate.
     pub(crate) bounds: [f64; 2],
-    /// Largest step at once.
+    /// Largest change in one step.
     pub(crate) reach: f64,
 }
 
@@ -162,7 +162,7 @@ impl Unknowns {
     }
 }
 
-/// Where a parameter is sought.
+/// The start, range and scale of a parameter.
 fn unknown(
     material: &Material,
     parameter: &Parameter,
@@ -206,7 +206,7 @@ fn unknown(
     })
 }
 
-/// The scale of a constant, and where it starts. What makes no material with the other sign keeps the one that it has.
+/// The scale of a constant, and where it starts. A constant keeps its sign if the material is invalid with the other one.
 fn constant_scale(material: &Material, name: &str) -> Result<(Scale, f64), CalibrateError> {
     let Some(value) = constants::get(material, name) else {
         let mut known = constants::names(material);
