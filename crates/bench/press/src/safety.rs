@@ -34,8 +34,9 @@ impl PressSettings {
     /// # Errors
     /// [`PressError::NoDevices`]: the settings name none. [`PressError::Setting`]: a device may be silent for too long.
     pub fn real_devices(&self) -> Result<&Devices, PressError> {
+        let devices = self.devices.as_ref().ok_or(PressError::NoDevices)?;
         self.check_for(Provenance::Real)?;
-        self.devices.as_ref().ok_or(PressError::NoDevices)
+        Ok(devices)
     }
 
     /// Checks every field, and for a bench that moves something real also how long its devices may be silent.
