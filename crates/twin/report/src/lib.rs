@@ -1,19 +1,15 @@
 //! The page of a trained twin: what it predicts, how well, and what stands behind it.
 //!
-//! [`page`] makes one self-contained HTML page of a [`ReportData`] that other crates fill in: this crate computes no
-//! results.
-//!
-//! ```
-//! use twintac_report::data::Headline;
-//! use twintac_report::{Provenance, ReportData, page};
-//!
-//! let headline = Headline { presses: 12, nearest_in_contact_percent: 1.3, ..Headline::default() };
-//! let data = ReportData { provenance: Provenance::Emulated, headline: Some(headline), ..ReportData::default() };
-//! assert!(page(&data).render().contains("on 12 presses that it never saw"));
-//! ```
+//! [`page`] makes one self-contained HTML page of a [`TwinReport`], which borrows the results as `digitac` gives them.
+//! This crate chooses and draws; errors are computed where the twin is judged.
 
-pub mod data;
 mod sections;
+mod twin_report;
 
-pub use data::{Provenance, ReportData};
-pub use sections::page;
+pub use sections::{page, warp_plot};
+pub use twin_report::{Making, StageTime, TrainedVariant, TwinReport};
+
+/// The twin's error that the TwinTac paper reports: mean absolute error over the largest contact pressure, %.
+///
+/// It was measured on the paper's own eight-taxel sensor, over another protocol.
+pub const PAPER_ERROR_PERCENT: f64 = 5.95;

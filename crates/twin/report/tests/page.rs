@@ -3,41 +3,36 @@
 #[path = "../examples/gallery/invented.rs"]
 mod invented;
 
-use twintac_report::data::{Agreement, Headline, PressPeak, PressSeries, TaxelError};
-use twintac_report::{Provenance, ReportData, page};
+use digitac::Mean;
+use invented::Results;
+use twintac_plot::page::{Block, Figure};
+use twintac_recording::Provenance;
+use twintac_report::page;
 
-fn render(data: &ReportData) -> String {
-    page(data).render()
-}
-
-#[test]
-fn no_data_gives_a_page_without_sections() {
-    let page = render(&ReportData::default());
-    assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
-    assert!(!page.contains("<section") && !page.contains("<li>"));
+fn render(results: &Results) -> String {
+    page(&results.report()).render()
 }
 
 #[test]
 fn every_part_appears_with_its_data_and_only_then() {
     let (moving, resting) = (render(&invented::moving()), render(&invented::resting()));
-    for id in ["result", "maps", "taxels", "sensor", "making-of"] {
-        let (section, link) = (format!("<section id=\"{id}\""), format!("href=\"#{id}\""));
-        assert!(
-            [&moving, &resting]
-                .iter()
-                .all(|page| page.contains(&section) && page.contains(&link)),
-            "{id}"
-        );
-    }
-    for id in [
-        "presses",
+    let always = [
+        "result",
+        "maps",
+        "taxels",
         "recordings",
         "variants",
         "training",
         "bench",
-        "alignment",
         "simulation",
-    ] {
+    ];
+    for id in always.into_iter().chain(["sensor", "making-of"]) {
+        let (section, link) = (format!("<section id=\"{id}\""), format!("href=\"#{id}\""));
+        for page in [&moving, &resting] {
+            assert!(page.contains(&section) && page.contains(&link), "{id}");
+        }
+    }
+    for id in ["presses", "alignment"] {
         let section = format!("<section id=\"{id}\"");
         assert!(moving.contains(&section) && !resting.contains(&section), "{id}");
     }
@@ -45,16 +40,44 @@ fn every_part_appears_with_its_data_and_only_then() {
 }
 
 #[test]
+fn no_text_leaves_its_picture() {
+    for results in [invented::moving(), invented::resting()] {
+        let mut n_figures = 0;
+        let mut check = |figure: &Figure| {
+            n_figures += 1;
+            assert_eq!(
+                figure.scene.overflow(),
+                Vec::<&str>::new(),
+                "{}",
+                figure.scene.name
+            );
+        };
+        for block in page(&results.report())
+            .sections
+            .iter()
+            .flat_map(|section| &section.blocks)
+        {
+            match block {
+                Block::Figures(figures) => figures.iter().for_each(&mut check),
+                Block::Wide(figure) => check(figure),
+                _ => (),
+            }
+        }
+        assert!(n_figures > 10);
+    }
+}
+
+#[test]
 fn nothing_is_fetched_and_nothing_runs() {
     for page in [render(&invented::moving()), render(&invented::resting())] {
         // The only address is the name of the SVG namespace, which no browser opens.
         let rest = page.replace("http://www.w3.org/2000/svg", "");
+        let rest = rest.replace("data:image/png;base64,", "data:");
+        let outside_pictures: String = rest
+            .split("data:")
+            .map(|part| part.split_once('"').map_or(part, |(_, after)| after))
+            .collect();
         for forbidden in ["http:", "https:", "//", "<script", "<link", "@import", "url("] {
-            let rest = rest.replace("data:image/png;base64,", "data:");
-            let outside_pictures: String = rest
-                .split("data:")
-                .map(|part| part.split_once('"').map_or(part, |(_, after)| after))
-                .collect();
             assert!(!outside_pictures.contains(forbidden), "{forbidden}");
         }
     }
@@ -62,80 +85,51 @@ fn nothing_is_fetched_and_nothing_runs() {
 
 #[test]
 fn the_same_data_gives_the_same_bytes() {
-    let data = invented::moving();
-    assert_eq!(render(&data), render(&data));
+    let results = invented::moving();
+    assert_eq!(render(&results), render(&results));
 }
 
 #[test]
 fn text_from_data_cannot_become_markup() {
     let evil = || "<img src=x onerror=alert(1)>\"'&".to_owned();
-    let mut data = invented::moving();
-    data.title = evil();
-    data.command = evil();
-    data.settings = evil();
-    data.warnings = vec![evil()];
-    data.taxels = vec![TaxelError {
-        name: evil(),
-        note: evil(),
-        ..TaxelError::default()
-    }];
-    data.presses[0].name = evil();
-    data.presses[0].label = evil();
-    data.presses[0].taxels[0] = evil();
-    data.peaks[0].name = evil();
-    data.files[0].name = evil();
-    data.variants[0].name = evil();
-    assert!(!render(&data).contains("<img"));
+    let mut results = invented::moving();
+    results.sensor.name = evil();
+    results.sensor.taxels[0].doubtful = Some(evil());
+    results.making.command = evil();
+    results.making.settings = evil();
+    results.bench.doubts = vec![evil()];
+    results.evaluation.taxels[0] = evil();
+    for press in &mut results.evaluation.presses {
+        press.name = evil();
+    }
+    assert!(!render(&results).contains("<img"));
 }
 
 #[test]
 fn numbers_that_are_missing_show_as_dashes() {
-    let nan = f64::NAN;
-    let press = PressSeries {
-        label: "ä".into(),
-        taxels: vec!["S0".into()],
-        time_s: vec![0.0, nan, 2.0],
-        sensor_kpa: vec![vec![nan], vec![], vec![1.0]],
-        twin_kpa: vec![vec![nan]],
-        depth_mm: vec![nan; 9],
-        ..PressSeries::default()
+    let mut results = invented::moving();
+    let press = &mut results.evaluation.presses[0];
+    press.time_s[3] = f64::NAN;
+    press.depth_mm.fill(f64::NAN);
+    press.measured_kpa[7].fill(f64::NAN);
+    press.predicted_kpa[8].fill(f64::NAN);
+    results.evaluation.twin.overall.nearest_in_contact = Mean {
+        percent: f64::NAN,
+        count: 0,
     };
-    let peak = PressPeak {
-        taxels_mm: vec![[nan, 0.0]],
-        sensor_kpa: vec![nan],
-        twin_kpa: vec![nan],
-        ..PressPeak::default()
-    };
-    let data = ReportData {
-        headline: Some(Headline {
-            nearest_in_contact_percent: nan,
-            all_percent: nan,
-            ..Headline::default()
-        }),
-        presses: vec![press],
-        peaks: vec![peak, PressPeak::default()],
-        agreement: Some(Agreement {
-            measured_kpa: vec![nan, 1.0],
-            predicted_kpa: vec![nan],
-        }),
-        taxels: vec![TaxelError {
-            nearest_in_contact_percent: nan,
-            ..TaxelError::default()
-        }],
-        ..ReportData::default()
-    };
-    let page = render(&data);
+    results.evaluation.twin.by_taxel[2].all.percent = f64::NAN;
+    let page = render(&results);
     assert!(page.contains("No error could be computed") && page.contains('–'));
     assert!(!page.contains("NaN") && !page.contains("inf,"));
 }
 
 #[test]
 fn badges_follow_the_provenance() {
-    let mut data = invented::moving();
-    data.provenance = Provenance::Real;
-    assert!(render(&data).contains("1.27\u{a0}% error (real data)"));
-    data.provenance = Provenance::Emulated;
-    let page = render(&data);
+    let mut results = invented::moving();
+    results.provenance = Provenance::Real;
+    assert!(render(&results).contains("1.27\u{a0}% error (real data)"));
+    results.provenance = Provenance::Emulated;
+    let page = render(&results);
     assert!(page.contains("badge emulated") && page.contains("emulated data, which says nothing"));
 }
 
@@ -143,10 +137,8 @@ fn badges_follow_the_provenance() {
 fn the_page_is_written_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("report.html");
-    page(&invented::resting()).write(&path).unwrap();
-    assert_eq!(
-        std::fs::read_to_string(&path).unwrap(),
-        render(&invented::resting())
-    );
+    let results = invented::resting();
+    page(&results.report()).write(&path).unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), render(&results));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }

@@ -28,8 +28,7 @@ impl Run {
                 &self.record.settings.pair,
             )?;
             write_json(&folder.join("paired.json"), &pairs)?;
-            let warps = crate::report::warps(&pairs);
-            crate::report::warp_plot(&warps).write(&folder.join("warps.svg"))?;
+            twintac_report::warp_plot(&pairs).write(&folder.join("warps.svg"))?;
             Ok(())
         })
     }

@@ -1,43 +1,56 @@
 //! The sections of the page, in the order in which they are read.
 
-mod evidence;
-mod figures;
-mod scores;
+mod alignment;
+mod bench;
+mod comparison;
+mod making;
+mod maps;
+mod places;
+mod presses;
+mod result;
+mod sensor;
+mod simulation;
 mod summary;
+mod taxels;
+mod training;
 
-use twintac_plot::Scene;
-use twintac_plot::fixed;
+use digitac::{Evaluation, PressEvaluation};
 use twintac_plot::page::{Badge, Block, Cell, Figure, Page, Section};
+use twintac_plot::{Bar, Bars, Ink, Panel, Panels, Scene, Series, fixed};
+use twintac_recording::Provenance;
+use twintac_sensor::Sensor;
 
-use crate::data::ReportData;
+use crate::TwinReport;
+
+pub use alignment::warp_plot;
+
+/// The headline in words.
+const NEAREST: &str = "nearest taxel in contact";
+const ALL: &str = "all taxels, all frames";
 
 /// The whole page; parts without data are left out.
 #[must_use]
-pub fn page(data: &ReportData) -> Page {
+pub fn page(report: &TwinReport<'_>) -> Page {
     Page {
         kind: "TwinTac report".into(),
-        title: if data.title.is_empty() {
-            "TwinTac report".into()
-        } else {
-            data.title.clone()
-        },
-        badge: data.provenance.badge(),
-        lead: summary::paragraphs(data),
-        warnings: data.warnings.clone(),
+        title: format!("Digital twin of {}", report.sensor.name),
+        badge: badge(report.provenance),
+        lead: summary::paragraphs(report),
+        warnings: summary::warnings(report),
         sections: vec![
-            scores::result(data),
-            figures::presses(data),
-            figures::peaks(data),
-            figures::places(data),
-            scores::where_it_errs(data),
-            scores::recordings(data),
-            scores::variants(data),
-            evidence::training(data),
-            evidence::bench(data),
-            evidence::alignment(data),
-            evidence::simulation(data),
-            evidence::sensor(data),
-            evidence::making_of(data),
+            section("result", "Result", result::blocks(report)),
+            section("presses", "Presses over time", presses::blocks(report)),
+            section("maps", "Pressure maps", maps::blocks(report)),
+            section("places", "Errors over the gel", places::blocks(report)),
+            section("taxels", "Where it errs", taxels::blocks(report)),
+            section("recordings", "Recordings", comparison::recordings(report)),
+            section("variants", "Variants", comparison::variants(report)),
+            section("training", "Training", training::blocks(report)),
+            section("bench", "Fit of the bench", bench::blocks(report)),
+            section("alignment", "Alignment", alignment::blocks(report)),
+            section("simulation", "The simulation", simulation::blocks(report)),
+            section("sensor", "The sensor", sensor::blocks(report)),
+            section("making-of", "How it was made", making::blocks(report)),
         ],
         is_sheet: false,
     }
@@ -47,13 +60,25 @@ fn section(id: &'static str, title: &'static str, blocks: Vec<Block>) -> Section
     Section { id, title, blocks }
 }
 
-fn figure(scene: Scene, badge: impl Into<Option<Badge>>, caption: impl Into<String>) -> Figure {
+fn badge(provenance: Provenance) -> Badge {
+    Badge(provenance.to_string())
+}
+
+fn figure(scene: Scene, provenance: impl Into<Option<Provenance>>, caption: impl Into<String>) -> Figure {
     Figure {
         scene,
-        badge: badge.into(),
+        badge: provenance.into().map(badge),
         caption: caption.into(),
         table: None,
     }
+}
+
+/// Pictures under a text that explains them; nothing without pictures.
+fn explained(text: &str, pictures: Vec<Figure>) -> Vec<Block> {
+    if pictures.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::Text(text.into()), Block::Figures(pictures)]
 }
 
 fn words(text: impl Into<String>) -> Cell {
@@ -75,6 +100,106 @@ fn percent(value: f64) -> String {
     }
     let decimals = if value.abs() < 9.995 { 2 } else { 1 };
     format!("{}\u{a0}%", fixed(value, decimals))
+}
+
+fn bar(name: impl Into<String>, value: f64, ink: Ink) -> Bar {
+    Bar {
+        name: name.into(),
+        value,
+        uncertainty: None,
+        text: percent(value),
+        ink,
+    }
+}
+
+/// Bars of errors.
+fn errors(title: &str, bars: impl IntoIterator<Item = Bar>) -> Scene {
+    Bars {
+        title: title.into(),
+        x_label: "mean absolute error, % of the largest reading".into(),
+        bars: bars.into_iter().collect(),
+    }
+    .scene()
+}
+
+fn line(name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64) -> Series {
+    Series {
+        name: name.into(),
+        points,
+        ink,
+        width_px,
+        dashed: false,
+    }
+}
+
+/// Lines in one panel.
+fn chart(title: &str, [x_label, y_label]: [&str; 2], series: Vec<Series>) -> Panels {
+    let panel = Panel {
+        y_label: y_label.into(),
+        series,
+        ..Panel::default()
+    };
+    Panels {
+        title: title.into(),
+        x_label: x_label.into(),
+        panels: vec![panel],
+        panel_height_px: 200.0,
+        logarithmic: false,
+    }
+}
+
+fn taxels_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
+    let place = |taxel: &twintac_sensor::Taxel| [taxel.position_mm.x, taxel.position_mm.y];
+    sensor.taxels.iter().map(place).collect()
+}
+
+/// Error of a press, nearest taxel in contact, %.
+fn error_percent(press: &PressEvaluation) -> f64 {
+    press.errors.nearest_in_contact.percent
+}
+
+/// Presses that touched, from the best to the worst.
+fn ranked(evaluation: &Evaluation) -> Vec<&PressEvaluation> {
+    let touched = |press: &&PressEvaluation| press.errors.nearest_in_contact.count > 0;
+    let mut presses: Vec<_> = evaluation.presses.iter().filter(touched).collect();
+    presses.sort_by(|a, b| error_percent(a).total_cmp(&error_percent(b)));
+    presses
+}
+
+/// The best press, the median and the worst.
+fn three(evaluation: &Evaluation) -> Vec<(&'static str, &PressEvaluation)> {
+    let ranked = ranked(evaluation);
+    match ranked.len() {
+        0 => Vec::new(),
+        n => vec![
+            ("Best", ranked[0]),
+            ("Median", ranked[n / 2]),
+            ("Worst", ranked[n - 1]),
+        ],
+    }
+}
+
+/// The largest reading of some presses, kPa.
+fn largest_kpa<'a>(presses: impl IntoIterator<Item = &'a PressEvaluation>) -> f64 {
+    let readings = presses
+        .into_iter()
+        .flat_map(|press| press.measured_kpa.iter().flatten());
+    readings.fold(0.0, |largest: f64, reading| largest.max(*reading))
+}
+
+/// Usable readings, measured and predicted, kPa, with their taxels.
+fn usable(evaluation: &Evaluation) -> impl Iterator<Item = (usize, [f64; 2])> {
+    evaluation.presses.iter().flat_map(|press| {
+        let frames = press
+            .measured_kpa
+            .iter()
+            .zip(&press.predicted_kpa)
+            .zip(&press.valid);
+        frames.flat_map(|((measured, predicted), valid)| {
+            let taxels = (0..measured.len()).filter(|&taxel| valid[taxel]);
+            taxels.map(|taxel| (taxel, [measured[taxel], predicted[taxel]]))
+        })
+    })
 }
 
 #[cfg(test)]

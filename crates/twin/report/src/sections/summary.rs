@@ -1,25 +1,20 @@
 //! The result in plain words, at the top of the page.
 
 use twintac_plot::page::{Paragraph, Span};
+use twintac_recording::Provenance;
 
-use super::percent;
-use crate::data::{Headline, PAPER_ERROR_PERCENT, Provenance, ReferenceKind, ReportData};
+use super::{badge, percent};
+use crate::{PAPER_ERROR_PERCENT, TwinReport};
 
 /// The result, and what to compare it with.
-pub(super) fn paragraphs(data: &ReportData) -> Vec<Paragraph> {
-    let Some(headline) = &data.headline else {
-        return Vec::new();
-    };
-    let (words, badge) = (Span::Words, |source: Provenance| Span::Badge(source.badge()));
+pub(super) fn paragraphs(report: &TwinReport<'_>) -> Vec<Paragraph> {
+    let (words, badge) = (Span::Words, |source| Span::Badge(badge(source)));
     let paper = percent(PAPER_ERROR_PERCENT);
     vec![
+        Paragraph(vec![words(result(report)), badge(report.provenance)]),
         Paragraph(vec![
-            words(result(headline, data.provenance)),
-            badge(data.provenance),
-        ]),
-        Paragraph(vec![
-            words(comparison(headline)),
-            badge(data.provenance),
+            words(comparison(report)),
+            badge(report.provenance),
             words(format!("The paper reports {paper}")),
             badge(Provenance::Real),
             words("for its own sensor and protocol, so the two figures cannot be compared directly.".into()),
@@ -27,80 +22,67 @@ pub(super) fn paragraphs(data: &ReportData) -> Vec<Paragraph> {
     ]
 }
 
-fn result(headline: &Headline, provenance: Provenance) -> String {
-    let presses = match headline.presses {
+fn result(report: &TwinReport<'_>) -> String {
+    let presses = match report.evaluation.presses.len() {
         1 => "1 press that it never saw".to_owned(),
         count => format!("{count} presses that it never saw"),
     };
-    let source = match provenance {
+    let source = match report.provenance {
         Provenance::Real => "real data",
         Provenance::Emulated => "emulated data, which says nothing about a physical sensor",
         Provenance::Simulated => "simulated data, which says nothing about a physical sensor",
     };
-    if !headline.nearest_in_contact_percent.is_finite() {
+    let error = report.evaluation.twin.overall.nearest_in_contact;
+    if error.count == 0 || !error.percent.is_finite() {
         return format!("No error could be computed for the {presses} ({source}).");
     }
-    let error = percent(headline.nearest_in_contact_percent);
+    let error = percent(error.percent);
     format!("The twin predicts the nearest taxel’s reading on {presses} with {error} error ({source}).")
 }
 
-fn comparison(headline: &Headline) -> String {
-    let mut sentences = Vec::new();
-    if headline.all_percent.is_finite() {
-        sentences.push(format!(
-            "Over all taxels and all frames the error is {}.",
-            percent(headline.all_percent)
-        ));
+fn comparison(report: &TwinReport<'_>) -> String {
+    let evaluation = report.evaluation;
+    let mut text = format!(
+        "Over all taxels and all frames the error is {}. Simpler predictors of the same readings: zero {}",
+        percent(evaluation.twin.overall.all.percent),
+        percent(evaluation.zero.overall.nearest_in_contact.percent)
+    );
+    if let Some(polynomial) = &evaluation.polynomial {
+        text += &format!(
+            ", static polynomial {}",
+            percent(polynomial.overall.nearest_in_contact.percent)
+        );
     }
-    let known = |kind: ReferenceKind| {
-        headline.references.iter().filter(move |reference| {
-            reference.kind == kind && reference.nearest_in_contact_percent.is_finite()
-        })
-    };
-    let baselines: Vec<String> = known(ReferenceKind::Baseline)
-        .map(|reference| {
-            format!(
-                "{} {}",
-                reference.name,
-                percent(reference.nearest_in_contact_percent)
-            )
-        })
-        .collect();
-    if !baselines.is_empty() {
-        sentences.push(format!(
-            "Simpler predictors of the same readings: {}.",
-            baselines.join(", ")
-        ));
+    text += ".";
+    if let Some(repeatability) = report.repeatability {
+        text += &format!(
+            " The sensor repeats itself to within {}: the floor for any twin.",
+            percent(repeatability.errors.nearest_in_contact.percent)
+        );
     }
-    for floor in known(ReferenceKind::Floor) {
-        sentences.push(format!(
-            "The sensor repeats itself to within {}: the floor for any twin.",
-            percent(floor.nearest_in_contact_percent)
-        ));
-    }
-    sentences.join(" ")
+    text
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_lead_says_who_how_many_and_how_well() {
-        let headline = Headline {
-            presses: 12,
-            nearest_in_contact_percent: 1.3,
-            ..Headline::default()
-        };
-        assert_eq!(
-            result(&headline, Provenance::Real),
-            "The twin predicts the nearest taxel’s reading on 12 presses that it never saw with 1.30\u{a0}% error (real data)."
-        );
-        assert!(result(&headline, Provenance::Emulated).contains("nothing about a physical sensor"));
-        let unknown = Headline {
-            nearest_in_contact_percent: f64::NAN,
-            ..headline
-        };
-        assert!(result(&unknown, Provenance::Real).starts_with("No error could be computed"));
+/// What the reader must know before trusting a number.
+pub(super) fn warnings(report: &TwinReport<'_>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if report.provenance == Provenance::Emulated {
+        warnings.push("The sensor behind these numbers is emulated: they say how well the method works, not how well a sensor does.".into());
     }
+    for taxel in &report.sensor.taxels {
+        if let Some(why) = &taxel.doubtful {
+            warnings.push(format!(
+                "Taxel {} is left out of headline figures: {why}.",
+                taxel.name
+            ));
+        }
+    }
+    let n_frames = report.evaluation.twin.n_frames_not_simulated;
+    if n_frames > 0 {
+        warnings.push(format!(
+            "{n_frames} frames are deeper than the simulation reached; the end of its table stands in."
+        ));
+    }
+    warnings.extend(report.bench.doubts.iter().cloned());
+    warnings
 }
