@@ -6,9 +6,10 @@ use twintac_sensor::Sensor;
 
 use crate::recorded::Recorded;
 use crate::{
-    CharacterizeError, CoveredRange, Creep, CrossTalk, DetectionLimit, Finding, Hysteresis, Noise, Options,
-    Overall, Repeatability, RiseTime, Sensitivity, Step, TemperatureDrift, UnloadedCourse, ZeroReturn, creep,
-    cross_talk, detection, drift, hysteresis, noise, range, repeatability, rise, sensitivity,
+    CharacterizeError, CharacterizeOptions, CoveredRange, Creep, CrossTalk, DetectionLimit, Finding,
+    Hysteresis, KnownStep, MeanSensitivity, Noise, Repeatability, RiseTime, Sensitivity, TemperatureDrift,
+    UnloadedCourse, ZeroReturn, creep, cross_talk, detection, drift, hysteresis, noise, range, repeatability,
+    rise, sensitivity,
 };
 
 /// A sensor's characterization. Each figure says by itself what it is of, and is missing with a reason where the presses do not give it.
@@ -25,17 +26,17 @@ pub struct Characterization {
     /// Those of them whose force is known and that touch.
     pub n_used: usize,
     /// What counted as above, slow, fast and long.
-    pub options: Options,
+    pub options: CharacterizeOptions,
     /// Unloaded noise of each taxel.
     pub noise: Finding<Vec<Noise>>,
     /// What taxels' sensitivities have in common.
-    pub overall: Finding<Overall>,
+    pub overall: Finding<MeanSensitivity>,
     /// Response of each taxel.
     pub sensitivity: Finding<Vec<Sensitivity>>,
     /// Forces that stand out of the noise.
     pub detection_limit: Finding<Vec<DetectionLimit>>,
     /// Weights put on.
-    pub steps: Finding<Vec<Step>>,
+    pub steps: Finding<Vec<KnownStep>>,
     /// The range that the data cover.
     pub range: Finding<CoveredRange>,
     /// Hysteresis of each taxel.
@@ -62,7 +63,7 @@ pub fn characterize(
     recording: &Recording,
     unloaded: &[UnloadedCourse],
     sensor: &Sensor,
-    options: &Options,
+    options: &CharacterizeOptions,
 ) -> Result<Characterization, CharacterizeError> {
     check(recording, sensor)?;
     let taxels = &recording.taxels;
@@ -103,7 +104,7 @@ pub fn characterize(
 impl Characterization {
     /// The step of the smallest force that was detected.
     #[must_use]
-    pub fn smallest_step(&self) -> Option<&Step> {
+    pub fn smallest_step(&self) -> Option<&KnownStep> {
         let detected = self.steps.found()?.iter().filter(|step| step.is_detected);
         detected.min_by(|a, b| a.force_n.total_cmp(&b.force_n))
     }

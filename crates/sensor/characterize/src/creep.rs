@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::recorded::Recorded;
 use crate::statistics::mean;
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// What counts as the beginning of a hold, s after it began.
 pub(crate) const BEGINS_S: [f64; 2] = [0.5, 1.5];
@@ -32,7 +32,11 @@ pub struct Creep {
     pub force_percent: f64,
 }
 
-pub(crate) fn creep(recorded: &[Recorded<'_>], taxels: &[String], options: &Options) -> Finding<Vec<Creep>> {
+pub(crate) fn creep(
+    recorded: &[Recorded<'_>],
+    taxels: &[String],
+    options: &CharacterizeOptions,
+) -> Finding<Vec<Creep>> {
     let long = recorded.iter().filter(|press| press.hold_s() >= options.long_s);
     let found = long.filter_map(|press| of_press(press, taxels));
     let why = format!(
@@ -84,7 +88,7 @@ mod tests {
         let finding = creep(
             &all(&presses),
             &["a".to_owned(), "b".to_owned()],
-            &Options::default(),
+            &CharacterizeOptions::default(),
         );
         let found = &finding.found().unwrap()[0];
         let expected = 100.0 * 0.014 * (found.between_s[1] - 1.0) / 14.014;
@@ -101,7 +105,7 @@ mod tests {
         let finding = creep(
             &all(&presses),
             &["a".to_owned(), "b".to_owned()],
-            &Options::default(),
+            &CharacterizeOptions::default(),
         );
         assert!(finding.why_not().unwrap().contains("10 s"));
     }

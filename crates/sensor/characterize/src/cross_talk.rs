@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::recorded::{Recorded, above};
 use crate::statistics::{between, binned};
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// Steps of force that readings are averaged in.
 const BINS: usize = 25;
@@ -30,7 +30,7 @@ pub struct CrossTalk {
 pub(crate) fn cross_talk(
     recorded: &[Recorded<'_>],
     taxels: &[String],
-    options: &Options,
+    options: &CharacterizeOptions,
 ) -> Finding<CrossTalk> {
     let slow = |taxel: usize| above(recorded, taxel).filter(|press| press.is_slow(options));
     let peaks_n = (0..taxels.len()).flat_map(slow).map(Recorded::peak_n);
@@ -88,7 +88,7 @@ mod tests {
         let finding = cross_talk(
             &all(&presses),
             &["a".to_owned(), "b".to_owned()],
-            &Options::default(),
+            &CharacterizeOptions::default(),
         );
         let found = finding.found().unwrap();
         assert_eq!(found.pressed, ["a"]);

@@ -5,7 +5,7 @@ use twintac_recording::Control;
 
 use crate::recorded::Recorded;
 use crate::statistics::mean;
-use crate::{Finding, Noise, Options, Sensitivity};
+use crate::{CharacterizeOptions, Finding, Noise, Sensitivity};
 
 /// The force at which a single reading stands out of the noise.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -20,7 +20,7 @@ pub struct DetectionLimit {
 
 /// A weight put on above a taxel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Step {
+pub struct KnownStep {
     /// The press's name.
     pub press: String,
     /// The taxel's name.
@@ -40,7 +40,7 @@ pub struct Step {
 pub(crate) fn limits(
     noise: &Finding<Vec<Noise>>,
     sensitivity: &Finding<Vec<Sensitivity>>,
-    options: &Options,
+    options: &CharacterizeOptions,
 ) -> Finding<Vec<DetectionLimit>> {
     let (Finding::Found(noise), Finding::Found(sensitivity)) = (noise, sensitivity) else {
         return Finding::NotGiven("it takes both a noise floor and a sensitivity".to_owned());
@@ -64,8 +64,8 @@ pub(crate) fn steps(
     recorded: &[Recorded<'_>],
     taxels: &[String],
     noise: &Finding<Vec<Noise>>,
-    options: &Options,
-) -> Finding<Vec<Step>> {
+    options: &CharacterizeOptions,
+) -> Finding<Vec<KnownStep>> {
     let Finding::Found(noise) = noise else {
         return Finding::NotGiven("it takes a noise floor".to_owned());
     };
@@ -77,7 +77,12 @@ pub(crate) fn steps(
     Finding::of_list(found.collect(), why)
 }
 
-fn step(load: &Recorded<'_>, taxels: &[String], noise: &[Noise], options: &Options) -> Option<Step> {
+fn step(
+    load: &Recorded<'_>,
+    taxels: &[String],
+    noise: &[Noise],
+    options: &CharacterizeOptions,
+) -> Option<KnownStep> {
     let taxel = load.taxel?;
     let noise = noise.iter().find(|noise| noise.taxel == taxels[taxel])?;
     let window_deviation_kpa = noise.window_deviation_kpa?;
@@ -92,7 +97,7 @@ fn step(load: &Recorded<'_>, taxels: &[String], noise: &[Noise], options: &Optio
     let with_kpa = mean(&load.readings_kpa(taxel, &(phases.hold.start..to)))?;
     let step_kpa = with_kpa - before_kpa;
     let z_averaged = step_kpa / window_deviation_kpa;
-    Some(Step {
+    Some(KnownStep {
         press: load.press.name.clone(),
         taxel: taxels[taxel].clone(),
         force_n: load.peak_n(),
@@ -122,14 +127,14 @@ mod tests {
         }
     }
 
-    fn all_steps(presses: &[Press]) -> Vec<Step> {
+    fn all_steps(presses: &[Press]) -> Vec<KnownStep> {
         let (all, names) = (all(presses), ["a".to_owned(), "b".to_owned()]);
-        let noise = noise(&all, &names, &Options::default());
-        let steps = steps(&all, &names, &noise, &Options::default());
+        let noise = noise(&all, &names, &CharacterizeOptions::default());
+        let steps = steps(&all, &names, &noise, &CharacterizeOptions::default());
         steps.found().unwrap().clone()
     }
 
-    fn steps_of(force_n: f64) -> Step {
+    fn steps_of(force_n: f64) -> KnownStep {
         all_steps(&[press(&weight(force_n))])[0].clone()
     }
 
@@ -180,7 +185,7 @@ mod tests {
             n_presses: 1,
             response: Vec::new(),
         }]);
-        let limits = limits(&noise, &response, &Options::default());
+        let limits = limits(&noise, &response, &CharacterizeOptions::default());
         assert!((limits.found().unwrap()[0].single_reading_n - 0.01).abs() < 1e-12);
     }
 }

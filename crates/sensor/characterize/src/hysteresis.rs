@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::phases::duration_s;
 use crate::recorded::{Recorded, above};
 use crate::statistics::{between, binned, mean};
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// Longest hold of a press that goes down and up again, s.
 const LONGEST_HOLD_S: f64 = 0.5;
@@ -36,7 +36,7 @@ pub struct Hysteresis {
 pub(crate) fn hysteresis(
     recorded: &[Recorded<'_>],
     taxels: &[String],
-    options: &Options,
+    options: &CharacterizeOptions,
 ) -> Finding<Vec<Hysteresis>> {
     let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
         let is_suited = |press: &&Recorded<'_>| {
@@ -116,7 +116,7 @@ mod tests {
         let finding = hysteresis(
             &all(&presses),
             &["a".to_owned(), "b".to_owned()],
-            &Options::default(),
+            &CharacterizeOptions::default(),
         );
         let found = &finding.found().unwrap()[0];
         assert_eq!(found.n_presses, 2);
@@ -134,7 +134,7 @@ mod tests {
         let finding = hysteresis(
             &all(&presses),
             &["a".to_owned(), "b".to_owned()],
-            &Options::default(),
+            &CharacterizeOptions::default(),
         );
         assert!(finding.found().unwrap()[0].percent.abs() < 1e-6);
     }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::recorded::Recorded;
 use crate::statistics::{deviation, mean};
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// Fewest unloaded frames of a press that count.
 const FEWEST_FRAMES: usize = 8;
@@ -24,7 +24,11 @@ pub struct Noise {
     pub n_readings: usize,
 }
 
-pub(crate) fn noise(recorded: &[Recorded<'_>], taxels: &[String], options: &Options) -> Finding<Vec<Noise>> {
+pub(crate) fn noise(
+    recorded: &[Recorded<'_>],
+    taxels: &[String],
+    options: &CharacterizeOptions,
+) -> Finding<Vec<Noise>> {
     let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
         let (mut squares, mut freedom, mut n_readings) = (0.0, 0, 0);
         let mut changes_kpa = Vec::new();
@@ -93,7 +97,7 @@ mod tests {
         };
         let presses = [press(&shape), press(&shape)];
         let names = ["a".to_owned(), "b".to_owned()];
-        let finding = noise(&all(&presses), &names, &Options::default());
+        let finding = noise(&all(&presses), &names, &CharacterizeOptions::default());
         let found = finding.found().unwrap();
         assert_eq!(found.len(), 2);
         assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
@@ -110,7 +114,7 @@ mod tests {
         let finding = noise(
             &all(&presses),
             &["a".to_owned(), "b".to_owned()],
-            &Options::default(),
+            &CharacterizeOptions::default(),
         );
         assert!(finding.why_not().unwrap().contains("unloaded"));
     }

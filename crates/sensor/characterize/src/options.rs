@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// What counts as above, slow, fast and long. They stand in the results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Options {
+pub struct CharacterizeOptions {
     /// Farthest that an indenter may be from a taxel, in plan, to press it, mm. Default 1.
     pub above_mm: f64,
     /// Shortest loading, from contact to hold, that is slow: clocks that differ by milliseconds do not matter then, s. Default 1.
@@ -21,7 +21,7 @@ pub struct Options {
     pub sigmas: f64,
 }
 
-impl Default for Options {
+impl Default for CharacterizeOptions {
     fn default() -> Self {
         Self {
             above_mm: 1.0,

@@ -5,7 +5,7 @@ use std::ops::Range;
 use twintac_recording::{Control, Press, Recording};
 use twintac_sensor::Sensor;
 
-use crate::Options;
+use crate::CharacterizeOptions;
 use crate::phases::{Phases, duration_s};
 
 /// A press whose force is known.
@@ -29,7 +29,7 @@ impl<'a> Recorded<'a> {
         })
     }
 
-    pub(crate) fn all(recording: &'a Recording, sensor: &Sensor, options: &Options) -> Vec<Self> {
+    pub(crate) fn all(recording: &'a Recording, sensor: &Sensor, options: &CharacterizeOptions) -> Vec<Self> {
         let presses = recording.presses.iter();
         presses
             .filter_map(|press| Self::of(press, sensor, options.above_mm))
@@ -37,7 +37,7 @@ impl<'a> Recorded<'a> {
     }
 
     /// Loads to a depth, slowly.
-    pub(crate) fn is_slow(&self, options: &Options) -> bool {
+    pub(crate) fn is_slow(&self, options: &CharacterizeOptions) -> bool {
         self.press.control == Control::Pose && duration_s(self.press, &self.phases.loading) >= options.slow_s
     }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::recorded::{Recorded, above};
 use crate::statistics::{between, binned, deviation, mean};
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// Steps of force that readings are averaged in.
 const BINS: usize = 25;
@@ -36,7 +36,7 @@ pub struct Repeatability {
 pub(crate) fn repeatability(
     recorded: &[Recorded<'_>],
     taxels: &[String],
-    options: &Options,
+    options: &CharacterizeOptions,
 ) -> Finding<Vec<Repeatability>> {
     let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
         let slow: Vec<&Recorded<'_>> = above(recorded, taxel)
@@ -111,10 +111,10 @@ mod tests {
             slope(|force_n, _, _| 7.1 * force_n),
         ];
         let names = ["a".to_owned(), "b".to_owned()];
-        let finding = repeatability(&all(&presses), &names, &Options::default());
+        let finding = repeatability(&all(&presses), &names, &CharacterizeOptions::default());
         let found = &finding.found().unwrap()[0];
         assert!((found.percent - 100.0 * 0.1 / 7.0).abs() < 0.02, "{found:?}");
-        let finding = repeatability(&all(&presses[..2]), &names, &Options::default());
+        let finding = repeatability(&all(&presses[..2]), &names, &CharacterizeOptions::default());
         assert!(finding.why_not().is_some());
     }
 }

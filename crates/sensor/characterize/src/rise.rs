@@ -9,7 +9,7 @@ use twintac_recording::Control;
 use crate::phases::duration_s;
 use crate::recorded::Recorded;
 use crate::statistics::median;
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// How much longer than the force's the rise of a reading that is slower must be, in frames.
 const SLOWER_FRAMES: f64 = 1.0;
@@ -33,7 +33,7 @@ pub struct RiseTime {
     pub example: String,
 }
 
-pub(crate) fn rise_time(recorded: &[Recorded<'_>], options: &Options) -> Finding<RiseTime> {
+pub(crate) fn rise_time(recorded: &[Recorded<'_>], options: &CharacterizeOptions) -> Finding<RiseTime> {
     let fast: Vec<(&Recorded<'_>, Rise)> = recorded
         .iter()
         .filter(|press| press.press.control == Control::Pose)
@@ -129,7 +129,7 @@ mod tests {
             rate_hz: 1000.0,
             ..Shape::default()
         })];
-        let finding = rise_time(&all(&presses), &Options::default());
+        let finding = rise_time(&all(&presses), &CharacterizeOptions::default());
         let found = finding.found().unwrap();
         assert!(
             (found.rise_s - 0.08).abs() < 1e-6 && (found.force_rise_s - 0.08).abs() < 1e-6,
@@ -154,7 +154,7 @@ mod tests {
             },
             ..Shape::default()
         })];
-        let finding = rise_time(&all(&presses), &Options::default());
+        let finding = rise_time(&all(&presses), &CharacterizeOptions::default());
         let found = finding.found().unwrap();
         assert!(
             (found.rise_s / (0.1 * 9.0_f64.ln()) - 1.0).abs() < 0.01,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::recorded::{Recorded, above};
 use crate::statistics::{binned, deviation, line, mean};
-use crate::{Finding, Options};
+use crate::{CharacterizeOptions, Finding};
 
 /// Steps of force that readings are averaged in.
 const BINS: usize = 100;
@@ -41,7 +41,7 @@ pub struct Sensitivity {
 
 /// What taxels have in common.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Overall {
+pub struct MeanSensitivity {
     /// Mean of the taxels' sensitivities, kPa/N.
     pub mean_kpa_per_n: f64,
     /// Standard deviation between taxels, kPa/N.
@@ -55,7 +55,7 @@ pub struct Overall {
 pub(crate) fn sensitivity(
     recorded: &[Recorded<'_>],
     taxels: &[String],
-    options: &Options,
+    options: &CharacterizeOptions,
 ) -> Finding<Vec<Sensitivity>> {
     let found = taxels
         .iter()
@@ -68,7 +68,7 @@ pub(crate) fn sensitivity(
     Finding::of_list(found.collect(), &why)
 }
 
-pub(crate) fn overall(taxels: &Finding<Vec<Sensitivity>>) -> Finding<Overall> {
+pub(crate) fn overall(taxels: &Finding<Vec<Sensitivity>>) -> Finding<MeanSensitivity> {
     let taxels = match taxels {
         Finding::Found(taxels) => taxels,
         Finding::NotGiven(why) => return Finding::NotGiven(why.clone()),
@@ -77,7 +77,7 @@ pub(crate) fn overall(taxels: &Finding<Vec<Sensitivity>>) -> Finding<Overall> {
     mean(&slopes).map_or_else(
         || Finding::NotGiven("no taxel has a sensitivity".to_owned()),
         |mean_kpa_per_n| {
-            Finding::Found(Overall {
+            Finding::Found(MeanSensitivity {
                 mean_kpa_per_n,
                 deviation_kpa_per_n: deviation(&slopes),
                 linear_to_n: taxels
@@ -90,7 +90,12 @@ pub(crate) fn overall(taxels: &Finding<Vec<Sensitivity>>) -> Finding<Overall> {
     )
 }
 
-fn of_taxel(recorded: &[Recorded<'_>], taxel: usize, name: &str, options: &Options) -> Option<Sensitivity> {
+fn of_taxel(
+    recorded: &[Recorded<'_>],
+    taxel: usize,
+    name: &str,
+    options: &CharacterizeOptions,
+) -> Option<Sensitivity> {
     let slow: Vec<&Recorded<'_>> = above(recorded, taxel)
         .filter(|press| press.is_slow(options))
         .collect();
@@ -151,7 +156,7 @@ mod tests {
             ..Shape::default()
         })];
         let names = ["a".to_owned(), "b".to_owned()];
-        sensitivity(&all(&presses), &names, &Options::default())
+        sensitivity(&all(&presses), &names, &CharacterizeOptions::default())
             .found()
             .unwrap()[0]
             .clone()
@@ -192,7 +197,7 @@ mod tests {
         })];
         let names = ["a".to_owned(), "b".to_owned()];
         assert!(
-            sensitivity(&all(&presses), &names, &Options::default())
+            sensitivity(&all(&presses), &names, &CharacterizeOptions::default())
                 .why_not()
                 .unwrap()
                 .contains("1 s")

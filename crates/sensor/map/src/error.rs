@@ -21,3 +21,34 @@ pub enum MapError {
         pivot: f64,
     },
 }
+
+pub(crate) fn check_length(
+    what: &'static str,
+    values: &[f64],
+    taxels_mm: &[[f64; 2]],
+) -> Result<(), MapError> {
+    if values.len() == taxels_mm.len() {
+        return Ok(());
+    }
+    let expected = format!("one for each of {} taxels", taxels_mm.len());
+    Err(input(what, &expected, values.len()))
+}
+
+pub(crate) fn check_grid([columns, rows]: [usize; 2]) -> Result<(), MapError> {
+    if columns == 0 || rows == 0 {
+        return Err(input(
+            "grid of a pressure map",
+            "at least one cell",
+            format!("{columns} x {rows}"),
+        ));
+    }
+    Ok(())
+}
+
+pub(crate) fn input(what: &'static str, expected: &str, found: impl ToString) -> MapError {
+    MapError::Input {
+        what,
+        expected: expected.to_owned(),
+        found: found.to_string(),
+    }
+}

@@ -1,8 +1,10 @@
 //! The weights of a map, as a linear function of the readings.
 
+use crate::error::input;
+use crate::geometry::{distance_mm, pitch_mm};
 use crate::kernel::{self, Plane};
 use crate::width::leave_one_out;
-use crate::{Kernel, MapError, MapSettings, Weights, distance_mm, input, pitch_mm};
+use crate::{Kernel, MapError, MapSettings, Weights};
 
 /// All that follows from the taxels and the settings alone.
 #[derive(Clone, Debug)]

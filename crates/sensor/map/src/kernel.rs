@@ -1,6 +1,7 @@
 //! The functions that a map is a sum of, and the linear system of their weights.
 
-use crate::{Kernel, MapError, distance_mm};
+use crate::geometry::distance_mm;
+use crate::{Kernel, MapError};
 
 /// Smallest pivot, of a matrix whose entries are of order one.
 const SMALLEST_PIVOT: f64 = 1e-10;

@@ -1,7 +1,9 @@
 //! Many maps of the same taxels.
 
+use crate::error::{check_grid, check_length};
 use crate::fit::Fit;
-use crate::{MapError, MapSettings, Rectangle, cells, check_grid, check_length, finite_or_zero};
+use crate::geometry::{Rectangle, cells, finite_or_zero};
+use crate::{MapError, MapSettings};
 
 /// A map is linear in its readings: what each taxel adds to each cell, worked out once, so that a map is a sum.
 #[derive(Clone, Debug)]

@@ -1,6 +1,7 @@
 //! The Gaussian's width, chosen by how well each taxel is told by the others.
 
-use crate::{Kernel, finite_or_zero, kernel, pitch_mm};
+use crate::geometry::{finite_or_zero, pitch_mm};
+use crate::{Kernel, kernel};
 
 /// Widths that are tried, in pitches of the taxels, each 1.12 times the one before. Wider ones leave the weights to rounding.
 const NARROWEST: f64 = 0.3;

@@ -78,6 +78,9 @@ fn block(block: &Block) -> String {
 }
 
 fn badge(Badge(word): &Badge) -> String {
+    if word.is_empty() {
+        return String::new();
+    }
     let word = escape(word);
     format!("<span class=\"badge {word}\">{word}</span>")
 }

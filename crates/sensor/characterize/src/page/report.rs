@@ -292,7 +292,7 @@ mod tests {
 
     use super::*;
     use crate::synthetic::{Shape, press};
-    use crate::{Options, characterize};
+    use crate::{CharacterizeOptions, characterize};
 
     #[test]
     fn the_papers_figures_stand_beside_those_of_its_sensor_only() {
@@ -306,7 +306,7 @@ mod tests {
             taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
             presses: vec![press(&Shape::default())],
         };
-        let found = characterize(&recording, &[], &sensor, &Options::default()).unwrap();
+        let found = characterize(&recording, &[], &sensor, &CharacterizeOptions::default()).unwrap();
         let page = report(&found, &recording, &sensor).render();
         assert!(page.contains("212 N as the largest force"));
         assert!(page.contains("clocks that may differ"));

@@ -49,21 +49,25 @@ impl Characterization {
     /// Name, value and condition of each figure, as text.
     #[must_use]
     pub fn rows(&self, sensor: &Sensor) -> Vec<[String; 3]> {
-        rows(self, sensor)
+        let mut rows = described(self, sensor);
+        rows.extend(response(self));
+        rows.extend(smallest(self));
+        rows.extend(repeats(self));
+        rows.extend(over_time(self));
+        rows.extend(beside(self));
+        rows
     }
 }
 
-fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
-    let options = &found.options;
-    let sigmas = options.sigmas;
-    let row = |name: &str, value: String, condition: String| {
-        let is_missing = value.starts_with(NOT_GIVEN);
-        [
-            name.to_owned(),
-            value,
-            if is_missing { String::new() } else { condition },
-        ]
-    };
+/// Name, value and condition of a figure; one that is not given has no condition.
+fn row(name: &str, value: String, condition: String) -> [String; 3] {
+    let is_missing = value.starts_with(NOT_GIVEN);
+    let condition = if is_missing { String::new() } else { condition };
+    [name.to_owned(), value, condition]
+}
+
+/// What the description says of the sensor.
+fn described(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
     let readout = &sensor.readout;
     vec![
         row(
@@ -81,6 +85,12 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             format!("{} kPa, {} Hz", readout.resolution_kpa, readout.rate_hz),
             "from the sensor’s description, not measured here".into(),
         ),
+    ]
+}
+
+/// The response to a force.
+fn response(found: &Characterization) -> Vec<[String; 3]> {
+    vec![
         row(
             "Sensitivity",
             or_not(&found.overall, |overall| {
@@ -106,7 +116,7 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             }),
             format!(
                 "within {} % of the range’s end from a least-squares line, all taxels",
-                options.linear_percent
+                found.options.linear_percent
             ),
         ),
         row(
@@ -122,6 +132,13 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
                 format!("taxel {} reads most; nothing is known beyond", range.taxel)
             }),
         ),
+    ]
+}
+
+/// The smallest force that is seen, and how many times more the largest is.
+fn smallest(found: &Characterization) -> Vec<[String; 3]> {
+    let sigmas = found.options.sigmas;
+    vec![
         row(
             "Noise floor",
             or_not(&found.noise, |taxels| {
@@ -147,7 +164,10 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
                     )
                 })
             }),
-            format!("known weight, mean over {} s, z ≥ {sigmas}", options.window_s),
+            format!(
+                "known weight, mean over {} s, z ≥ {sigmas}",
+                found.options.window_s
+            ),
         ),
         row(
             "Dynamic range",
@@ -158,6 +178,12 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             }),
             "largest force in the data over the smallest detection limit".into(),
         ),
+    ]
+}
+
+/// How alike readings of the same force are.
+fn repeats(found: &Characterization) -> Vec<[String; 3]> {
+    vec![
         row(
             "Hysteresis",
             or_not(&found.hysteresis, |taxels| {
@@ -178,6 +204,12 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
             }),
             "largest standard deviation at the same force, by taxel".into(),
         ),
+    ]
+}
+
+/// What time does.
+fn over_time(found: &Characterization) -> Vec<[String; 3]> {
+    vec![
         row(
             "Rise time (10–90 %)",
             or_not(&found.rise_time, |rise| {
@@ -208,6 +240,12 @@ fn rows(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
                 )
             }),
         ),
+    ]
+}
+
+/// What else a taxel reads than the force above it.
+fn beside(found: &Characterization) -> Vec<[String; 3]> {
+    vec![
         row(
             "Cross-talk",
             or_not(&found.cross_talk, |talk| {
