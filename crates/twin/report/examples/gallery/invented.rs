@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use digitac::{
-    BenchEstimate, Epoch, Errors, Estimate, Evaluation, Features, Gains, Mean, PairedPress, PressEvaluation, Score,
-    Variant, Warp,
+    BenchEstimate, Epoch, Errors, Estimate, Evaluation, Features, Gains, Mean, PairedPress, PressEvaluation,
+    Score, Variant, Warp,
 };
 use twintac_depth_table::{DepthTable, PressFrame, SolveQuality};
 use twintac_recording::Provenance;
