@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use twintac_characterize::{Characterization, Options, UnloadedCourse, characterize, write_pages};
+use twintac_characterize::{
+    Characterization, CharacterizeOptions, UnloadedCourse, characterize, write_pages,
+};
 use twintac_log::{Body, Event, LogReader, ReadBack, ReadOptions, TaxelState, read_presses};
 use twintac_recording::Recording;
 use twintac_sensor::Sensor;
@@ -68,7 +70,7 @@ impl Recorded {
             &self.recording,
             &self.unloaded,
             sensor,
-            &Options::default(),
+            &CharacterizeOptions::default(),
         )?)
     }
 
