@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::geometry::distance_mm;
+use crate::geometry::{cells, distance_mm};
 
 const TAXELS: [[f64; 2]; 8] = [
     [-12.0, -4.0],
