@@ -121,7 +121,7 @@ fn press(sensor: &Sensor, name: &str, place_mm: [f64; 2], error: f64) -> PressEv
     };
     PressEvaluation {
         name: name.into(),
-        file: "sphere_a".into(),
+        mounting: "sphere_a".into(),
         indenter: "sphere".into(),
         place_mm,
         measured_kpa: frames(1.0, 0.4),
@@ -148,7 +148,7 @@ fn paired(press: &PressEvaluation) -> PairedPress {
     };
     PairedPress {
         name: press.name.clone(),
-        file: press.file.clone(),
+        mounting: press.mounting.clone(),
         indenter: press.indenter.clone(),
         place_mm: press.place_mm,
         features: Features {
@@ -285,7 +285,7 @@ pub(crate) fn resting() -> Results {
         let error = 1.0 + 2.0 * (place_mm[0] / 6.0).sin().powi(2) + 0.4 * ripple(index);
         PressEvaluation {
             name: format!("press {index}"),
-            file: "grid".into(),
+            mounting: "grid".into(),
             indenter: "sphere".into(),
             place_mm,
             time_s: vec![0.0],

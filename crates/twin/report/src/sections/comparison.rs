@@ -14,7 +14,7 @@ pub(super) fn recordings(report: &TwinReport<'_>) -> Vec<Block> {
                 .evaluation
                 .presses
                 .iter()
-                .filter(|press| press.file == *file)
+                .filter(|press| press.mounting == *file)
         };
         vec![
             words(file),
