@@ -3,8 +3,8 @@
 
 use twintac::{Error, Reader, Sensor};
 
-/// Frames to read: about a second.
-const FRAMES: usize = 100;
+/// Frames to read: about three seconds. The emulated ball presses after the first.
+const FRAMES: usize = 350;
 
 fn main() -> Result<(), Error> {
     let mut arguments = std::env::args().skip(1);

@@ -25,7 +25,7 @@ pub struct Twin {
 pub struct Prediction {
     /// Time since first touch, s; as many frames a second as the sensor gives.
     pub time_s: Vec<f64>,
-    /// Depth below first touch, mm.
+    /// Depth below first touch, mm, with the height at which the bench of the recordings touched.
     pub depth_mm: Vec<f64>,
     /// Force of the indenter on the gel, N.
     pub force_n: Vec<f64>,
