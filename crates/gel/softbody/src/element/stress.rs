@@ -299,6 +299,6 @@ fn instantaneous_deviator(point: &Point) -> [Wide<f64>; 6] {
     let scale = Wide::splat(1.0) / (root * root * volume_ratio);
     [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)].map(|(i, j)| {
         let column = |m: &Matrix<f64>, j: usize| [m[0][j], m[1][j], m[2][j]];
-        dot(&column(&cofactor, i), &column(&point.stress, j)) * scale
+        dot(&column(&cofactor, i), &column(point.stress, j)) * scale
     })
 }
