@@ -55,30 +55,6 @@ fn read() -> Result<Workspace> {
     })
 }
 
-/// What does not hold yet.
-const NOT_YET: &[&str] = &[
-    "sources::crates/sensor/characterize::long_functions_say_why",
-    "sources::crates/sensor/description::long_functions_say_why",
-    "sources::crates/twin/report::long_functions_say_why",
-    "sources::twintac-characterize::library_has_no_circles",
-    "sources::twintac-characterize::what_is_public_is_used",
-    "sources::twintac-emulate::what_is_public_is_used",
-    "sources::twintac-files::what_is_public_is_used",
-    "sources::twintac-live::what_is_public_is_used",
-    "sources::twintac-log::library_has_no_circles",
-    "sources::twintac-map::library_has_no_circles",
-    "sources::twintac-map::what_is_public_is_used",
-    "sources::twintac-plot::library_has_no_circles",
-    "sources::twintac-plot::what_is_public_is_used",
-    "sources::twintac-press::what_is_public_is_used",
-    "sources::twintac-recording::library_has_no_circles",
-    "sources::twintac-report::library_has_no_circles",
-    "sources::twintac-report::what_is_public_is_used",
-    "sources::twintac-rig::what_is_public_is_used",
-    "sources::twintac-sensor::what_is_public_is_used",
-    "sources::twintac-shape::library_has_no_circles",
-];
-
 /// A test that ends well if `check` does.
 fn trial(
     workspace: &Arc<Workspace>,
@@ -87,11 +63,9 @@ fn trial(
 ) -> Trial {
     let workspace = Arc::clone(workspace);
     let name = name.replace(' ', "_");
-    let is_ignored = NOT_YET.contains(&name.as_str());
-    let trial = Trial::test(name, move || {
+    Trial::test(name, move || {
         check(&workspace, &xtask::root()).map_err(|error| Failed::from(format!("{error:#}")))
-    });
-    trial.with_ignored_flag(is_ignored)
+    })
 }
 
 fn of_rooms(workspace: &Arc<Workspace>) -> Vec<Trial> {

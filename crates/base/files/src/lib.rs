@@ -17,7 +17,7 @@ mod partial;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-pub use partial::{PartialFile, partial_path};
+pub use partial::PartialFile;
 
 /// Writes a file under a temporary name and renames it.
 ///

@@ -33,7 +33,7 @@ pub const PALETTE: [[u8; 3]; 6] = [
 
 impl Ink {
     /// The colour on white paper.
-    pub fn rgb(self) -> [u8; 3] {
+    pub(crate) fn rgb(self) -> [u8; 3] {
         match self {
             Ink::Text => [0x1d, 0x27, 0x30],
             Ink::Muted => [0x5f, 0x6c, 0x78],
@@ -47,7 +47,7 @@ impl Ink {
     }
 
     /// The colour as `#rrggbb`.
-    pub fn hex(self) -> String {
+    pub(crate) fn hex(self) -> String {
         let [red, green, blue] = self.rgb();
         format!("#{red:02x}{green:02x}{blue:02x}")
     }

@@ -27,7 +27,7 @@ mod svg;
 mod write;
 
 pub use axis::{extent, padded};
-pub use chart::{Bar, Bars, Density, HeatMap, HeatMaps, Panel, Panels, Places, Series, WIDTH_PX};
+pub use chart::{Bar, Bars, Density, HeatMap, HeatMaps, Panel, Panels, Places, Series};
 pub use color::{Ink, PALETTE, viridis};
 pub use error::PlotError;
 pub use font::text_width;

@@ -15,10 +15,12 @@ mod signed_distance;
 mod solid;
 mod stl;
 mod surface;
+mod surface_error;
 
 pub use dome::Dome;
 pub use pose::Pose;
 pub use shape::{Shape, ShapeError};
 pub use signed_distance::{Distance, SignedDistance};
 pub use solid::Solid;
-pub use surface::{SurfaceError, Surfaces, TriangleSurface};
+pub use surface::{Surfaces, TriangleSurface};
+pub use surface_error::SurfaceError;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::SurfaceError;
+use crate::surface_error::SurfaceError;
 
 /// Bytes before the triangles of a binary file: a comment of 80 and their number.
 const HEADER_BYTES: usize = 84;

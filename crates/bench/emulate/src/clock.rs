@@ -59,7 +59,7 @@ impl LabClock {
     }
 
     /// Waits until that long after the start; virtual time goes there, unless it is past.
-    pub fn wait_until_ns(&self, until_ns: u64) {
+    pub(crate) fn wait_until_ns(&self, until_ns: u64) {
         match &*self.0 {
             Time::Real(_) => {
                 let left = Duration::from_nanos(until_ns.saturating_sub(self.now_ns()));

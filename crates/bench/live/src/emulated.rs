@@ -16,7 +16,7 @@ use crate::{BoxedClock, LiveError, TAXELS};
 
 /// A ball that wanders around over the taxels and presses every few seconds. It is a function of time alone.
 #[derive(Clone, Debug)]
-pub struct WanderingBall {
+struct WanderingBall {
     hertz: Hertz,
     middle_mm: DVec3,
     half_mm: DVec3,
@@ -24,17 +24,16 @@ pub struct WanderingBall {
 
 impl WanderingBall {
     /// Before the first press nothing touches for so long, s: time to take a tare.
-    pub const FREE_S: f64 = 1.0;
+    const FREE_S: f64 = 1.0;
     /// Time of a press, from touch to touch, s.
-    pub const PRESS_S: f64 = 3.0;
+    const PRESS_S: f64 = 3.0;
     /// Time of a round over the taxels, s.
-    pub const ROUND_S: f64 = 19.0;
+    const ROUND_S: f64 = 19.0;
     /// Depth in the middle of a press, mm.
-    pub const DEPTH_MM: f64 = 2.0;
+    const DEPTH_MM: f64 = 2.0;
 
     /// Over a sensor's taxels, whose places become those of the physics, by channel.
-    #[must_use]
-    pub fn over(sensor: &Sensor) -> Self {
+    fn over(sensor: &Sensor) -> Self {
         let mut hertz = Hertz::default();
         for taxel in &sensor.taxels {
             if let Some(place_mm) = hertz.taxels_mm.get_mut(usize::from(taxel.channel)) {
@@ -55,8 +54,7 @@ impl WanderingBall {
     }
 
     /// Where the ball's lowest point is, mm; the surface at rest is z = 0.
-    #[must_use]
-    pub fn tip_mm(&self, time_s: f64) -> DVec3 {
+    fn tip_mm(&self, time_s: f64) -> DVec3 {
         let pressing_s = (time_s - Self::FREE_S).max(0.0);
         let (sine, cosine) = (TAU * pressing_s / Self::ROUND_S).sin_cos();
         let depth_mm = Self::DEPTH_MM * (PI * pressing_s / Self::PRESS_S).sin().powi(2);
@@ -77,7 +75,7 @@ impl Physics for WanderingBall {
 /// The driver of an emulated sensor.
 pub type EmulatedPhysTac = PhysTac<Bus, LabClock, BoxedClock, TAXELS>;
 
-/// A sensor as it is described, pressed by a [`WanderingBall`], on [`emulated_board`], by a clock that stands at zero, with faults of its bus.
+/// A sensor as it is described, pressed by a ball that wanders around over its taxels, on [`emulated_board`], by a clock that stands at zero, with faults of its bus.
 /// There is neither robot nor force sensor.
 ///
 /// # Errors

@@ -37,7 +37,7 @@ mod stream;
 mod tare;
 
 pub use about::{About, driver_settings};
-pub use emulated::{EmulatedPhysTac, WanderingBall, emulated_board, emulated_phystac};
+pub use emulated::{EmulatedPhysTac, emulated_board, emulated_phystac};
 pub use error::LiveError;
 #[cfg(target_os = "linux")]
 pub use linux::{LinuxBus, LinuxPhysTac, open_linux};

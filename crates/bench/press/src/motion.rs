@@ -88,7 +88,7 @@ impl Motion {
 
     /// The tool's pose with the indenter at first touch, were the surface where it is described.
     #[must_use]
-    pub fn at_surface(&self) -> TcpPose {
+    pub(crate) fn at_surface(&self) -> TcpPose {
         self.settings.placement.tool(&self.over_place(0.0))
     }
 
@@ -99,7 +99,7 @@ impl Motion {
     }
 
     /// The pose of the next servo period; `None` when there is none left. An approach that ends without [`touch`](Self::touch) is the end.
-    pub fn next_pose(&mut self) -> Option<TcpPose> {
+    pub(crate) fn next_pose(&mut self) -> Option<TcpPose> {
         self.elapsed_s += self.settings.servo_period_s;
         while let Some(leg) = self.legs.front()
             && self.elapsed_s >= leg.duration_s

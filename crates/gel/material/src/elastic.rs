@@ -3,7 +3,7 @@
 use crate::{Law, MaterialError};
 
 /// The constants of a model, in kPa where they are stresses. Field names are those of files.
-pub trait Elastic: Sized {
+pub(crate) trait Elastic: Sized {
     /// The law with these constants.
     type Law<'a>: Law
     where
@@ -24,11 +24,10 @@ pub trait Elastic: Sized {
     /// Shear modulus at small strain, kPa.
     fn shear_modulus_kpa(&self) -> f64;
 
-    /// The constants besides the shear modulus, for people to read: `C10 8 kPa, C01 3.5 kPa`. May be empty.
+    /// As [`crate::Model::in_words`].
     fn in_words(&self) -> String;
 
-    /// The modulus κ of the mean volume change, kPa, with which the bulk modulus at small strain is the one given: the difference between that and
-    /// the law's own resistance to a change of volume. Positive for a valid material.
+    /// As [`crate::Model::volume_modulus_kpa`].
     fn volume_modulus_kpa(&self, bulk_modulus_kpa: f64) -> f64 {
         bulk_modulus_kpa
     }

@@ -5,7 +5,7 @@ use crate::wide::{Real, Wide};
 use crate::{Curvatures, Invariants, Law, Slopes};
 
 /// An energy of the change of shape: a function of `Ī1 = J^(-2/3) I1` and `Ī2 = J^(-4/3) I2`.
-pub trait IsochoricLaw: Copy + Sync {
+pub(crate) trait IsochoricLaw: Copy + Sync {
     /// Whether it depends on `Ī2`.
     const USES_SECOND: bool;
     /// Whether any of its second derivatives is other than zero.
@@ -23,7 +23,7 @@ pub trait IsochoricLaw: Copy + Sync {
 
 /// An isochoric law as a [`Law`], by the chain rule.
 #[derive(Clone, Copy, Debug)]
-pub struct Isochoric<L>(pub L);
+pub(crate) struct Isochoric<L>(pub(crate) L);
 
 #[inline(always)]
 fn isochoric_invariants<T: Real>(at: &Invariants<T>) -> [Wide<T>; 2] {

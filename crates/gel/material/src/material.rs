@@ -41,7 +41,7 @@ impl Material {
         }
     }
 
-    /// Modulus of the mean volume change, kPa; see [`crate::Elastic::volume_modulus_kpa`].
+    /// Modulus of the mean volume change, kPa; see [`Model::volume_modulus_kpa`].
     #[must_use]
     pub fn volume_modulus_kpa(&self) -> f64 {
         self.model.volume_modulus_kpa(self.bulk_modulus_kpa)

@@ -5,7 +5,7 @@ use crate::{Curvatures, Invariants, Law, Slopes, StretchLaw};
 
 /// A law of the stretches alone as a [`Law`].
 #[derive(Clone, Copy, Debug)]
-pub struct Stretches<L>(pub L);
+pub(crate) struct Stretches<L>(pub(crate) L);
 
 impl<L: StretchLaw> Law for Stretches<L> {
     type Stretches = L;

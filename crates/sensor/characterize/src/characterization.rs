@@ -104,7 +104,7 @@ pub fn characterize(
 impl Characterization {
     /// The step of the smallest force that was detected.
     #[must_use]
-    pub fn smallest_step(&self) -> Option<&KnownStep> {
+    pub(crate) fn smallest_step(&self) -> Option<&KnownStep> {
         let detected = self.steps.found()?.iter().filter(|step| step.is_detected);
         detected.min_by(|a, b| a.force_n.total_cmp(&b.force_n))
     }

@@ -24,7 +24,7 @@ impl<T> Finding<T> {
 
     /// Why it was not found, if it was not.
     #[must_use]
-    pub fn why_not(&self) -> Option<&str> {
+    pub(crate) fn why_not(&self) -> Option<&str> {
         match self {
             Self::Found(_) => None,
             Self::NotGiven(why) => Some(why),

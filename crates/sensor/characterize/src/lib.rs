@@ -36,7 +36,7 @@ pub use finding::Finding;
 pub use hysteresis::Hysteresis;
 pub use noise::Noise;
 pub use options::CharacterizeOptions;
-pub use page::{data_sheet, report, write_pages};
+pub use page::{report, write_pages};
 pub use range::CoveredRange;
 pub use repeatability::Repeatability;
 pub use rise::RiseTime;

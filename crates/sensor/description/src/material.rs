@@ -35,10 +35,4 @@ impl GelMaterial {
         let (bulk, shear) = (self.bulk_modulus_kpa, self.shear_modulus_kpa());
         (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
     }
-
-    /// Share of the isochoric stiffness that is left after a long time.
-    #[must_use]
-    pub fn relaxed_share(&self) -> f64 {
-        1.0 - self.prony.iter().map(|term| term.weight).sum::<f64>()
-    }
 }

@@ -196,7 +196,7 @@ fn gel_and_inclusions() {
 }
 
 #[test]
-fn materials() {
+fn volume_of_a_material() {
     let ratio = "poissons_ratio = 0.49";
     expect(
         ratio,
@@ -243,67 +243,80 @@ fn materials() {
         "gel.material.youngs_modulus_kpa",
         "too large",
     );
-    let youngs = "youngs_modulus_kpa = 60.0";
+}
+
+const YOUNGS: &str = "youngs_modulus_kpa = 60.0";
+
+#[test]
+fn stiffness_of_a_material() {
     expect(
-        youngs,
+        YOUNGS,
         "youngs_modulus_kpa = -60.0",
         "gel.material.youngs_modulus_kpa",
         "above 0",
     );
-    expect_at(youngs, "", "[gel.material]", "gel.material", "has no stiffness");
+    expect_at(YOUNGS, "", "[gel.material]", "gel.material", "has no stiffness");
     expect_at(
-        youngs,
+        YOUNGS,
         "youngs_modulus_kpa = 60.0\nshear_modulus_kpa = 20.0",
         "shear",
         "gel.material.shear_modulus_kpa",
         "one of the two",
     );
     expect_at(
-        youngs,
+        YOUNGS,
         "model = \"yeoh\"\nc10_kpa = 10.0\nc20_kpa = 0.1",
         "[gel.material]",
         "gel.material",
         "lacks `c30_kpa`",
     );
     expect_at(
-        youngs,
+        YOUNGS,
         "model = \"mooney-rivlin\"\nyoungs_modulus_kpa = 60.0",
         "youngs",
         "gel.material.youngs_modulus_kpa",
         "not a constant",
     );
     expect_at(
-        youngs,
+        YOUNGS,
         "youngs_modulus_kpa = 60.0\nc10_kpa = 10.0",
         "c10",
         "gel.material.c10_kpa",
         "not a constant",
     );
     expect_at(
-        youngs,
+        YOUNGS,
         "model = \"hooke\"",
         "hooke",
         "gel.material.model",
         "unknown variant",
     );
+}
+
+#[test]
+fn terms_of_a_material() {
     let ogden = |terms: &str| format!("model = \"ogden\"\nterms = {terms}");
     expect_at(
-        youngs,
+        YOUNGS,
         &ogden("[{ mu_kpa = 1.0, alpha = 2.0 }, { mu_kpa = 3.0, alpha = -2.0 }]"),
         "terms",
         "gel.material.terms",
         "add up to -4 kPa",
     );
     expect_at(
-        youngs,
+        YOUNGS,
         &ogden("[{ mu_kpa = 1.0, alpha = 0.0 }]"),
         "terms",
         "gel.material.terms[0].alpha",
         "other than 0",
     );
-    expect_at(youngs, &ogden("[]"), "terms", "gel.material.terms", "above 0");
+    expect_at(YOUNGS, &ogden("[]"), "terms", "gel.material.terms", "above 0");
+}
+
+#[test]
+fn relaxation_of_a_material() {
     expect_at(
-        youngs,
+        YOUNGS,
         "model = \"stable-neo-hookean\"\nyoungs_modulus_kpa = 60.0",
         "prony",
         "gel.material.prony",

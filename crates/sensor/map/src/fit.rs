@@ -3,7 +3,7 @@
 use crate::error::input;
 use crate::geometry::{distance_mm, pitch_mm};
 use crate::kernel::{self, Plane};
-use crate::width::leave_one_out;
+use crate::width::leave_one_out_width_mm;
 use crate::{Kernel, MapError, MapSettings, Weights};
 
 /// All that follows from the taxels and the settings alone.
@@ -51,7 +51,7 @@ impl Fit {
             (Kernel::ThinPlate, ..) => pitch_mm,
             (Kernel::Gaussian, Some(width_mm), _) => width_mm,
             (Kernel::Gaussian, None, None) => 0.5 * pitch_mm,
-            (Kernel::Gaussian, None, Some(ridge)) => leave_one_out(taxels_mm, fields, ridge),
+            (Kernel::Gaussian, None, Some(ridge)) => leave_one_out_width_mm(taxels_mm, fields, ridge),
         };
         if !(length_mm > 0.0 && length_mm.is_finite()) {
             let what = "width of a pressure map's Gaussian";

@@ -29,4 +29,3 @@ pub use geometry::{Rectangle, pitch_mm};
 pub use interpolate::{PressureMap, pressure_map};
 pub use prepared::PreparedMap;
 pub use settings::{Kernel, MapSettings, Weights};
-pub use width::leave_one_out_width_mm;

@@ -18,7 +18,7 @@ pub struct PreparedMap {
 
 impl PreparedMap {
     /// Of taxels, over a rectangle. `fields_kpa` are readings above the baseline from which
-    /// [`leave_one_out_width_mm`](crate::leave_one_out_width_mm) chooses the width, if the settings give none; there may be none.
+    /// the width is chosen by leaving each taxel out in turn, if the settings give none; there may be none.
     ///
     /// # Errors
     /// As [`pressure_map`](crate::pressure_map).

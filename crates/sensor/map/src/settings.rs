@@ -30,8 +30,8 @@ pub struct MapSettings {
     pub grid: [usize; 2],
     /// The function around each taxel.
     pub kernel: Kernel,
-    /// Standard deviation of the Gaussian, mm. `None`: where weights are solved, the one that [`leave_one_out_width_mm`](crate::leave_one_out_width_mm) chooses; else
-    /// half the pitch of the taxels.
+    /// Standard deviation of the Gaussian, mm. `None`: where weights are solved, the one with which each taxel is told best by the others;
+    /// else half the pitch of the taxels.
     pub width_mm: Option<f64>,
     /// How weights are found.
     pub weights: Weights,

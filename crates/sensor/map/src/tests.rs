@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::{cells, distance_mm};
+use crate::width::leave_one_out_width_mm;
 
 const TAXELS: [[f64; 2]; 8] = [
     [-12.0, -4.0],
@@ -248,7 +249,7 @@ fn leave_one_out_finds_a_width_for_the_field() {
                 / 900.0)
                 .sqrt()
         };
-        let chosen_mm = leave_one_out_width_mm(&array, &[&above]);
+        let chosen_mm = leave_one_out_width_mm(&array, &[&above], 0.0);
         let best = (3..=13)
             .map(|tenth| error(0.1 * f64::from(tenth) * 4.0))
             .fold(f64::INFINITY, f64::min);
@@ -268,12 +269,12 @@ fn leave_one_out_finds_a_width_for_the_field() {
 
 #[test]
 fn where_nothing_tells_the_width_is_half_the_pitch() {
-    assert_eq!(leave_one_out_width_mm(&TAXELS, &[]), 4.0);
+    assert_eq!(leave_one_out_width_mm(&TAXELS, &[], 0.0), 4.0);
     assert_eq!(
-        leave_one_out_width_mm(&TAXELS, &[&[0.0; 8], &[f64::NAN; 8], &[1.0]]),
+        leave_one_out_width_mm(&TAXELS, &[&[0.0; 8][..], &[f64::NAN; 8], &[1.0]], 0.0),
         4.0
     );
-    assert_eq!(leave_one_out_width_mm(&TAXELS[..2], &[&[1.0, 2.0]]), 4.0);
+    assert_eq!(leave_one_out_width_mm(&TAXELS[..2], &[&[1.0, 2.0]], 0.0), 4.0);
 }
 
 #[test]

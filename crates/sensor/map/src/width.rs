@@ -14,12 +14,7 @@ const USUAL: f64 = 0.5;
 ///
 /// A field is one reading above the baseline a taxel, kPa. Leaving one out needs no solve of its own: the miss is `wᵢ / (K⁻¹)ᵢᵢ`
 /// (Rippa 1999). Half the pitch if fields tell nothing: there are none, all are zero, or there are fewer than three taxels.
-#[must_use]
-pub fn leave_one_out_width_mm(taxels_mm: &[[f64; 2]], fields_kpa: &[&[f64]]) -> f64 {
-    leave_one_out(taxels_mm, fields_kpa, 0.0)
-}
-
-pub(crate) fn leave_one_out(taxels_mm: &[[f64; 2]], fields_kpa: &[&[f64]], ridge: f64) -> f64 {
+pub(crate) fn leave_one_out_width_mm(taxels_mm: &[[f64; 2]], fields_kpa: &[&[f64]], ridge: f64) -> f64 {
     let pitch_mm = pitch_mm(taxels_mm);
     let is_told = |field: &&&[f64]| {
         field.len() == taxels_mm.len() && field.iter().any(|value| finite_or_zero(*value) != 0.0)

@@ -12,4 +12,4 @@ pub use twin_report::{Making, StageTime, TrainedVariant, TwinReport};
 /// The twin's error that the TwinTac paper reports: mean absolute error over the largest contact pressure, %.
 ///
 /// It was measured on the paper's own eight-taxel sensor, over another protocol.
-pub const PAPER_ERROR_PERCENT: f64 = 5.95;
+const PAPER_ERROR_PERCENT: f64 = 5.95;

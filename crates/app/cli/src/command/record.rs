@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 use twintac_lab::Reality;
 use twintac_live::Known;
@@ -124,7 +124,9 @@ fn press(
     let whose = if reality.is_some() {
         "the emulated"
     } else {
-        settings.real_devices()?;
+        settings
+            .real_devices()
+            .map_err(|error| anyhow!("{error} with `--lab`"))?;
         "a real"
     };
     check_folder(&out(arguments).join("logs"), plans)?;

@@ -33,7 +33,7 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Draws the bars, [`WIDTH_PX`] wide.
+    /// Draws the bars, 380 px wide.
     pub fn scene(&self) -> Scene {
         const ROW: f64 = 24.0;
         const LONGEST_NAME: f64 = 170.0;

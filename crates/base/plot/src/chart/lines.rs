@@ -50,7 +50,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Draws the panels, [`WIDTH_PX`] wide.
+    /// Draws the panels, 380 px wide.
     pub fn scene(&self) -> Scene {
         const GAP: f64 = 12.0;
         const LONGEST_NAME: f64 = 110.0;

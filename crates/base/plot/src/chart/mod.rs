@@ -13,7 +13,7 @@ pub use lines::{Panel, Panels, Series};
 pub use places::Places;
 
 /// Width of a chart that stands alone or beside others, px.
-pub const WIDTH_PX: f64 = 380.0;
+const WIDTH_PX: f64 = 380.0;
 
 /// Pixels left of the tick texts of a chart's vertical axis, for its label.
 pub(crate) const LABEL: f64 = 20.0;

@@ -1,7 +1,7 @@
 //! A page and its blocks as HTML.
 
 use super::block::{Badge, Block, Card, Cell, Fact, Figure, Paragraph, Span, Table};
-use super::{Page, Section};
+use super::contents::{Page, Section};
 use crate::svg::{escape, svg};
 
 const STYLE: &str = include_str!("style.css");

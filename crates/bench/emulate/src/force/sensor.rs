@@ -145,7 +145,7 @@ impl ForceSensor {
 
     /// When there will be something to send, ns of the lab's clock; never, as far as it knows, if nothing.
     #[must_use]
-    pub fn next_due_ns(&self) -> Option<u64> {
+    pub(crate) fn next_due_ns(&self) -> Option<u64> {
         let late = self.under_way.iter().map(|outgoing| outgoing.at_ns);
         late.chain(self.next_record_ns()).min()
     }

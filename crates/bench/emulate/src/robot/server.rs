@@ -84,7 +84,7 @@ impl RobotServer {
     }
 
     /// A look at the controller; its sockets wait meanwhile.
-    pub fn with_controller<T>(&self, look: impl FnOnce(&mut Controller) -> T) -> T {
+    pub(crate) fn with_controller<T>(&self, look: impl FnOnce(&mut Controller) -> T) -> T {
         look(&mut locked(&self.controller))
     }
 }

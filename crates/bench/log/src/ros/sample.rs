@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{put_header, take_header};
+use super::header::{put_header, take_header};
 use crate::cdr::{Decoder, Encoder};
 use crate::{PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 

@@ -1,6 +1,6 @@
 //! Readings in the standard messages, in SI units (REP 103).
 
-use super::put_header;
+use super::header::put_header;
 use super::sample::{put_quaternion, put_vector};
 use crate::cdr::Encoder;
 use crate::{PoseReading, WrenchReading};

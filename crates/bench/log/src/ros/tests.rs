@@ -1,6 +1,8 @@
 use glam::{DQuat, DVec3};
 
+use super::header::NS_PER_S;
 use super::*;
+use crate::cdr::Encoder;
 use crate::{PoseReading, TactileFrame, TaxelReading, TaxelState, WrenchReading};
 
 /// What a message becomes, channel by channel.

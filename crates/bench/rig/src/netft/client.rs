@@ -137,14 +137,6 @@ impl Client {
         })
     }
 
-    /// Unlatches monitor conditions.
-    ///
-    /// # Errors
-    /// A socket that cannot be sent to.
-    pub fn reset_latch(&mut self) -> Result<(), RigError> {
-        self.send(Command::ResetLatch)
-    }
-
     /// Stops streaming, and throws away what is still under way.
     ///
     /// # Errors

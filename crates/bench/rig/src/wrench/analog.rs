@@ -46,30 +46,3 @@ impl<F: FnMut(Duration) -> Result<Option<VoltageSample>, RigError>> WrenchSource
         }))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{BenchClock, Wrench};
-
-    #[test]
-    fn voltages_keep_their_stamp_and_their_gap() {
-        let clock = BenchClock::start();
-        let calibration = AnalogCalibration {
-            matrix: std::array::from_fn(|row| std::array::from_fn(|column| f64::from(row == column))),
-            bias_v: [0.5; 6],
-            range_v: 10.0,
-        };
-        let mut samples = [[1.5; 6], [11.0; 6]].into_iter().map(|volts| VoltageSample {
-            stamp: clock.stamp(Some(3.0)),
-            volts,
-            lost_before: 2,
-        });
-        let mut source = Analog::new(|_| Ok(samples.next()), calibration);
-        let sample = source.next_sample(Duration::ZERO).unwrap().unwrap();
-        assert_eq!(sample.wrench, Wrench::from_axes([1.0; 6]));
-        assert_eq!((sample.stamp.source_s, sample.lost_before), (Some(3.0), 2));
-        assert!(source.next_sample(Duration::ZERO).is_err(), "saturated");
-        assert_eq!(source.next_sample(Duration::ZERO).unwrap(), None);
-    }
-}

@@ -3,6 +3,7 @@
 use roxmltree::{Document, Node};
 
 use super::AnalogCalibration;
+use super::calibration::usual_range_v;
 use crate::RigError;
 use crate::units::{newton_millimetres, newtons};
 
@@ -45,7 +46,7 @@ impl AnalogCalibration {
         Ok(Self {
             matrix,
             bias_v: [0.0; 6],
-            range_v: Self::USUAL_RANGE_V,
+            range_v: usual_range_v(),
         })
     }
 }

@@ -34,12 +34,6 @@ impl NetFtSource {
         self.tracker.report()
     }
 
-    /// The client, for stopping it.
-    #[must_use]
-    pub fn into_client(self) -> Client {
-        self.client
-    }
-
     /// The reading of a record, unless it is late or doubled.
     fn sample(&mut self, bench_s: f64, record: &Record) -> Result<Option<WrenchSample>, RigError> {
         let tracked = self.tracker.track(record);

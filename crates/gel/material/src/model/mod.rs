@@ -83,7 +83,7 @@ macro_rules! models {
                 }
             }
 
-            /// See [`Elastic::in_words`].
+            /// The constants besides the shear modulus, for people to read: `C10 8 kPa, C01 3.5 kPa`. May be empty.
             #[must_use]
             pub fn in_words(&self) -> String {
                 match self {
@@ -91,7 +91,8 @@ macro_rules! models {
                 }
             }
 
-            /// See [`Elastic::volume_modulus_kpa`].
+            /// The modulus κ of the mean volume change, kPa, with which the bulk modulus at small strain is the one given: the difference
+            /// between that and the law's own resistance to a change of volume. Positive for a valid material.
             #[must_use]
             pub fn volume_modulus_kpa(&self, bulk_modulus_kpa: f64) -> f64 {
                 match self {

@@ -4,9 +4,10 @@ use twintac_plot::page::{Block, Card, Cell, Fact, Page, Section};
 use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 
+use super::parts::{self, badge, figures, table};
 use super::plots::{self, Plot};
+use super::sheet;
 use super::words::{number, or_not};
-use super::{badge, figures, sheet, table};
 use crate::recorded::Recorded;
 use crate::{Characterization, Finding};
 
@@ -16,7 +17,7 @@ const PAPER: &str = "arXiv 2509.10063";
 /// Everything that was found, with plots, definitions, and what was not found.
 #[must_use]
 pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
-    let recorded = super::recorded(found, recording, sensor);
+    let recorded = parts::recorded(found, recording, sensor);
     let figures = |plots| vec![figures(plots, found.provenance)];
     let section = |id, title, blocks| Section { id, title, blocks };
     let time = figures(vec![plots::over_time(recording, &recorded)]);
@@ -31,7 +32,7 @@ pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) 
         title: found.sensor.clone(),
         badge: badge(found.provenance),
         lead: vec![lead(found).into()],
-        warnings: super::warnings(found),
+        warnings: parts::warnings(found),
         sections: vec![
             section("result", "Result", result(found, sensor)),
             section("time", "Over time", time),

@@ -4,20 +4,20 @@ use twintac_plot::page::{Block, Cell, Page, Section};
 use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 
-use super::plots;
 use super::words::{NOT_GIVEN, if_found, number, or_not, span};
+use super::{parts, plots};
 use crate::Characterization;
 
 /// The figures of a characterization on one page.
 #[must_use]
-pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
-    let recorded = super::recorded(found, recording, sensor);
+pub(super) fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sensor) -> Page {
+    let recorded = parts::recorded(found, recording, sensor);
     let plots = vec![
         plots::smallest_step(found, &recorded),
         plots::largest_force(found, recording, &recorded),
         plots::responses(found),
     ];
-    let plots = super::figures(plots, found.provenance);
+    let plots = parts::figures(plots, found.provenance);
     let section = |id, title, block| Section {
         id,
         title,
@@ -30,9 +30,9 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
     Page {
         kind: "Data sheet".into(),
         title: found.sensor.clone(),
-        badge: super::badge(found.provenance),
+        badge: parts::badge(found.provenance),
         lead: vec![sensor.summary.as_str().into()],
-        warnings: super::warnings(found),
+        warnings: parts::warnings(found),
         sections,
         is_sheet: true,
     }
@@ -42,7 +42,7 @@ pub fn data_sheet(found: &Characterization, recording: &Recording, sensor: &Sens
 pub(super) fn table(found: &Characterization, sensor: &Sensor) -> Block {
     let rows = found.rows(sensor).into_iter();
     let rows = rows.map(|row| row.map(Cell::Words).to_vec()).collect();
-    super::table("", ["", "value", "condition"], rows)
+    parts::table("", ["", "value", "condition"], rows)
 }
 
 impl Characterization {

@@ -64,7 +64,7 @@ mod tests {
         let path = folder.path().join("rows.csv");
         let rows: String = times.iter().map(|time| format!("{time}\n")).collect();
         std::fs::write(&path, format!("t\n{rows}")).unwrap();
-        let description = import.for_file(&path).unwrap();
+        let description = import.descriptions.for_file(&path).unwrap();
         leading_rows(
             &Table::read(&path, &description, &description.column_names()).unwrap(),
             &description,

@@ -2,25 +2,28 @@
 
 use std::path::Path;
 
-use super::Import;
 use super::check::check;
 use super::description::Description;
 use crate::RecordingError;
 
 /// Fields that hold for files whose names match.
 #[derive(Clone, Debug)]
-pub(crate) struct Override {
+struct Override {
     files: String,
     fields: toml::Table,
 }
 
-impl Import {
+/// The description of a bench's files, with the fields that some of them override.
+#[derive(Clone, Debug)]
+pub(super) struct Descriptions {
+    base: Description,
+    overrides: Vec<Override>,
+    table: toml::Table,
+}
+
+impl Descriptions {
     /// Parses an import description; `file` names it in errors.
-    ///
-    /// # Errors
-    ///
-    /// What is wrong, with the line and the field.
-    pub fn parse(file: &str, text: &str) -> Result<Self, RecordingError> {
+    pub(super) fn parse(file: &str, text: &str) -> Result<Self, RecordingError> {
         let document = twintac_config::parse::<Description>(file, text)?;
         check(&document.value).map_err(|problem| problem.at(&document, ""))?;
         let mut table = twintac_config::parse::<toml::Table>(file, text)?.value;
@@ -51,7 +54,7 @@ impl Import {
     }
 
     /// The description with all overrides that match the file's name, later ones last.
-    pub(crate) fn for_file(&self, path: &Path) -> Result<Description, RecordingError> {
+    pub(super) fn for_file(&self, path: &Path) -> Result<Description, RecordingError> {
         let name = path
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned());

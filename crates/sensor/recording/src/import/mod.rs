@@ -15,6 +15,7 @@ mod zero;
 
 use std::path::Path;
 
+use describe::Descriptions;
 use description::Description;
 pub use summary::{FileSummary, ImportSummary};
 
@@ -70,12 +71,20 @@ use track::Track;
 /// are. Rows at the ends of a file that have no such neighbours are dropped.
 #[derive(Clone, Debug)]
 pub struct Import {
-    base: Description,
-    overrides: Vec<describe::Override>,
-    table: toml::Table,
+    descriptions: Descriptions,
 }
 
 impl Import {
+    /// Parses an import description; `file` names it in errors.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, with the line and the field.
+    pub fn parse(file: &str, text: &str) -> Result<Self, RecordingError> {
+        let descriptions = Descriptions::parse(file, text)?;
+        Ok(Self { descriptions })
+    }
+
     /// Reads one CSV file.
     ///
     /// # Errors
@@ -100,7 +109,7 @@ impl Import {
         let mut summary = ImportSummary::default();
         let mut recording: Option<Recording> = None;
         for path in paths {
-            let description = self.for_file(path)?;
+            let description = self.descriptions.for_file(path)?;
             let (presses, found) = read_file(path, &description)?;
             summary.files.push(found);
             let taxels = description.taxels.into_iter().map(|taxel| taxel.name);

@@ -4,7 +4,7 @@ use digitac::PairedPress;
 use twintac_plot::page::Block;
 use twintac_plot::{Ink, PALETTE, Panels, Scene, Series};
 
-use super::{chart, figure, line};
+use super::parts::{chart, figure, line};
 use crate::TwinReport;
 
 /// Presses shown, at most.

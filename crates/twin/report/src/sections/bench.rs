@@ -4,7 +4,7 @@ use digitac::Estimate;
 use twintac_plot::page::{Block, Cell, Row, Table};
 use twintac_plot::{Bar, Bars, Ink, fixed, short};
 
-use super::{badge, figure, head, words};
+use super::parts::{badge, figure, head, words};
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {

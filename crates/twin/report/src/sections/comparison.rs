@@ -3,7 +3,7 @@
 use twintac_plot::page::{Block, Cell, Row, Table};
 use twintac_plot::{Ink, fixed};
 
-use super::{ALL, NEAREST, badge, bar, errors, figure, head, largest_kpa, percent_cell, words};
+use super::parts::{ALL, NEAREST, badge, bar, errors, figure, head, largest_kpa, percent_cell, words};
 use crate::{TrainedVariant, TwinReport};
 
 pub(super) fn recordings(report: &TwinReport<'_>) -> Vec<Block> {

@@ -3,7 +3,7 @@
 use twintac_plot::page::{Block, Fact};
 use twintac_plot::{Bar, Bars, Ink, short};
 
-use super::figure;
+use super::parts::figure;
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {

@@ -6,7 +6,7 @@ use twintac_plot::page::Block;
 use twintac_plot::{HeatMap, HeatMaps};
 use twintac_sensor::Sensor;
 
-use super::{explained, figure, taxels_mm, three};
+use super::parts::{explained, figure, taxels_mm, three};
 use crate::TwinReport;
 
 /// Radius of the circle that marks the indenter's place, mm.

@@ -5,6 +5,7 @@ mod bench;
 mod comparison;
 mod making;
 mod maps;
+mod parts;
 mod places;
 mod presses;
 mod result;
@@ -14,19 +15,13 @@ mod summary;
 mod taxels;
 mod training;
 
-use digitac::{Evaluation, PressEvaluation};
-use twintac_plot::page::{Badge, Block, Cell, Figure, Page, Section};
-use twintac_plot::{Bar, Bars, Ink, Panel, Panels, Scene, Series, fixed};
-use twintac_recording::Provenance;
-use twintac_sensor::Sensor;
+use twintac_plot::page::{Block, Page, Section};
+
+use parts::badge;
 
 use crate::TwinReport;
 
 pub use alignment::warp_plot;
-
-/// The headline in words.
-const NEAREST: &str = "nearest taxel in contact";
-const ALL: &str = "all taxels, all frames";
 
 /// The whole page; parts without data are left out.
 #[must_use]
@@ -58,158 +53,4 @@ pub fn page(report: &TwinReport<'_>) -> Page {
 
 fn section(id: &'static str, title: &'static str, blocks: Vec<Block>) -> Section {
     Section { id, title, blocks }
-}
-
-fn badge(provenance: Provenance) -> Badge {
-    Badge(provenance.to_string())
-}
-
-fn figure(scene: Scene, provenance: impl Into<Option<Provenance>>, caption: impl Into<String>) -> Figure {
-    Figure {
-        scene,
-        badge: provenance.into().map(badge),
-        caption: caption.into(),
-        table: None,
-    }
-}
-
-/// Pictures under a text that explains them; nothing without pictures.
-fn explained(text: &str, pictures: Vec<Figure>) -> Vec<Block> {
-    if pictures.is_empty() {
-        return Vec::new();
-    }
-    vec![Block::Text(text.into()), Block::Figures(pictures)]
-}
-
-fn words(text: impl Into<String>) -> Cell {
-    Cell::Words(text.into())
-}
-
-fn percent_cell(value: f64) -> Cell {
-    Cell::Number(percent(value))
-}
-
-fn head<const N: usize>(names: [&str; N]) -> Vec<String> {
-    names.map(str::to_owned).to_vec()
-}
-
-/// An error in %, kept on one line, with three significant digits or so.
-fn percent(value: f64) -> String {
-    if !value.is_finite() {
-        return "–".into();
-    }
-    let decimals = if value.abs() < 9.995 { 2 } else { 1 };
-    format!("{}\u{a0}%", fixed(value, decimals))
-}
-
-fn bar(name: impl Into<String>, value: f64, ink: Ink) -> Bar {
-    Bar {
-        name: name.into(),
-        value,
-        uncertainty: None,
-        text: percent(value),
-        ink,
-    }
-}
-
-/// Bars of errors.
-fn errors(title: &str, bars: impl IntoIterator<Item = Bar>) -> Scene {
-    Bars {
-        title: title.into(),
-        x_label: "mean absolute error, % of the largest reading".into(),
-        bars: bars.into_iter().collect(),
-    }
-    .scene()
-}
-
-fn line(name: &str, points: Vec<[f64; 2]>, ink: Ink, width_px: f64) -> Series {
-    Series {
-        name: name.into(),
-        points,
-        ink,
-        width_px,
-        dashed: false,
-    }
-}
-
-/// Lines in one panel.
-fn chart(title: &str, [x_label, y_label]: [&str; 2], series: Vec<Series>) -> Panels {
-    let panel = Panel {
-        y_label: y_label.into(),
-        series,
-        ..Panel::default()
-    };
-    Panels {
-        title: title.into(),
-        x_label: x_label.into(),
-        panels: vec![panel],
-        panel_height_px: 200.0,
-        logarithmic: false,
-    }
-}
-
-fn taxels_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
-    let place = |taxel: &twintac_sensor::Taxel| [taxel.position_mm.x, taxel.position_mm.y];
-    sensor.taxels.iter().map(place).collect()
-}
-
-/// Error of a press, nearest taxel in contact, %.
-fn error_percent(press: &PressEvaluation) -> f64 {
-    press.errors.nearest_in_contact.percent
-}
-
-/// Presses that touched, from the best to the worst.
-fn ranked(evaluation: &Evaluation) -> Vec<&PressEvaluation> {
-    let touched = |press: &&PressEvaluation| press.errors.nearest_in_contact.count > 0;
-    let mut presses: Vec<_> = evaluation.presses.iter().filter(touched).collect();
-    presses.sort_by(|a, b| error_percent(a).total_cmp(&error_percent(b)));
-    presses
-}
-
-/// The best press, the median and the worst.
-fn three(evaluation: &Evaluation) -> Vec<(&'static str, &PressEvaluation)> {
-    let ranked = ranked(evaluation);
-    match ranked.len() {
-        0 => Vec::new(),
-        n => vec![
-            ("Best", ranked[0]),
-            ("Median", ranked[n / 2]),
-            ("Worst", ranked[n - 1]),
-        ],
-    }
-}
-
-/// The largest reading of some presses, kPa.
-fn largest_kpa<'a>(presses: impl IntoIterator<Item = &'a PressEvaluation>) -> f64 {
-    let readings = presses
-        .into_iter()
-        .flat_map(|press| press.measured_kpa.iter().flatten());
-    readings.fold(0.0, |largest: f64, reading| largest.max(*reading))
-}
-
-/// Usable readings, measured and predicted, kPa, with their taxels.
-fn usable(evaluation: &Evaluation) -> impl Iterator<Item = (usize, [f64; 2])> {
-    evaluation.presses.iter().flat_map(|press| {
-        let frames = press
-            .measured_kpa
-            .iter()
-            .zip(&press.predicted_kpa)
-            .zip(&press.valid);
-        frames.flat_map(|((measured, predicted), valid)| {
-            let taxels = (0..measured.len()).filter(|&taxel| valid[taxel]);
-            taxels.map(|taxel| (taxel, [measured[taxel], predicted[taxel]]))
-        })
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn percentages_keep_their_digits() {
-        assert_eq!(percent(1.274), "1.27\u{a0}%");
-        assert_eq!(percent(12.34), "12.3\u{a0}%");
-        assert_eq!(percent(f64::NAN), "–");
-    }
 }

@@ -3,7 +3,7 @@
 use twintac_plot::Places;
 use twintac_plot::page::Block;
 
-use super::{error_percent, figure, ranked, taxels_mm};
+use super::parts::{error_percent, figure, ranked, taxels_mm};
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {

@@ -4,7 +4,7 @@ use digitac::{PairedPress, PressEvaluation};
 use twintac_plot::page::Block;
 use twintac_plot::{Ink, Panel, Panels, Series, extent, padded};
 
-use super::{error_percent, explained, figure, line, percent, three};
+use super::parts::{error_percent, explained, figure, line, percent, three};
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {

@@ -5,7 +5,7 @@ use twintac_plot::page::{Block, Card, Cell, Fact, Row, Table};
 use twintac_plot::{Density, Ink, Scene};
 use twintac_recording::Provenance;
 
-use super::{ALL, NEAREST, badge, bar, errors, figure, head, percent, percent_cell, usable, words};
+use super::parts::{ALL, NEAREST, badge, bar, errors, figure, head, percent, percent_cell, usable, words};
 use crate::{PAPER_ERROR_PERCENT, TwinReport};
 
 /// Readings shown in the scatter plot, at most.

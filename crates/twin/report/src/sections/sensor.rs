@@ -2,7 +2,7 @@
 
 use twintac_plot::page::Block;
 
-use super::figure;
+use super::parts::figure;
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {

@@ -5,7 +5,7 @@ use twintac_plot::page::{Block, Card, Fact};
 use twintac_plot::short;
 use twintac_recording::Provenance;
 
-use super::badge;
+use super::parts::badge;
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {

@@ -3,7 +3,7 @@
 use twintac_plot::page::{Paragraph, Span};
 use twintac_recording::Provenance;
 
-use super::{badge, percent};
+use super::parts::{badge, percent};
 use crate::{PAPER_ERROR_PERCENT, TwinReport};
 
 /// The result, and what to compare it with.

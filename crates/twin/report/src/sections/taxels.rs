@@ -3,7 +3,9 @@
 use twintac_plot::page::{Block, Cell, Row, Table};
 use twintac_plot::{Ink, short};
 
-use super::{ALL, NEAREST, badge, bar, errors, figure, head, largest_kpa, percent_cell, usable, words};
+use super::parts::{
+    ALL, NEAREST, badge, bar, errors, figure, head, largest_kpa, percent_cell, usable, words,
+};
 use crate::TwinReport;
 
 /// Bins of the depth.

@@ -4,7 +4,7 @@ use digitac::Epoch;
 use twintac_plot::page::Block;
 use twintac_plot::{Ink, Panels};
 
-use super::{chart, figure, line};
+use super::parts::{chart, figure, line};
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
