@@ -3,7 +3,7 @@
 use digitac::PressEvaluation;
 use twintac_map::{MapSettings, Rectangle, pitch_mm, pressure_map};
 use twintac_plot::page::Block;
-use twintac_plot::{HeatMap, HeatMaps};
+use twintac_plot::{HeatMap, HeatMaps, fixed};
 use twintac_sensor::Sensor;
 
 use super::parts::{explained, figure, taxels_mm, three};
@@ -27,7 +27,8 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
 /// A map that cannot be drawn (two taxels at one place) is left out.
 fn peak(label: &str, press: &PressEvaluation, sensor: &Sensor) -> Option<HeatMaps> {
     let total = |frame: &usize| press.measured_kpa[*frame].iter().sum::<f64>();
-    let frame = (0..press.time_s.len()).max_by(|a, b| total(a).total_cmp(&total(b)))?;
+    let frames = (0..press.time_s.len()).filter(|frame| total(frame).is_finite());
+    let frame = frames.max_by(|a, b| total(a).total_cmp(&total(b)))?;
     let taxels_mm = taxels_mm(sensor);
     let (rectangle, baseline) = (window(sensor), vec![0.0; taxels_mm.len()]);
     let settings = settings(rectangle, &taxels_mm);
@@ -42,8 +43,9 @@ fn peak(label: &str, press: &PressEvaluation, sensor: &Sensor) -> Option<HeatMap
         })
     };
     let (measured, predicted) = (&press.measured_kpa[frame], &press.predicted_kpa[frame]);
+    let depth_mm = fixed(press.depth_mm[frame], 2);
     Some(HeatMaps {
-        title: format!("{label}: {}, {:.2} mm deep", press.name, press.depth_mm[frame]),
+        title: format!("{label}: {}, {depth_mm} mm deep", press.name),
         maps: vec![map("sensor", measured)?, map("twin", predicted)?],
         unit: "kPa".into(),
         marks_mm: taxels_mm,
