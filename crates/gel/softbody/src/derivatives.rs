@@ -7,7 +7,6 @@ use crate::element::Response;
 use crate::linear::block::Vector;
 use crate::newton::{Step, Unknowns};
 use crate::nodal::dot;
-use crate::relaxation::Relaxation;
 use crate::state::State;
 
 /// Weights of a central difference of fourth order, at these multiples of the step.
@@ -37,7 +36,6 @@ impl SoftBody {
         displacements_mm: &[DVec3],
         direction_mm: &[DVec3],
     ) -> Option<DerivativeErrors> {
-        let now = Relaxation::new(&self.material().prony, 0.0);
         let State {
             history,
             mut contacts,
@@ -46,11 +44,7 @@ impl SoftBody {
             ..
         } = self.rest();
         let step = Step {
-            response: Response {
-                material: self.material(),
-                relaxation: &now,
-                history: &history,
-            },
+            response: Response::new(self.material(), 0.0, &history),
             shapes: &[],
         };
         let buffers = workspace.buffers(self);

@@ -32,10 +32,6 @@ pub(crate) struct History {
     stride: usize,
 }
 
-/// The history variables of eight points.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PointHistory<'a>(&'a [Symmetric<f64>]);
-
 impl Relaxation {
     pub(crate) fn new(prony: &[PronyTerm], time_step_s: f64) -> Self {
         let terms: Vec<(f64, f64)> = prony
@@ -55,17 +51,21 @@ impl Relaxation {
         }
     }
 
-    /// The constant part of this step's stress, MPa; none for an elastic material.
-    #[inline(always)]
-    pub(crate) fn offset(&self, history: PointHistory) -> Option<Symmetric<f64>> {
-        let (last, fading) = history.0.split_first()?;
+    /// The constant part of this step's stress at each point, MPa; empty for an elastic material. `[n_points]`
+    pub(crate) fn offsets(&self, history: &History) -> Vec<Symmetric<f64>> {
+        let points = history.stresses.chunks_exact(history.stride.max(1));
+        points.map(|point| self.offset(&point[0], &point[1..])).collect()
+    }
+
+    /// That of a point, from its last instantaneous stress and its fading stresses.
+    fn offset(&self, last: &Symmetric<f64>, fading: &[Symmetric<f64>]) -> Symmetric<f64> {
         let mut offset = [Wide::zero(); 6];
         for ((kept, weight), fading) in self.terms.iter().zip(fading) {
             for i in 0..6 {
                 offset[i] += fading[i] * Wide::splat(*kept) - last[i] * Wide::splat(*weight);
             }
         }
-        Some(offset)
+        offset
     }
 }
 
@@ -84,11 +84,6 @@ impl History {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.stresses.is_empty()
-    }
-
-    #[inline(always)]
-    pub(crate) fn point(&self, point: usize) -> PointHistory<'_> {
-        PointHistory(&self.stresses[point * self.stride..][..self.stride])
     }
 
     /// The sum of these times `own` and others times `times`.

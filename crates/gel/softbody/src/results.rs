@@ -6,22 +6,20 @@ use crate::MPA_PER_KPA;
 use crate::body::SoftBody;
 use crate::element::{self, Forces, Response};
 use crate::nodal::moved;
-use crate::relaxation::Relaxation;
 use crate::state::State;
 
 impl SoftBody {
     /// Hydrostatic pressure `-tr(σ)/3` at each node, kPa, positive in compression. `[n_nodes]`
     #[must_use]
     pub fn pressure_kpa(&self, state: &State) -> Vec<f64> {
-        let now = Relaxation::new(&self.material.prony, 0.0);
-        let response = self.response(&now, state);
-        self.nodal_pressure_kpa(response, &state.displacements_mm, &state.pressures_mpa)
+        let response = self.response(state);
+        self.nodal_pressure_kpa(&response, &state.displacements_mm, &state.pressures_mpa)
     }
 
     /// The same, of the parts of a state.
     fn nodal_pressure_kpa(
         &self,
-        response: Response,
+        response: &Response,
         displacements_mm: &[DVec3],
         pressures_mpa: &[f64],
     ) -> Vec<f64> {
@@ -51,14 +49,10 @@ impl SoftBody {
     pub fn pressure_sensitivity_kpa(&self, state: &State, direction: usize) -> Vec<f64> {
         let rates = &state.sensitivities[direction];
         let [before, after] = rates.direction().sides().map(|(material, times)| {
-            let now = Relaxation::new(&material.prony, 0.0);
-            let response = Response {
-                material,
-                ..self.response(&now, state)
-            };
+            let response = Response::new(material, 0.0, &state.history);
             let displacements_mm = moved(&state.displacements_mm, rates.displacements_mm(), times);
             let pressures_mpa = moved(&state.pressures_mpa, rates.pressures_mpa(), times);
-            self.nodal_pressure_kpa(response, &displacements_mm, &pressures_mpa)
+            self.nodal_pressure_kpa(&response, &displacements_mm, &pressures_mpa)
         });
         let over = 2.0 * rates.direction().step;
         after
@@ -72,9 +66,8 @@ impl SoftBody {
     /// relaxing part included. `[n_nodes]`
     #[must_use]
     pub fn von_mises_kpa(&self, state: &State) -> Vec<f64> {
-        let now = Relaxation::new(&self.material.prony, 0.0);
-        let response = self.response(&now, state);
-        element::mean_deviators(&self.elements, response, &state.displacements_mm)
+        let response = self.response(state);
+        element::mean_deviators(&self.elements, &response, &state.displacements_mm)
             .into_iter()
             .map(|([xx, yy, zz, yz, xz, xy], volume)| {
                 let square = xx * xx + yy * yy + zz * zz + 2.0 * (yz * yz + xz * xz + xy * xy);
@@ -86,12 +79,11 @@ impl SoftBody {
     /// The forces that hold the bonded nodes, in their order, N. `[n_bonded]`
     #[must_use]
     pub fn bonded_forces_n(&self, state: &State) -> Vec<DVec3> {
-        let now = Relaxation::new(&self.material().prony, 0.0);
-        let response = self.response(&now, state);
+        let response = self.response(state);
         let (mut forces, mut corners) = (Forces::default(), Vec::new());
         self.corner_pressures(&state.pressures_mpa, &mut corners);
         self.elements
-            .forces(response, &state.displacements_mm, &corners, &mut forces);
+            .forces(&response, &state.displacements_mm, &corners, &mut forces);
         let forces = forces.forces_n.as_flattened();
         self.mesh()
             .sets
@@ -105,11 +97,7 @@ impl SoftBody {
     }
 
     /// The response of the material over a step of no time.
-    fn response<'a>(&'a self, now: &'a Relaxation, state: &'a State) -> Response<'a> {
-        Response {
-            material: &self.material,
-            relaxation: now,
-            history: &state.history,
-        }
+    fn response<'a>(&'a self, state: &'a State) -> Response<'a> {
+        Response::new(&self.material, 0.0, &state.history)
     }
 }

@@ -182,7 +182,7 @@ fn judge(
         .fold(0.0, f64::max);
     if worst > NOT_NOISE {
         warnings.push(format!(
-            "residuals are no noise (correlation of neighbours up to {worst:.2}): the model is wrong somewhere, and intervals are too narrow"
+            "residuals are correlated (neighbours by up to {worst:.2}): the model is wrong somewhere, and the intervals are too narrow"
         ));
     }
     let material = problem.unknowns.material(x);

@@ -44,11 +44,7 @@ impl SoftBody {
         let buffers = workspace.buffers(self);
         buffers.keeps_passed = !sensitivities.is_empty();
         let step = Step {
-            response: Response {
-                material: self.material(),
-                relaxation: &relaxation,
-                history,
-            },
+            response: Response::new(self.material(), time_step_s, history),
             shapes: &shapes,
         };
         let mut x = Unknowns {

@@ -155,7 +155,7 @@ pub(super) fn apply<T: Real>(m: &Matrix<T>, v: &Vector<T>) -> Vector<T> {
 
 /// A symmetric matrix from xx, yy, zz, yz, xz, xy.
 #[inline(always)]
-pub(super) fn symmetric<T: Real>([xx, yy, zz, yz, xz, xy]: [Wide<f64>; 6]) -> Matrix<T> {
-    let [xx, yy, zz, yz, xz, xy] = [xx.cast(), yy.cast(), zz.cast(), yz.cast(), xz.cast(), xy.cast()];
+pub(super) fn symmetric<T: Real>(entries: &[Wide<f64>; 6]) -> Matrix<T> {
+    let [xx, yy, zz, yz, xz, xy] = entries.map(|entry| entry.cast());
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }

@@ -43,7 +43,7 @@ struct ForceKernel<'a> {
     packs: &'a [Pack],
     displacements_mm: &'a [DVec3],
     corners: &'a [[f64; 4]],
-    response: Response<'a>,
+    response: &'a Response<'a>,
     forces_n: &'a mut [[DVec3; NODES]],
     energies: &'a mut [f64],
 }
@@ -76,7 +76,7 @@ impl Elements {
     /// Forces and energies of the change of shape, at given displacements and pressures of the slots' corners.
     pub(crate) fn forces(
         &self,
-        response: Response,
+        response: &Response,
         displacements_mm: &[DVec3],
         corner_pressures_mpa: &[[f64; 4]],
         out: &mut Forces,

@@ -48,7 +48,7 @@ impl Stresses {
     #[inline(never)]
     pub(super) fn evaluate(
         &mut self,
-        response: Response,
+        response: &Response,
         properties: LawProperties,
         table: &Table,
         pack: &Pack,
@@ -71,7 +71,7 @@ impl Stresses {
         properties: LawProperties,
         point: usize,
         factor: f64,
-        offset: Option<[Wide<f64>; 6]>,
+        offset: Option<&[Wide<f64>; 6]>,
     ) {
         let deformation = &self.points.deformations[point];
         let invariants = &self.points.arguments[point].invariants;
@@ -122,7 +122,7 @@ impl Stresses {
 
 struct Evaluation<'a> {
     stresses: &'a mut Stresses,
-    response: Response<'a>,
+    response: &'a Response<'a>,
     properties: LawProperties,
     table: &'a Table,
     pack: &'a Pack,
@@ -167,7 +167,7 @@ struct Point<'a> {
 /// Hands out the points of all packs.
 fn for_each_point(
     elements: &Elements,
-    response: Response,
+    response: &Response,
     displacements_mm: &[DVec3],
     take: &mut dyn FnMut(&Point),
 ) {
@@ -209,7 +209,7 @@ impl Point<'_> {
 /// and of that volume, mm³. `[n_nodes]`
 pub(crate) fn mean_deviators(
     elements: &Elements,
-    response: Response,
+    response: &Response,
     displacements_mm: &[DVec3],
 ) -> Vec<([f64; 6], f64)> {
     let mut sums = vec![([0.0; 6], 0.0); displacements_mm.len()];
@@ -243,7 +243,7 @@ pub(crate) fn mean_deviators(
 /// MPa, times the volume at rest, mm³; none for an isochoric law. `[n_slots]`
 pub(crate) fn hydrostatic_shares(
     elements: &Elements,
-    response: Response,
+    response: &Response,
     displacements_mm: &[DVec3],
 ) -> Option<Vec<[f64; 4]>> {
     if response.material.model.properties().is_isochoric {
@@ -276,13 +276,9 @@ pub(crate) fn update_history(
     if history.is_empty() {
         return;
     }
-    // The stress of the same material without history variables.
-    let instantaneous = Response {
-        material,
-        relaxation: &Relaxation::new(&[], 0.0),
-        history: &History::default(),
-    };
-    for_each_point(elements, instantaneous, displacements_mm, &mut |point| {
+    let no_history = History::default();
+    let instantaneous = Response::instantaneous(material, &no_history);
+    for_each_point(elements, &instantaneous, displacements_mm, &mut |point| {
         history.update(step, point.index, &instantaneous_deviator(point));
     });
 }

@@ -51,7 +51,7 @@ fn material(model: Model, prony: Vec<PronyTerm>) -> Material {
 }
 
 /// Energy at fixed pressures, and its slopes in the displacements.
-fn energy(elements: &Elements, response: Response, u: &[DVec3]) -> (f64, [DVec3; NODES]) {
+fn energy(elements: &Elements, response: &Response, u: &[DVec3]) -> (f64, [DVec3; NODES]) {
     let (mut forces, mut volumes) = (Forces::default(), Volumes::default());
     elements.volumes(u, &mut volumes);
     elements.forces(response, u, &[CORNERS; LANES], &mut forces);
@@ -90,7 +90,7 @@ impl Sink for Drop {
 }
 
 /// Blocks of pairs of nodes, those of the first lane.
-fn tangent(elements: &Elements, response: Response, u: &[DVec3]) -> Vec<(usize, usize, Mat3)> {
+fn tangent(elements: &Elements, response: &Response, u: &[DVec3]) -> Vec<(usize, usize, Mat3)> {
     let mut blocks = Vec::new();
     let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
     elements.tangents(
@@ -103,7 +103,7 @@ fn tangent(elements: &Elements, response: Response, u: &[DVec3]) -> Vec<(usize, 
 }
 
 /// Compares forces to differences of the energy, and the tangent to differences of forces.
-fn check_derivatives(elements: &Elements, response: Response, u: &[DVec3]) -> Result<(), TestCaseError> {
+fn check_derivatives(elements: &Elements, response: &Response, u: &[DVec3]) -> Result<(), TestCaseError> {
     let step = 1e-5;
     let (_, forces) = energy(elements, response, u);
     let blocks = tangent(elements, response, u);
@@ -190,8 +190,8 @@ proptest! {
             let relaxation = Relaxation::new(&material.prony, 0.2);
             let mut history = History::new(elements.n_points(), &material.prony);
             update_history(&elements, &material, &relaxation, &before, &mut history);
-            let response = Response { material: &material, relaxation: &relaxation, history: &history };
-            check_derivatives(&elements, response, &u)?;
+            let response = Response::new(&material, 0.2, &history);
+            check_derivatives(&elements, &response, &u)?;
         }
     }
 
@@ -204,9 +204,9 @@ proptest! {
         let displacements = homogeneous(&nodes_mm, &[u, v], stretches);
         for model in Model::examples() {
             let material = material(model, Vec::new());
-            let (relaxation, history) = (Relaxation::new(&[], 0.0), History::default());
-            let response = Response { material: &material, relaxation: &relaxation, history: &history };
-            check_derivatives(&elements, response, &displacements)?;
+            let history = History::default();
+            let response = Response::new(&material, 0.0, &history);
+            check_derivatives(&elements, &response, &displacements)?;
         }
     }
 
@@ -227,9 +227,9 @@ proptest! {
         ] {
             let [found, expected] = [ogden, same].map(|model| {
                 let material = material(model, Vec::new());
-                let (relaxation, history) = (Relaxation::new(&[], 0.0), History::default());
-                let response = Response { material: &material, relaxation: &relaxation, history: &history };
-                (energy(&elements, response, &displacements), tangent(&elements, response, &displacements))
+                let history = History::default();
+                let response = Response::new(&material, 0.0, &history);
+                (energy(&elements, &response, &displacements), tangent(&elements, &response, &displacements))
             });
             let scale = stretches.into_iter().fold(1.0, f64::max).powi(4) / stretches.into_iter().fold(1.0, f64::min);
             prop_assert!((found.0.0 - expected.0.0).abs() < 1e-16 * scale);
@@ -250,12 +250,11 @@ proptest! {
         let u: Vec<DVec3> = nodes_mm.iter().map(|at| turn * *at - *at).collect();
         for model in Model::examples() {
             let material = material(model, Vec::new());
-            let relaxation = Relaxation::new(&[], 0.0);
             let history = History::new(elements.n_points(), &[]);
-            let response = Response { material: &material, relaxation: &relaxation, history: &history };
+            let response = Response::new(&material, 0.0, &history);
             let (mut forces, mut volumes) = (Forces::default(), Volumes::default());
             elements.volumes(&u, &mut volumes);
-            elements.forces(response, &u, &[[0.0; 4]; LANES], &mut forces);
+            elements.forces(&response, &u, &[[0.0; 4]; LANES], &mut forces);
             prop_assert!(forces.energies[0].abs() < 1e-15);
             prop_assert!(forces.forces_n[0].iter().all(|force| force.length() < 1e-14));
             prop_assert!(volumes.changes_mm3[0].iter().all(|change| change.abs() < 1e-14));
@@ -267,13 +266,8 @@ proptest! {
 fn coarse_tangents_are_those_of_midpoints_that_follow() {
     let (nodes_mm, elements) = one(Element::Composite);
     let material = material(Model::examples()[1].clone(), Vec::new());
-    let relaxation = Relaxation::new(&[], 0.0);
     let history = History::new(elements.n_points(), &[]);
-    let response = Response {
-        material: &material,
-        relaxation: &relaxation,
-        history: &history,
-    };
+    let response = Response::new(&material, 0.0, &history);
     let gradient = DMat3::from_cols_array(&[0.1, 0.1, -0.05, 0.2, -0.1, 0.1, -0.1, 0.05, 0.02]);
     let linear = |moved: [DVec3; 4]| -> Vec<DVec3> {
         let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
@@ -295,13 +289,13 @@ fn coarse_tangents_are_those_of_midpoints_that_follow() {
         tangents: &mut [],
     };
     elements.tangents(
-        response,
+        &response,
         &linear([DVec3::ZERO; 4]),
         &[CORNERS; LANES],
         [&mut sink, &mut rest],
     );
     let corner_force = |moved: [DVec3; 4], corner: usize| {
-        let (_, forces) = energy(&elements, response, &linear(moved));
+        let (_, forces) = energy(&elements, &response, &linear(moved));
         let nodes = elements.packs[0].nodes.map(|lanes| lanes[0]);
         let mut sum = DVec3::ZERO;
         for (local, node) in nodes.iter().enumerate() {

@@ -11,19 +11,14 @@ use crate::contact::ContactPoint;
 use crate::element::{CoarseSink, Response, Sink};
 use crate::linear::block::{Block, Vector};
 use crate::linear::coarse::Factors;
-use crate::relaxation::{History, Relaxation};
+use crate::relaxation::History;
 use crate::wide::LANES;
 
 /// Factors of a body at rest, with which all its presses start.
 pub(crate) fn rest_factors(body: &SoftBody) -> Option<Factors> {
-    let still = Relaxation::new(&body.material.prony, 0.0);
     let history = History::new(body.elements.n_points(), &body.material.prony);
     let step = Step {
-        response: Response {
-            material: &body.material,
-            relaxation: &still,
-            history: &history,
-        },
+        response: Response::new(&body.material, 0.0, &history),
         shapes: &[],
     };
     let x = Unknowns {
@@ -84,8 +79,8 @@ impl Buffers {
         let halves = tangents.split_at_mut(first);
         let sink = |first, tangents| CoarseSink { first, tangents };
         let sinks: [&mut dyn Sink; 2] = [&mut sink(0, halves.0), &mut sink(first, halves.1)];
-        elements.tangents(step.response, u, &self.corners, sinks);
-        elements.tangents_between(step.response, u, &self.corners, &mut sink(second, between));
+        elements.tangents(&step.response, u, &self.corners, sinks);
+        elements.tangents_between(&step.response, u, &self.corners, &mut sink(second, between));
     }
 
     /// Assembles the elements' part of the fine matrix.
@@ -94,9 +89,9 @@ impl Buffers {
         let (elements, u) = (&body.elements, &*x.displacements_mm);
         let halves = &mut self.matrix.halves(&body.pattern);
         let [first, second] = halves;
-        elements.tangents(step.response, u, &self.corners, [first, second]);
+        elements.tangents(&step.response, u, &self.corners, [first, second]);
         let between = &mut self.matrix.between(&body.pattern);
-        elements.tangents_between(step.response, u, &self.corners, between);
+        elements.tangents_between(&step.response, u, &self.corners, between);
         self.matrix.scale_slopes(&body.pattern);
     }
 

@@ -34,8 +34,12 @@ impl Buffers {
         }
 
         body.corner_pressures(x.pressures_mpa, &mut self.corners);
-        body.elements
-            .forces(step.response, x.displacements_mm, &self.corners, &mut self.forces);
+        body.elements.forces(
+            &step.response,
+            x.displacements_mm,
+            &self.corners,
+            &mut self.forces,
+        );
         evaluation.energy += self.forces.energies.iter().sum::<f64>();
         let forces = self.forces.forces_n.as_flattened();
         let half = self.gradient_n.len() / 2;

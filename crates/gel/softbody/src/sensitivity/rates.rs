@@ -184,7 +184,7 @@ impl Sensitivity {
     fn element_forces_n(&self, body: &SoftBody, step: &Step, x: &Unknowns) -> Vec<DVec3> {
         let Response {
             relaxation, history, ..
-        } = step.response;
+        } = &step.response;
         let modulus_kpa = body.material().volume_modulus_kpa();
         let mut sums = vec![DVec3::ZERO; x.displacements_mm.len()];
         let (mut forces, mut corners) = (Forces::default(), Vec::new());
@@ -196,13 +196,10 @@ impl Sensitivity {
                 .map(|pressure| pressure * stiffer)
                 .collect();
             body.corner_pressures(&pressures_mpa, &mut corners);
-            let response = Response {
-                material,
-                relaxation: &Relaxation::new(&material.prony, relaxation.time_step_s),
-                history: &history.combined(1.0, &self.history, times),
-            };
+            let history = history.combined(1.0, &self.history, times);
+            let response = Response::new(material, relaxation.time_step_s, &history);
             body.elements
-                .forces(response, x.displacements_mm, &corners, &mut forces);
+                .forces(&response, x.displacements_mm, &corners, &mut forces);
             let forces = forces.forces_n.as_flattened();
             for (sum, sources) in sums.iter_mut().zip(body.force_sources.from(0)) {
                 *sum += sources
@@ -261,7 +258,7 @@ impl Sensitivity {
     fn finish(&mut self, body: &SoftBody, step: &Step, x: &Unknowns) {
         let Response {
             relaxation, history, ..
-        } = step.response;
+        } = &step.response;
         if history.is_empty() {
             return;
         }

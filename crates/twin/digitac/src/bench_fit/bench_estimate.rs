@@ -43,11 +43,11 @@ impl BenchEstimate {
         }
     }
 
-    /// By how much the tip is deeper than a file says, mm.
+    /// By how much the tip of a mounting is deeper than its recordings say, mm.
     #[must_use]
-    pub fn contact_offset_mm(&self, file: &str) -> f64 {
+    pub fn contact_offset_mm(&self, mounting: &str) -> f64 {
         self.contact_offset_mm
-            .get(file)
+            .get(mounting)
             .map_or(self.contact_offset_elsewhere_mm, |offset| offset.value)
     }
 

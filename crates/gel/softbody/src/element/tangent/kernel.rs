@@ -26,7 +26,7 @@ struct Kernel<'a> {
     first_pack: usize,
     displacements_mm: &'a [DVec3],
     corners: &'a [[f64; 4]],
-    response: Response<'a>,
+    response: &'a Response<'a>,
     sink: &'a mut dyn Sink,
 }
 
@@ -34,7 +34,7 @@ impl Elements {
     /// Hands the tangents of each half to its sink, at given displacements and pressures of the slots' corners.
     pub(crate) fn tangents(
         &self,
-        response: Response,
+        response: &Response,
         displacements_mm: &[DVec3],
         corner_pressures_mpa: &[[f64; 4]],
         [first, second]: [&mut dyn Sink; 2],
@@ -51,7 +51,7 @@ impl Elements {
     /// Hands over the tangents of the elements between the halves.
     pub(crate) fn tangents_between(
         &self,
-        response: Response,
+        response: &Response,
         displacements_mm: &[DVec3],
         corner_pressures_mpa: &[[f64; 4]],
         sink: &mut dyn Sink,
@@ -62,7 +62,7 @@ impl Elements {
 
     fn tangents_of(
         &self,
-        response: Response,
+        response: &Response,
         displacements_mm: &[DVec3],
         corner_pressures_mpa: &[[f64; 4]],
         packs: Range<usize>,

@@ -96,7 +96,7 @@ impl PointStiffness {
         properties: LawProperties,
         gradients: &[Vector<f32>],
         [pressure, volume_mm3, factor]: [Wide<f32>; 3],
-        offset: Option<[Wide<f64>; 6]>,
+        offset: Option<&[Wide<f64>; 6]>,
     ) {
         let deformation = &at.deformations[point];
         let SecondDerivatives {
