@@ -61,7 +61,13 @@ impl Axis {
         let length = (self.pixels[1] - self.pixels[0]).abs();
         let most = (length / gap_px).max(2.0);
         if self.logarithmic {
-            decades(self.range, most)
+            let ticks = decades(self.range, most);
+            // A range that is short against a decade.
+            if ticks.len() < 2 {
+                round_values(self.range, most)
+            } else {
+                ticks
+            }
         } else {
             round_values(self.range, most)
         }
@@ -206,6 +212,17 @@ mod tests {
             let axis = Axis::linear([low, low + length], [0.0, 200.0]);
             let ticks = axis.ticks(40.0);
             prop_assert!((1..=7).contains(&ticks.len()), "{} ticks", ticks.len());
+            prop_assert!(ticks.iter().all(|(value, _)| (-0.5..=200.5).contains(&axis.place(*value))));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_logarithmic_range_has_two_ticks_inside(power in -9.0..6.0f64, ratio in 1.01..1e6f64) {
+            let low = 10f64.powf(power);
+            let axis = Axis::logarithmic([low, low * ratio], [0.0, 200.0]);
+            let ticks = axis.ticks(LEFT_GAP);
+            prop_assert!(ticks.len() >= 2, "{} ticks", ticks.len());
             prop_assert!(ticks.iter().all(|(value, _)| (-0.5..=200.5).contains(&axis.place(*value))));
         }
     }
