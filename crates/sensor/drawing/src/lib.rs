@@ -24,3 +24,25 @@ pub fn drawing(sensor: &Sensor) -> Scene {
     }
     .scene()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn no_text_leaves_the_drawing_of_a_described_sensor() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../sensors");
+        let mut n_sensors = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|extension| extension == "toml") {
+                let sensor = Sensor::read(&path).unwrap();
+                assert_eq!(drawing(&sensor).overflow(), Vec::<&str>::new(), "{}", sensor.name);
+                n_sensors += 1;
+            }
+        }
+        assert!(n_sensors >= 7);
+    }
+}

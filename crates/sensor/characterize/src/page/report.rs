@@ -308,7 +308,20 @@ mod tests {
             presses: vec![press(&Shape::default())],
         };
         let found = characterize(&recording, &[], &sensor, &CharacterizeOptions::default()).unwrap();
-        let page = report(&found, &recording, &sensor).render();
+        let page = report(&found, &recording, &sensor);
+        for block in page.sections.iter().flat_map(|section| &section.blocks) {
+            if let Block::Figures(figures) = block {
+                for figure in figures {
+                    assert_eq!(
+                        figure.scene.overflow(),
+                        Vec::<&str>::new(),
+                        "{}",
+                        figure.scene.name
+                    );
+                }
+            }
+        }
+        let page = page.render();
         assert!(page.contains("212 N as the largest force"));
         assert!(page.contains("clocks that may differ"));
         sensor.source = "measured by its maker".to_owned();
