@@ -1,6 +1,6 @@
 //! No text leaves its picture, whatever the plot and however long its labels.
 
-#[path = "../examples/gallery/plots.rs"]
+#[path = "../examples/plots/plots.rs"]
 mod plots;
 
 use twintac_plot::svg;

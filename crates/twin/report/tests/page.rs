@@ -1,6 +1,6 @@
 //! The page as a reader gets it: safe, self-contained, the same every time, and silent about what is absent.
 
-#[path = "../examples/gallery/invented.rs"]
+#[path = "../examples/invented_report/invented.rs"]
 mod invented;
 
 use digitac::Mean;

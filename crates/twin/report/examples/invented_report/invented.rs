@@ -249,7 +249,7 @@ fn results(sensor: Sensor, presses: Vec<PressEvaluation>) -> Results {
             table(Some("Press 17: no equilibrium was found at 3.4 mm.")),
         ],
         making: Making {
-            command: "cargo run -p twintac-report --release --example gallery".into(),
+            command: "cargo run -p twintac-report --release --example invented_report".into(),
             source: "invented".into(),
             seed: 7,
             settings: "[training]\nlearning_rate = 1e-3\n".into(),

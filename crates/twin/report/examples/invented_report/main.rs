@@ -1,4 +1,4 @@
-//! The page of a twin from invented data, to look at: `cargo run -p twintac-report --release --example gallery [folder]`.
+//! The page of a twin from invented data, to look at: `cargo run -p twintac-report --release --example invented_report [folder]`.
 
 mod invented;
 
@@ -7,7 +7,7 @@ use std::path::Path;
 use twintac_report::page;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| "runs/gallery".into());
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "runs/invented".into());
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;
     for (name, results) in [("moving", invented::moving()), ("static", invented::resting())] {

@@ -1,4 +1,4 @@
-//! Every kind of plot, from invented data, to look at: `cargo run -p twintac-plot --example gallery [folder]`.
+//! Every kind of plot, from invented data, to look at: `cargo run -p twintac-plot --example plots [folder]`.
 
 mod plots;
 
