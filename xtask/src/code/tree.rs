@@ -37,8 +37,8 @@ impl Crate {
     pub fn read_all(root: &Path, graph: &Graph) -> Result<Vec<Self>> {
         let mut crates = Vec::new();
         for (name, package) in &graph.packages {
-            for file in package.library.iter().chain(&package.programs) {
-                let is_library = package.library.as_ref() == Some(file);
+            for file in package.lib_file.iter().chain(&package.programs) {
+                let is_library = package.lib_file.as_ref() == Some(file);
                 crates.push(Self::read(root, name, file, is_library)?);
             }
         }

@@ -22,7 +22,7 @@ pub struct Package {
     /// What its `Cargo.toml` says it is.
     pub description: Option<String>,
     /// The root file of its library, if it has one.
-    pub library: Option<PathBuf>,
+    pub lib_file: Option<PathBuf>,
     /// The root files of its programs.
     pub programs: Vec<PathBuf>,
     /// Packages that it is built with, those of others included.
@@ -142,7 +142,7 @@ impl MetadataPackage {
         };
         Ok(Package {
             folder,
-            library: targets(&["lib", "rlib", "cdylib", "proc-macro"])
+            lib_file: targets(&["lib", "rlib", "cdylib", "proc-macro"])
                 .into_iter()
                 .next(),
             programs: targets(&["bin"]),

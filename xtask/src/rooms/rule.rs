@@ -120,7 +120,7 @@ pub fn has_a_front_page(root: &Path, package: &Package) -> Result<()> {
         "{}/Cargo.toml has no description",
         package.folder
     );
-    for file in package.library.iter().chain(&package.programs) {
+    for file in package.lib_file.iter().chain(&package.programs) {
         let text = fs::read_to_string(file)?;
         let place = file.strip_prefix(root).unwrap_or(file).display();
         let begins = ["//! ", "#![doc = include_str!("]
