@@ -8,7 +8,6 @@ use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody};
 use crate::element::{self, Response};
 use crate::newton::{Buffers, Equilibrium, Failure, Step, Unknowns};
-use crate::relaxation::Relaxation;
 use crate::sensitivity;
 use crate::state::{Motion, State};
 
@@ -25,7 +24,6 @@ impl SoftBody {
         time_step_s: f64,
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
-        let relaxation = Relaxation::new(&self.material().prony, time_step_s);
         let [from, to] = part.map(|fraction| drive.pose(fraction));
         let shapes = self.shapes(drive, to);
         let sensitivities_before = state.sensitivities.clone();
@@ -65,6 +63,7 @@ impl SoftBody {
             });
         if solved.is_ok() {
             self.settle_friction(&shapes, &mut x);
+            let relaxation = step.response.relaxation;
             element::update_history(
                 &self.elements,
                 self.material(),
