@@ -1,6 +1,6 @@
 //! Simulated presses, each computed once and kept as a file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use glam::DVec2;
@@ -12,11 +12,9 @@ use twintac_simulate::{Gel, PressPlace};
 use crate::Progress;
 use crate::files::{read_json, sha256, write_json};
 
-/// From this many different places on, a lattice of places is simulated and interpolated.
-const LATTICE_FROM: usize = 150;
-
-/// Spacing of that lattice over the gel's height.
-const LATTICE_SPACING: f64 = 1.0 / 3.0;
+/// Over the gel's height, the spacing of a lattice of places that is simulated in place of more places, and interpolated: the largest at
+/// which that changes pressures by less than the mesh does.
+const LATTICE_SPACING: f64 = 0.25;
 
 /// Sweeps of one gel, kept in a folder: what is there is not computed again.
 pub(crate) struct DepthTableStore<'a> {
@@ -80,63 +78,123 @@ impl DepthTableSource for DepthTableStore<'_> {
             .iter()
             .map(|request| self.gel.requested(request))
             .collect::<Result<Vec<_>, _>>()?;
-        if let Some(lattice) = lattice(self.gel, &places) {
-            let mut place = places[0].clone();
-            let moved = |place: &PressPlace, to: Vec<DVec2>| -> Vec<PressPlace> {
-                to.into_iter()
-                    .map(|at| PressPlace {
-                        x_mm: at.x,
-                        y_mm: at.y,
-                        ..place.clone()
-                    })
-                    .collect()
-            };
-            if place.enough_force_n.is_some() {
-                // A gel gives most at its corners: they tell how deep all places have to go.
-                let corners = self.compute(&moved(&place, lattice.corners_mm()))?;
-                place.enough_force_n = None;
-                place.depth_mm = corners.iter().map(DepthTable::depth_mm).fold(0.0, f64::max);
-            }
-            let tables = self.compute(&moved(&place, lattice.places_mm()))?;
-            return Ok(places
-                .iter()
-                .map(|p| lattice.at(&tables, DVec2::new(p.x_mm, p.y_mm)))
-                .collect());
+        let mut groups: BTreeMap<Vec<u8>, Vec<usize>> = BTreeMap::new();
+        for (index, place) in places.iter().enumerate() {
+            groups.entry(kind(place)?).or_default().push(index);
         }
-        let mut distinct: Vec<PressPlace> = Vec::new();
+        let lattices: Vec<Laid> = groups
+            .into_values()
+            .filter_map(|members| self.lay(&places, members))
+            .collect();
+        let is_laid = |index: &usize| lattices.iter().any(|laid| laid.members.contains(index));
+        let alone: Vec<usize> = (0..places.len()).filter(|index| !is_laid(index)).collect();
+
+        // All that is to be simulated in one go, so that no thread waits for the last place of each group.
+        let depths_mm = lattices
+            .iter()
+            .map(|laid| self.depth_mm(laid))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut nodes: Vec<PressPlace> = Vec::new();
+        for (laid, depth_mm) in lattices.iter().zip(depths_mm) {
+            nodes.extend(laid.at(laid.lattice.places_mm(), depth_mm, None));
+        }
         let mut index_of = BTreeMap::new();
-        let mut indices = Vec::with_capacity(places.len());
-        for place in places {
-            let key = self.path(&place)?;
-            indices.push(*index_of.entry(key).or_insert_with(|| {
-                distinct.push(place);
-                distinct.len() - 1
-            }));
+        let mut to_simulate = nodes.clone();
+        let mut of_place = Vec::with_capacity(alone.len());
+        for &index in &alone {
+            let next = to_simulate.len();
+            let found = *index_of.entry(self.path(&places[index])?).or_insert(next);
+            if found == next {
+                to_simulate.push(places[index].clone());
+            }
+            of_place.push((index, found));
         }
-        let tables = self.compute(&distinct)?;
-        Ok(indices.into_iter().map(|index| tables[index].clone()).collect())
+        let tables = self.compute(&to_simulate)?;
+
+        let mut answers: Vec<Option<DepthTable>> = vec![None; places.len()];
+        for (index, found) in of_place {
+            answers[index] = Some(tables[found].clone());
+        }
+        let mut start = 0;
+        for laid in &lattices {
+            let own = &tables[start..start + laid.lattice.places_mm().len()];
+            start += own.len();
+            for &index in &laid.members {
+                let place = &places[index];
+                answers[index] = Some(laid.lattice.at(own, DVec2::new(place.x_mm, place.y_mm)));
+            }
+        }
+        Ok(answers.into_iter().flatten().collect())
     }
 }
 
-/// A lattice over the places, if they are many and differ in nothing but where they are.
-fn lattice(gel: &Gel, places: &[PressPlace]) -> Option<Lattice> {
-    let first = places.first()?;
-    let alike = |place: &PressPlace| {
-        PressPlace {
-            x_mm: first.x_mm,
-            y_mm: first.y_mm,
-            ..place.clone()
-        } == *first
-    };
-    let low = places
-        .iter()
-        .map(|p| DVec2::new(p.x_mm, p.y_mm))
-        .reduce(DVec2::min)?;
-    let high = places
-        .iter()
-        .map(|p| DVec2::new(p.x_mm, p.y_mm))
-        .reduce(DVec2::max)?;
-    let lattice = Lattice::covering(low, high, LATTICE_SPACING * gel.height_mm());
-    let pays = places.len() >= LATTICE_FROM && lattice.places_mm().len() < places.len();
-    (pays && places.iter().all(alike)).then_some(lattice)
+/// Places that differ in nothing but where and how deep they are, and the lattice that stands for them.
+struct Laid {
+    members: Vec<usize>,
+    lattice: Lattice,
+    /// One of them, as deep as the deepest and with as much force as the most.
+    place: PressPlace,
+}
+
+impl Laid {
+    fn at(&self, places_mm: Vec<DVec2>, depth_mm: f64, enough_force_n: Option<f64>) -> Vec<PressPlace> {
+        let moved = |at: DVec2| PressPlace {
+            x_mm: at.x,
+            y_mm: at.y,
+            depth_mm,
+            enough_force_n,
+            ..self.place.clone()
+        };
+        places_mm.into_iter().map(moved).collect()
+    }
+}
+
+impl DepthTableStore<'_> {
+    /// A lattice over places of one kind, if it has fewer places than they are.
+    fn lay(&self, places: &[PressPlace], members: Vec<usize>) -> Option<Laid> {
+        let own = || members.iter().map(|&index| &places[index]);
+        let at = |place: &PressPlace| DVec2::new(place.x_mm, place.y_mm);
+        let low = own().map(at).reduce(DVec2::min)?;
+        let high = own().map(at).reduce(DVec2::max)?;
+        let lattice = Lattice::covering(low, high, LATTICE_SPACING * self.gel.height_mm());
+        let place = PressPlace {
+            depth_mm: own().map(|place| place.depth_mm).fold(0.0, f64::max),
+            enough_force_n: own().filter_map(|place| place.enough_force_n).reduce(f64::max),
+            ..places[*members.first()?].clone()
+        };
+        let distinct: BTreeSet<[u64; 2]> = own()
+            .map(|place| [place.x_mm.to_bits(), place.y_mm.to_bits()])
+            .collect();
+        (lattice.places_mm().len() < distinct.len()).then_some(Laid {
+            members,
+            lattice,
+            place,
+        })
+    }
+
+    /// How deep a lattice's places are to be pressed, mm.
+    fn depth_mm(&self, laid: &Laid) -> Result<f64, SourceError> {
+        if laid.place.enough_force_n.is_none() {
+            return Ok(laid.place.depth_mm);
+        }
+        // A gel gives most at its corners: they tell how deep all places have to go.
+        let corners = laid.at(
+            laid.lattice.corners_mm(),
+            laid.place.depth_mm,
+            laid.place.enough_force_n,
+        );
+        let corners = self.compute(&corners)?;
+        Ok(corners.iter().map(DepthTable::depth_mm).fold(0.0, f64::max))
+    }
+}
+
+/// What places of one lattice have in common.
+fn kind(place: &PressPlace) -> Result<Vec<u8>, SourceError> {
+    Ok(serde_json::to_vec(&PressPlace {
+        x_mm: 0.0,
+        y_mm: 0.0,
+        depth_mm: 0.0,
+        enough_force_n: place.enough_force_n.map(|_| 0.0),
+        ..place.clone()
+    })?)
 }

@@ -40,7 +40,7 @@ pub struct TwinFigures {
     pub by_file: BTreeMap<String, Figures>,
     /// By taxel.
     pub by_taxel: BTreeMap<String, Figures>,
-    /// Frames deeper than the simulation reached; they are scored all the same.
+    /// Frames deeper than the simulation reached, where its end stands for them; they are scored all the same.
     pub frames_not_simulated: usize,
 }
 
@@ -70,6 +70,8 @@ pub struct BaselineFigures {
     pub zero: Figures,
     /// A polynomial of depth and place, fitted to the twin's training presses.
     pub polynomial: Option<Figures>,
+    /// A power of depth times a function of distance, and barometers as the twin has them, fitted to the same presses.
+    pub kernel: Option<Figures>,
 }
 
 /// All figures of a run.
@@ -93,7 +95,7 @@ pub struct Metrics {
     pub twin_all_taxels: Option<Figures>,
     /// What to beat.
     pub baselines: BaselineFigures,
-    /// What no twin can beat.
+    /// What two presses of the same place, depth and speed differ by.
     pub repeatability: Option<Figures>,
     /// Every variant that was trained, on the same presses.
     pub variants: BTreeMap<String, Figures>,
@@ -106,6 +108,10 @@ pub(crate) fn baselines(evaluation: &Evaluation) -> BaselineFigures {
         zero: Figures::from(&evaluation.zero.overall),
         polynomial: evaluation
             .polynomial
+            .as_ref()
+            .map(|score| Figures::from(&score.overall)),
+        kernel: evaluation
+            .kernel
             .as_ref()
             .map(|score| Figures::from(&score.overall)),
     }

@@ -165,14 +165,11 @@ impl Pressed<'_> {
         let settings = digitac::PairSettings::default();
         let presses = pair(self.recording, self.places, self.tables, bench, &settings)?;
         let scale = Scale::of(&presses, self.left_out.clone());
-        let scored: Vec<_> = presses
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| !spent.contains(index))
-            .map(|(_, press)| press)
+        let scored: Vec<usize> = (0..presses.len())
+            .filter(|index| !spent.contains(index))
             .collect();
         Ok((
-            evaluate(&model.twin, &scored, &scale, None),
+            evaluate(&model.twin, &presses, &scored, &scale, None),
             repeatability(&presses, &scale),
         ))
     }

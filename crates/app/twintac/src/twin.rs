@@ -77,7 +77,7 @@ impl Twin {
         let mut along = features(&recording, &places, &tables, bench)?;
         let along = along.swap_remove(0);
         Ok(Prediction {
-            readings_kpa: self.model.twin.predict(&along),
+            readings_kpa: self.model.twin.predict(&[&along]).swap_remove(0),
             time_s: along.time_s,
             depth_mm: along.depth_mm,
             force_n: along.force_n,

@@ -118,6 +118,19 @@ pub enum SolveError {
     },
 }
 
+impl SolveError {
+    /// Part of the step that did converge, from 0 to 1; the state is that before the step.
+    #[must_use]
+    pub fn converged_fraction(&self) -> f64 {
+        match self {
+            Self::NotConverged { fraction, .. }
+            | Self::Inverted { fraction }
+            | Self::Singular { fraction } => *fraction,
+            _ => 0.0,
+        }
+    }
+}
+
 /// Something rigid that an indenter can meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blocker {

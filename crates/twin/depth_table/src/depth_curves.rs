@@ -1,11 +1,16 @@
 //! A table over depth, read at any depth or any force.
 
+use std::ops::Range;
+
 use crate::{DepthTable, DepthTableError, MonotoneCubic};
 
 /// Smallest step of depth, mm, or force, N, that counts as an increase.
 const STEP: f64 = 1e-9;
 
-/// Monotone cubics through a table over depth: zero above the surface, the end of the table beyond it.
+/// Numbers of each taxel.
+const COLUMNS: usize = 5;
+
+/// Monotone cubics through a table over depth: zero above the surface, straight on beyond the table's end.
 ///
 /// They run over depth^n, with n the power by which the force begins to grow (Hertz's 3/2 under a ball, 1
 /// under a flat punch), because force and
@@ -16,7 +21,7 @@ pub struct DepthCurves {
     force_n: MonotoneCubic,
     /// From force to depth^n.
     loading: MonotoneCubic,
-    /// Port pressures, then stress features; `[2 * n_taxels]`.
+    /// Port pressures, then stress features, then the slopes of each port; `[5 * n_taxels]`.
     features: Vec<MonotoneCubic>,
     max_depth_mm: f64,
     max_force_n: f64,
@@ -32,16 +37,23 @@ impl DepthCurves {
         let mut knots = vec![Knot {
             depth_mm: 0.0,
             force_n: 0.0,
-            features: vec![0.0; 2 * n_taxels],
+            features: vec![0.0; COLUMNS * n_taxels],
         }];
         for frame in table.frames.iter().filter(|frame| frame.depth_mm > STEP) {
-            let features = [&frame.port_pressure_kpa[..], &frame.stress_feature_kpa_per_mm[..]].concat();
-            if features.len() != 2 * n_taxels {
+            let values = [&frame.port_pressure_kpa[..], &frame.stress_feature_kpa_per_mm[..]];
+            let slopes = &frame.port_slope_kpa_per_mm;
+            if let Some(found) = values
+                .map(<[f64]>::len)
+                .into_iter()
+                .chain([slopes.len()])
+                .find(|found| *found != n_taxels)
+            {
                 return Err(DepthTableError::Taxels {
                     expected: n_taxels,
-                    found: features.len(),
+                    found,
                 });
             }
+            let features = [values[0], values[1], slopes.as_flattened()].concat();
             if !features
                 .iter()
                 .chain([&frame.force_n, &frame.depth_mm])
@@ -97,33 +109,6 @@ impl DepthCurves {
         })
     }
 
-    /// The weighted mean of tables of the same press, resampled at `n_knots` depths.
-    ///
-    /// # Errors
-    /// No tables, or one that has no depth.
-    pub fn blend(tables: &[&Self], weights: &[f64], n_knots: usize) -> Result<Self, DepthTableError> {
-        let max_depth_mm = tables
-            .iter()
-            .map(|table| table.max_depth_mm)
-            .fold(f64::INFINITY, f64::min);
-        let n_features = tables.first().ok_or(DepthTableError::Blend)?.features.len();
-        let mean =
-            |value: &dyn Fn(&Self) -> f64| tables.iter().zip(weights).map(|(t, w)| w * value(t)).sum::<f64>();
-        let knots: Vec<Knot> = (0..n_knots)
-            .map(|i| {
-                let depth_mm = max_depth_mm * i as f64 / (n_knots - 1) as f64;
-                Knot {
-                    depth_mm,
-                    force_n: mean(&|t| t.force_n(depth_mm)),
-                    features: (0..n_features)
-                        .map(|k| mean(&|t| t.features[k].at(t.grown(depth_mm))))
-                        .collect(),
-                }
-            })
-            .collect();
-        Self::from_knots(&knots).ok_or(DepthTableError::Blend)
-    }
-
     fn grown(&self, depth_mm: f64) -> f64 {
         depth_mm.max(0.0).powf(self.growth)
     }
@@ -131,7 +116,7 @@ impl DepthCurves {
     /// Force of the indenter at a depth, N.
     #[must_use]
     pub fn force_n(&self, depth_mm: f64) -> f64 {
-        self.force_n.at(self.grown(depth_mm))
+        self.force_n.straight_on(self.grown(depth_mm))
     }
 
     /// Depth at a force, mm.
@@ -143,18 +128,29 @@ impl DepthCurves {
     /// Port pressure of each taxel at a depth, kPa; `[n_taxels]`.
     #[must_use]
     pub fn pressure_kpa(&self, depth_mm: f64) -> Vec<f64> {
-        let grown = self.grown(depth_mm);
-        self.features[..self.features.len() / 2]
-            .iter()
-            .map(|curve| curve.at(grown))
-            .collect()
+        self.read(0..self.n_taxels(), depth_mm)
     }
 
     /// Stress feature of each taxel at a depth, kPa/mm; `[n_taxels]`.
     #[must_use]
     pub fn stress_kpa_per_mm(&self, depth_mm: f64) -> Vec<f64> {
+        self.read(self.n_taxels()..2 * self.n_taxels(), depth_mm)
+    }
+
+    /// How each port's pressure changes with its place along x, along y and with its radius, at a depth, kPa/mm; `[n_taxels]`.
+    #[must_use]
+    pub fn slope_kpa_per_mm(&self, depth_mm: f64) -> Vec<[f64; 3]> {
+        let flat = self.read(2 * self.n_taxels()..self.features.len(), depth_mm);
+        flat.as_chunks().0.to_vec()
+    }
+
+    fn n_taxels(&self) -> usize {
+        self.features.len() / COLUMNS
+    }
+
+    fn read(&self, columns: Range<usize>, depth_mm: f64) -> Vec<f64> {
         let grown = self.grown(depth_mm);
-        self.features[self.features.len() / 2..]
+        self.features[columns]
             .iter()
             .map(|curve| curve.at(grown))
             .collect()
@@ -203,6 +199,7 @@ mod tests {
                 depth_mm,
                 force_n,
                 port_pressure_kpa: vec![10.0 * force_n, 5.0 * force_n],
+                port_slope_kpa_per_mm: vec![[force_n, 2.0 * force_n, -force_n]; 2],
                 stress_feature_kpa_per_mm: vec![3.0 * force_n, force_n],
                 quality: SolveQuality {
                     iterations: 3,
@@ -234,11 +231,13 @@ mod tests {
             assert!((curves.force_n(depth_mm) / force_n - 1.0).abs() < 0.001);
             assert!((curves.depth_mm(force_n) - depth_mm).abs() < 0.001);
             assert!((curves.pressure_kpa(depth_mm)[1] / (5.0 * force_n) - 1.0).abs() < 0.001);
+            assert!((curves.slope_kpa_per_mm(depth_mm)[1][1] / (2.0 * force_n) - 1.0).abs() < 0.001);
             assert!((curves.stress_kpa_per_mm(depth_mm)[0] / (3.0 * force_n) - 1.0).abs() < 0.001);
         }
         assert_eq!(curves.pressure_kpa(-0.3), [0.0; 2]);
         assert_eq!(curves.force_n(0.0), 0.0);
-        assert_eq!(curves.force_n(5.0), curves.max_force_n());
+        // Hertz's force over depth^1.5 is a straight line.
+        assert!((curves.force_n(2.3) / hertz_n(2.3) - 1.0).abs() < 0.01);
     }
 
     #[test]
@@ -256,7 +255,7 @@ mod tests {
             DepthCurves::new(&table(), 8).unwrap_err(),
             DepthTableError::Taxels {
                 expected: 8,
-                found: 4
+                found: 2
             }
         );
         let mut backwards = table();
@@ -271,20 +270,5 @@ mod tests {
             DepthCurves::new(&broken, 2).unwrap_err(),
             DepthTableError::NotFinite { .. }
         ));
-    }
-
-    #[test]
-    fn a_blend_lies_between_its_tables() {
-        let [one, other] = [1.0, 3.0].map(|factor| {
-            let mut table = table();
-            table.frames.iter_mut().for_each(|frame| frame.force_n *= factor);
-            DepthCurves::new(&table, 2).unwrap()
-        });
-        let blend = DepthCurves::blend(&[&one, &other], &[0.5, 0.5], 40).unwrap();
-        assert!((blend.force_n(1.0) / (2.0 * hertz_n(1.0)) - 1.0).abs() < 0.001);
-        assert_eq!(
-            DepthCurves::blend(&[], &[], 40).unwrap_err(),
-            DepthTableError::Blend
-        );
     }
 }

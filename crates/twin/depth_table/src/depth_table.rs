@@ -28,6 +28,8 @@ pub struct PressFrame {
     pub force_n: f64,
     /// Hydrostatic pressure -tr(σ)/3, averaged over each taxel's port, kPa; `[n_taxels]`.
     pub port_pressure_kpa: Vec<f64>,
+    /// How that pressure changes with the port's place along x, along y and with its radius, kPa/mm; `[n_taxels]`.
+    pub port_slope_kpa_per_mm: Vec<[f64; 3]>,
     /// The stress feature of TwinTac (arXiv 2509.10063, equation 6): mean over the surface nodes above each taxel of von Mises stress over
     /// distance to the taxel, kPa/mm; `[n_taxels]`.
     pub stress_feature_kpa_per_mm: Vec<f64>,

@@ -5,11 +5,11 @@
 #[non_exhaustive]
 pub enum DepthTableError {
     /// A frame has values for another number of taxels.
-    #[error("expected features of {expected} taxels, found {found} numbers")]
+    #[error("expected features of {expected} taxels, found those of {found}")]
     Taxels {
         /// Taxels of the sensor.
         expected: usize,
-        /// Features of the frame; each taxel has two.
+        /// Taxels of the frame.
         found: usize,
     },
     /// A frame has a value that is infinite or NaN.
@@ -27,7 +27,4 @@ pub enum DepthTableError {
     /// The depths of the frames do not increase.
     #[error("expected increasing depths, found another order")]
     Order,
-    /// Tables of different sizes can't be blended, nor can tables without depth.
-    #[error("expected tables of the same taxels that reach below the surface")]
-    Blend,
 }

@@ -8,7 +8,14 @@ use twintac_shape::Pose;
 
 use crate::{DepthTable, PressFrame};
 
-/// Places x = x0 + i·dx, y = y0 + j·dy, at least four each way, with x running fastest.
+/// Places that differ by less along an axis stand in one line, mm.
+const FLAT_MM: f64 = 1e-3;
+
+/// Nodes of less weight need not reach as deep as a table between them does.
+const SMALL_WEIGHT: f64 = 0.02;
+
+/// Places x = x0 + i·dx, y = y0 + j·dy, at least four along each axis that has an extent and one along an axis that has none, with x running
+/// fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     low_mm: DVec2,
@@ -22,17 +29,19 @@ impl Lattice {
     #[must_use]
     pub fn covering(low_mm: DVec2, high_mm: DVec2, spacing_mm: f64) -> Self {
         let size_mm = high_mm - low_mm;
-        let intervals = |length_mm: f64| ((length_mm / spacing_mm - 1e-9).ceil() as usize).max(3);
-        let (n_x, n_y) = (intervals(size_mm.x), intervals(size_mm.y));
-        let step_mm = DVec2::new(
-            (size_mm.x / n_x as f64).max(1e-6),
-            (size_mm.y / n_y as f64).max(1e-6),
-        );
+        let axis = |length_mm: f64| {
+            if length_mm < FLAT_MM {
+                return (1, spacing_mm);
+            }
+            let intervals = ((length_mm / spacing_mm - 1e-9).ceil() as usize).max(3);
+            (intervals + 1, length_mm / intervals as f64)
+        };
+        let ((n_x, step_x_mm), (n_y, step_y_mm)) = (axis(size_mm.x), axis(size_mm.y));
         Self {
             low_mm,
-            step_mm,
-            n_x: n_x + 1,
-            n_y: n_y + 1,
+            step_mm: DVec2::new(step_x_mm, step_y_mm),
+            n_x,
+            n_y,
         }
     }
 
@@ -46,17 +55,19 @@ impl Lattice {
             .collect()
     }
 
-    /// The four corners of the lattice, mm.
+    /// The corners of the lattice, mm.
     #[must_use]
     pub fn corners_mm(&self) -> Vec<DVec2> {
-        let far_mm = self.step_mm * DVec2::new((self.n_x - 1) as f64, (self.n_y - 1) as f64);
-        [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE]
-            .map(|corner| self.low_mm + corner * far_mm)
-            .to_vec()
+        let ends = |n: usize| if n > 1 { vec![0, n - 1] } else { vec![0] };
+        let corner = |i: usize, j: usize| self.low_mm + self.step_mm * DVec2::new(i as f64, j as f64);
+        ends(self.n_y)
+            .into_iter()
+            .flat_map(|j| ends(self.n_x).into_iter().map(move |i| corner(i, j)))
+            .collect()
     }
 
     /// The table at a place inside the lattice, from the tables at [`Lattice::places_mm`], by cubic splines frame by frame. Frames that
-    /// some node lacks are left out.
+    /// a node near the place lacks are left out.
     #[must_use]
     pub fn at(&self, tables: &[DepthTable], place_mm: DVec2) -> DepthTable {
         let along_x = spline_weights((place_mm.x - self.low_mm.x) / self.step_mm.x, self.n_x);
@@ -68,6 +79,7 @@ impl Lattice {
             .collect();
         let n_frames = nodes
             .iter()
+            .filter(|(_, weight)| weight.abs() > SMALL_WEIGHT)
             .map(|(table, _)| table.frames.len())
             .min()
             .unwrap_or(0);
@@ -98,10 +110,15 @@ fn nearest<'a>(nodes: &[(&'a DepthTable, f64)]) -> &'a DepthTable {
 }
 
 fn blend(nodes: &[(&DepthTable, f64)], nearest: &DepthTable, frame: usize) -> PressFrame {
+    let there: Vec<(&PressFrame, f64)> = nodes
+        .iter()
+        .filter_map(|(table, weight)| Some((table.frames.get(frame)?, *weight)))
+        .collect();
+    let total: f64 = there.iter().map(|(_, weight)| weight).sum();
     let sum = |value: &dyn Fn(&PressFrame) -> f64| -> f64 {
-        nodes
+        there
             .iter()
-            .map(|(table, weight)| weight * value(&table.frames[frame]))
+            .map(|(frame, weight)| weight / total * value(frame))
             .sum()
     };
     let template = &nearest.frames[frame];
@@ -110,6 +127,9 @@ fn blend(nodes: &[(&DepthTable, f64)], nearest: &DepthTable, frame: usize) -> Pr
         depth_mm: sum(&|f| f.depth_mm),
         force_n: sum(&|f| f.force_n),
         port_pressure_kpa: (0..n_taxels).map(|k| sum(&|f| f.port_pressure_kpa[k])).collect(),
+        port_slope_kpa_per_mm: (0..n_taxels)
+            .map(|k| [0, 1, 2].map(|way| sum(&|f| f.port_slope_kpa_per_mm[k][way])))
+            .collect(),
         stress_feature_kpa_per_mm: (0..n_taxels)
             .map(|k| sum(&|f| f.stress_feature_kpa_per_mm[k]))
             .collect(),
@@ -121,6 +141,9 @@ fn blend(nodes: &[(&DepthTable, f64)], nearest: &DepthTable, frame: usize) -> Pr
 /// continuous at the second and the last but one (not-a-knot). There its curvature is the second difference; between, the curvatures
 /// m solve m₋ + 4 m + m₊ = 6 times the second difference. `[n_nodes]`
 fn spline_weights(position: f64, n_nodes: usize) -> Vec<f64> {
+    if n_nodes == 1 {
+        return vec![1.0];
+    }
     let cell = (position.floor().max(0.0) as usize).min(n_nodes - 2);
     let (b, a) = (position - cell as f64, cell as f64 + 1.0 - position);
     (0..n_nodes)
@@ -173,6 +196,7 @@ mod tests {
             depth_mm: 1.0,
             force_n: value,
             port_pressure_kpa: vec![2.0 * value],
+            port_slope_kpa_per_mm: vec![[value; 3]],
             stress_feature_kpa_per_mm: vec![3.0 * value],
             quality,
         };
@@ -183,6 +207,16 @@ mod tests {
             frames: vec![frame],
             failure: None,
         }
+    }
+
+    #[test]
+    fn a_line_of_places_is_a_lattice_of_one_row() {
+        let lattice = Lattice::covering(DVec2::new(-1.0, 2.0), DVec2::new(6.0, 2.0), 1.5);
+        assert_eq!(lattice.places_mm().len(), 6);
+        let tables: Vec<DepthTable> = lattice.places_mm().into_iter().map(table_of).collect();
+        let place = DVec2::new(3.3, 2.0);
+        let (found, expected) = (lattice.at(&tables, place), table_of(place));
+        assert!((found.frames[0].force_n - expected.frames[0].force_n).abs() < 1e-9);
     }
 
     #[test]

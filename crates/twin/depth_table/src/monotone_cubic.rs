@@ -20,6 +20,13 @@ impl MonotoneCubic {
         Some(Self { x, y, slope })
     }
 
+    /// The value at a point; beyond the table's last point, straight on with the slope that it ends with.
+    #[must_use]
+    pub(crate) fn straight_on(&self, x: f64) -> f64 {
+        let last = self.x.len() - 1;
+        self.at(x) + self.slope[last] * (x - self.x[last]).max(0.0)
+    }
+
     /// The value at a point; beyond the table, the value at its end.
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {

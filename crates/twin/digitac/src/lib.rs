@@ -4,7 +4,7 @@
 //! simulates each; [`fit_bench`] finds what is unknown
 //! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
 //! [`Split`] divides presses into training, validation and test; [`train()`] makes a [`Twin`] of each [`Variant`];
-//! [`score()`] computes its errors; and a [`Model`] keeps it in a folder.
+//! [`evaluate()`] computes its errors; and a [`Model`] keeps it in a folder.
 //!
 //! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
 //! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this
@@ -19,6 +19,7 @@ mod features;
 mod model_folder;
 mod network;
 mod numerics;
+mod physical_fit;
 #[cfg(test)]
 mod pipeline_test;
 mod seed;
@@ -27,11 +28,14 @@ mod synthetic;
 mod training;
 
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
-pub use bench_fit::{BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, features, fit_bench};
+pub use bench_fit::{
+    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortEstimate, features, fit_bench,
+    refine_bench,
+};
 pub use error::DigitacError;
 pub use evaluation::{
-    Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score, StaticPolynomial,
-    evaluate, recalibrate, repeatability, score,
+    Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score,
+    evaluate, recalibrate, repeatability,
 };
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};

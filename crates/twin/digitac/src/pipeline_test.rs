@@ -30,6 +30,8 @@ fn make(truth: &Truth, n_places: usize) -> Made {
     let radius_mm = bench.tip_radius_mm.unwrap().value;
     let places = places.with_tip_radius(Some(radius_mm));
     let tables = Formula.depth_tables(&places.requests).unwrap();
+    let settings = BenchSettings::default();
+    let bench = refine_bench(&recording, &places, &tables, &split.train, &bench, &settings).unwrap();
     let presses = pair(&recording, &places, &tables, &bench, &PairSettings::default()).unwrap();
     let scale = Scale::of(&presses, BTreeSet::new());
     Made {
@@ -93,20 +95,15 @@ fn the_bench_and_the_gains_are_found_and_the_twin_predicts_unseen_places() {
     for (found, expected) in best.twin.gains().gain.iter().zip(&truth.gains.gain) {
         assert!((found / expected - 1.0).abs() < 0.02, "{:?}", best.twin.gains());
     }
-    let test: Vec<&PairedPress> = made
-        .split
-        .test
-        .iter()
-        .map(|&index| &made.presses[index])
-        .collect();
-    let teachers: Vec<&PairedPress> = made
-        .split
-        .train
-        .iter()
-        .map(|&index| &made.presses[index])
-        .collect();
-    let polynomial = StaticPolynomial::fit(&teachers);
-    let evaluation = evaluate(&best.twin, &test, &made.scale, Some(&polynomial));
+    let ports_mm = crate::synthetic::TAXELS_X_MM.map(|x| [x, 0.0]);
+    let baselines = Baselines::fit(&made.presses, &made.split.train, &ports_mm, &BTreeSet::new()).unwrap();
+    let evaluation = evaluate(
+        &best.twin,
+        &made.presses,
+        &made.split.test,
+        &made.scale,
+        Some(&baselines),
+    );
     let headline = |score: &Score| score.overall.nearest_in_contact.percent;
     assert!(headline(&evaluation.twin) < 0.3, "{:?}", evaluation.twin);
     assert!(headline(evaluation.polynomial.as_ref().unwrap()) > 3.0 * headline(&evaluation.twin));
@@ -118,19 +115,17 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
     let mut truth = Truth::new();
     truth.offsets_mm.truncate(1);
     let mut made = make(&truth, 21);
-    // A barometer that saturates.
+    // A barometer that saturates, and a physics that does not know it.
     for press in &mut made.presses {
-        press
-            .readings_kpa
-            .iter_mut()
-            .flatten()
-            .for_each(|r| *r -= 0.001 * *r * r.abs());
+        let readings = press.readings_kpa.iter_mut().flatten();
+        readings.for_each(|r| *r -= 0.001 * *r * r.abs());
     }
     made.scale = Scale::of(&made.presses, BTreeSet::new());
-    let trained = train_quietly(
-        &made,
-        &settings(&[Variant::PressureMemory, Variant::PressureMemoryMlp], 400),
-    );
+    let settings = TrainSettings {
+        port_law: false,
+        ..settings(&[Variant::PressureMemory, Variant::PressureMemoryMlp], 400)
+    };
+    let trained = train_quietly(&made, &settings);
     let error = |t: &Trained| t.validation.overall.nearest_in_contact.percent;
     assert!(
         error(&trained[1]) < 0.8 * error(&trained[0]),
@@ -147,8 +142,8 @@ fn a_correction_repairs_what_the_physics_lacks_and_stays_bounded() {
         .for_each(|p| *p *= 10.0);
     let corrected = &trained[1].twin;
     let (physical, found) = (
-        corrected.gains().readings_kpa(&features),
-        corrected.predict(&features),
+        corrected.gains().readings_kpa(&[&features]).swap_remove(0),
+        corrected.predict(&[&features]).swap_remove(0),
     );
     let size = |row: &Vec<f64>| row.iter().map(|p| p * p).sum::<f64>().sqrt();
     let largest = physical.iter().map(size).fold(0.0, f64::max);
@@ -279,8 +274,8 @@ fn a_model_survives_its_folder_and_notices_damage() {
     assert_eq!(again.record, model.record);
     for press in &made.presses {
         assert_eq!(
-            again.twin.predict(&press.features),
-            model.twin.predict(&press.features)
+            again.twin.predict(&[&press.features]),
+            model.twin.predict(&[&press.features])
         );
     }
     let message = |folder: &std::path::Path| Model::load(folder).unwrap_err().to_string();

@@ -62,6 +62,7 @@ impl DepthTableSource for Formula {
                     depth_mm,
                     force_n,
                     port_pressure_kpa: pressure,
+                    port_slope_kpa_per_mm: vec![[0.0; 3]; TAXELS_X_MM.len()],
                     stress_feature_kpa_per_mm: stress,
                     quality,
                 }
@@ -95,6 +96,7 @@ impl Truth {
             radius_mm: 2.7,
             gains: Gains {
                 gain: vec![0.5, 0.8, 1.1, 0.65],
+                stiffening_per_kpa: vec![0.0; 4],
                 memory: vec![vec![0.2, 0.05], vec![0.1, 0.2], vec![0.3, 0.0], vec![0.15, 0.1]],
                 time_constants_s: vec![0.25, 4.0],
             },
@@ -155,8 +157,10 @@ impl Truth {
                 .collect(),
             stress_kpa_per_mm: frames.iter().map(|f| f.2.clone()).collect(),
             simulated: vec![true; time_s.len()],
+            since_previous_s: None,
+            zero_frames: 0..0,
         };
-        let mut taxels_kpa = self.gains.readings_kpa(&features);
+        let mut taxels_kpa = self.gains.readings_kpa(&[&features]).swap_remove(0);
         let largest = 130.0;
         taxels_kpa
             .iter_mut()
@@ -201,6 +205,8 @@ pub(crate) fn by_hand(
             pressure_kpa: vec![vec![0.0; 2]; n_frames],
             stress_kpa_per_mm: vec![vec![0.0; 2]; n_frames],
             simulated: vec![true; n_frames],
+            since_previous_s: None,
+            zero_frames: 0..0,
         },
         measured_force_n: None,
         readings_kpa: frames.iter().map(|f| f.1.to_vec()).collect(),

@@ -8,10 +8,10 @@ use twintac_depth_table::{DepthTable, PressFrame};
 use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
-use twintac_softbody::{Frame, Material, SoftBody};
+use twintac_softbody::{Frame, Material, SoftBody, SolveError, State};
 
 use crate::history::solve_quality;
-use crate::readout::{PortReadout, StressCluster};
+use crate::readout::{PortReadout, PortSlopes, StressCluster};
 use crate::rounding::Roundings;
 use crate::shell::Wall;
 use crate::touch::{contact_radius_mm, first_touch};
@@ -80,6 +80,7 @@ pub struct GelMesh {
     pub(crate) indenter: Box<dyn SignedDistance>,
     pub(crate) touch: Pose,
     pub(crate) ports: Vec<PortReadout>,
+    slopes: Vec<PortSlopes>,
     clusters: Vec<StressCluster>,
 }
 
@@ -307,6 +308,11 @@ impl GelMesh {
             .iter()
             .map(|taxel| PortReadout::of_taxel(mesh, taxel))
             .collect::<Result<Vec<_>, _>>()?;
+        let slopes = sensor
+            .taxels
+            .iter()
+            .map(|taxel| PortSlopes::of_taxel(mesh, taxel))
+            .collect();
         let clusters = StressCluster::for_each_taxel(mesh, sensor);
         if let Some(shell) = &sensor.shell {
             let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
@@ -319,6 +325,7 @@ impl GelMesh {
             indenter,
             touch,
             ports,
+            slopes,
             clusters,
         })
     }
@@ -364,36 +371,42 @@ impl GelMesh {
         let mut state = self.body.rest();
         let mut frames: Vec<PressFrame> = Vec::with_capacity(keyframes.len());
         let mut failure = None;
-        let mut previous_s = keyframes.first().map_or(0.0, |k| k.time_s);
-        for keyframe in keyframes {
+        let mut advance = |state: &mut State, keyframe: &Keyframe, time_step_s: f64| {
             let pose = Pose {
                 position_mm: self.touch.position_mm - DVec3::Z * keyframe.depth_mm,
                 ..self.touch
             };
-            let time_step_s = keyframe.time_s - previous_s;
-            previous_s = keyframe.time_s;
-            match self
+            let frame = self
                 .body
-                .advance(&mut state, self.indenter.as_ref(), &pose, time_step_s)
-            {
-                Ok(frame) => {
-                    let fields = Fields {
-                        mesh: self.body.mesh(),
-                        displacements_mm: state.displacements_mm(),
-                        pressure_kpa: self.body.pressure_kpa(&state),
-                        von_mises_kpa: self.body.von_mises_kpa(&state),
-                    };
-                    frames.push(self.read(&fields, &frame, keyframe));
-                    show(&fields);
-                    if place
-                        .enough_force_n
-                        .is_some_and(|enough_n| -frame.indenter_force_n.z >= enough_n)
-                    {
-                        break;
-                    }
-                }
+                .advance(state, self.indenter.as_ref(), &pose, time_step_s)?;
+            let fields = Fields {
+                mesh: self.body.mesh(),
+                displacements_mm: state.displacements_mm(),
+                pressure_kpa: self.body.pressure_kpa(state),
+                von_mises_kpa: self.body.von_mises_kpa(state),
+            };
+            show(&fields);
+            frames.push(self.read(&fields, &frame, keyframe));
+            Ok::<f64, SolveError>(-frame.indenter_force_n.z)
+        };
+        let mut previous = keyframes.first().copied();
+        for keyframe in keyframes {
+            let before = previous.replace(*keyframe).unwrap_or(*keyframe);
+            let time_step_s = keyframe.time_s - before.time_s;
+            match advance(&mut state, keyframe, time_step_s) {
+                Ok(force_n) if place.enough_force_n.is_some_and(|enough_n| force_n >= enough_n) => break,
+                Ok(_) => {}
                 Err(error) => {
                     failure = Some(format!("at {:.3} mm: {error}", keyframe.depth_mm));
+                    let share = error.converged_fraction();
+                    if share > 0.0 {
+                        // As deep as it goes.
+                        let last = Keyframe {
+                            time_s: before.time_s + share * time_step_s,
+                            depth_mm: before.depth_mm + share * (keyframe.depth_mm - before.depth_mm),
+                        };
+                        let _ = advance(&mut state, &last, share * time_step_s);
+                    }
                     break;
                 }
             }
@@ -415,6 +428,11 @@ impl GelMesh {
                 .ports
                 .iter()
                 .map(|port| port.read(&fields.pressure_kpa))
+                .collect(),
+            port_slope_kpa_per_mm: self
+                .slopes
+                .iter()
+                .map(|slopes| slopes.read(&fields.pressure_kpa))
                 .collect(),
             stress_feature_kpa_per_mm: self.clusters.iter().map(feature).collect(),
             quality: solve_quality(frame),

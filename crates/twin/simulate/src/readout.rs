@@ -64,6 +64,47 @@ impl PortReadout {
     }
 }
 
+/// How far a port is moved, and its radius changed, to see how its pressure changes, mm.
+const SLOPE_STEP_MM: f64 = 0.25;
+
+/// How a port's pressure changes with its place along x, along y and with its radius.
+#[derive(Clone, Debug)]
+pub(crate) struct PortSlopes {
+    /// The port a step behind and a step ahead each way; `None` where the mesh ends before.
+    ways: [Option<[PortReadout; 2]>; 3],
+}
+
+impl PortSlopes {
+    pub(crate) fn of_taxel(mesh: &TetMesh, taxel: &Taxel) -> Self {
+        let (center_mm, radius_mm) = (taxel.position_mm, taxel.port_radius_mm);
+        let port = |moved_mm: DVec3, wider_mm: f64| {
+            PortReadout::new(mesh, &taxel.name, center_mm + moved_mm, radius_mm + wider_mm).ok()
+        };
+        let narrower_mm = SLOPE_STEP_MM.min(radius_mm);
+        let way = |behind: Option<PortReadout>, ahead: Option<PortReadout>| Some([behind?, ahead?]);
+        let [x_mm, y_mm] = [DVec3::X, DVec3::Y].map(|axis| SLOPE_STEP_MM * axis);
+        Self {
+            ways: [
+                way(port(-x_mm, 0.0), port(x_mm, 0.0)),
+                way(port(-y_mm, 0.0), port(y_mm, 0.0)),
+                way(
+                    port(DVec3::ZERO, -narrower_mm),
+                    port(DVec3::ZERO, 2.0 * SLOPE_STEP_MM - narrower_mm),
+                ),
+            ],
+        }
+    }
+
+    /// Central differences, kPa/mm; zero where the mesh does not reach.
+    pub(crate) fn read(&self, nodal_kpa: &[f64]) -> [f64; 3] {
+        self.ways.each_ref().map(|way| {
+            way.as_ref().map_or(0.0, |[behind, ahead]| {
+                (ahead.read(nodal_kpa) - behind.read(nodal_kpa)) / (2.0 * SLOPE_STEP_MM)
+            })
+        })
+    }
+}
+
 /// Centres of cells of equal area on a disc: one in the middle, 8 in the first ring around it, 16 in the next.
 fn disc_samples(radius_mm: f64) -> Vec<DVec2> {
     let mut samples = vec![DVec2::ZERO];

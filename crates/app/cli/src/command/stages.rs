@@ -70,9 +70,11 @@ fn headline(metrics: &Metrics) -> String {
     rows.extend(all_taxels.map(|figures| ("twin, every taxel".to_owned(), figures)));
     let polynomial = metrics.baselines.polynomial.iter();
     rows.extend(polynomial.map(|figures| ("static polynomial".to_owned(), figures)));
+    let kernel = metrics.baselines.kernel.iter();
+    rows.extend(kernel.map(|figures| ("fitted curve".to_owned(), figures)));
     rows.push(("zero".to_owned(), &metrics.baselines.zero));
     let repeatability = metrics.repeatability.iter();
-    rows.extend(repeatability.map(|figures| ("repeatability".to_owned(), figures)));
+    rows.extend(repeatability.map(|figures| ("the same press again".to_owned(), figures)));
 
     let width = rows
         .iter()

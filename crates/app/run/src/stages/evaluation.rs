@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use digitac::{Evaluation, Model, Repeatability, Scale, StaticPolynomial, evaluate, repeatability};
+use digitac::{Baselines, Evaluation, Model, Repeatability, Scale, evaluate, repeatability};
 use serde::{Deserialize, Serialize};
 
 use super::training::VariantRecord;
@@ -36,14 +36,17 @@ impl Run {
             let presses = self.pairs()?;
             let model = Model::load(&self.stage("training").join("held-out"))?;
             let split = &model.record.split;
-            let test: Vec<_> = split.test.iter().map(|&index| &presses[index]).collect();
-            let teaching: Vec<_> = split.train.iter().map(|&index| &presses[index]).collect();
-            let polynomial = StaticPolynomial::fit(&teaching);
+            let teachers = [&split.train[..], &split.validation].concat();
+            let baselines = Baselines::fit(&presses, &teachers, &self.ports_mm(), &self.left_out())?;
             let scale = Scale::of(&presses, self.left_out());
-            let evaluation = evaluate(&model.twin, &test, &scale, Some(&polynomial));
+            let evaluation = evaluate(&model.twin, &presses, &split.test, &scale, Some(&baselines));
             let every_taxel = (!self.left_out().is_empty()).then(|| {
                 let scale = Scale::of(&presses, BTreeSet::new());
-                Figures::from(&evaluate(&model.twin, &test, &scale, None).twin.overall)
+                Figures::from(
+                    &evaluate(&model.twin, &presses, &split.test, &scale, None)
+                        .twin
+                        .overall,
+                )
             });
             let repeatability = repeatability(&presses, &scale);
             let metrics = self.figures(&model, &evaluation, every_taxel, repeatability.as_ref())?;

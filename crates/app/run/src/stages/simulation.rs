@@ -1,6 +1,6 @@
 //! Stages `mesh` and `simulation`: the gel, the bench's unknowns, and a table over depth for each place.
 
-use digitac::{BenchEstimate, Places, Split, fit_bench};
+use digitac::{BenchEstimate, Places, Split, fit_bench, refine_bench};
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::Recording;
 
@@ -60,9 +60,11 @@ impl Run {
             let places = Places::of(&recording, &store, &self.record.settings.places)?;
             let settings = self.resolved(&recording, &places);
             let split = Split::new(&recording, &settings.split)?;
-            let bench = fit_bench(&recording, &places, &split.train, &store, &settings.bench)?;
+            let teachers = [&split.train[..], &split.validation].concat();
+            let bench = fit_bench(&recording, &places, &teachers, &store, &settings.bench)?;
             let places = places.at_bench(&bench);
             let tables = store.depth_tables(&places.requests)?;
+            let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, &settings.bench)?;
             write_json(&folder.join("split.json"), &split)?;
             write_json(&folder.join("bench.json"), &bench)?;
             write_json(&folder.join("places.json"), &tables)?;

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use digitac::{
-    Epoch, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split, StaticPolynomial,
-    TrainSettings, Trained, Variant,
+    Epoch, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split, TrainSettings, Trained, Variant,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
@@ -116,10 +115,6 @@ impl<'a> Training<'a> {
         self.settings.epochs * (self.settings.variants.len() + 1)
     }
 
-    fn presses(&self, indices: &[usize]) -> Vec<&PairedPress> {
-        indices.iter().map(|&index| &self.presses[index]).collect()
-    }
-
     fn train(
         &self,
         split: &Split,
@@ -142,12 +137,12 @@ impl<'a> Training<'a> {
 
     /// How each variant did, on presses that it never saw.
     fn variants(&self, trained: &[Trained], chosen: &Trained) -> Vec<VariantRecord> {
-        let test = self.presses(&self.simulation.split.test);
+        let test = &self.simulation.split.test;
         let record = |candidate: &Trained| VariantRecord {
             variant: candidate.twin.variant(),
             chosen: std::ptr::eq(candidate, chosen),
             validation: candidate.validation.clone(),
-            test: digitac::evaluate(&candidate.twin, &test, &self.scale, None).twin,
+            test: digitac::evaluate(&candidate.twin, &self.presses, test, &self.scale, None).twin,
             history: candidate.history.clone(),
         };
         trained.iter().map(record).collect()
@@ -157,9 +152,7 @@ impl<'a> Training<'a> {
     fn keep(&self, trained: &Trained, split: Split, folder: &Path) -> Result<(), RunError> {
         let judged = (!split.test.is_empty()).then(|| {
             let held_out = &self.simulation.split;
-            let polynomial = StaticPolynomial::fit(&self.presses(&held_out.train));
-            let test = self.presses(&held_out.test);
-            digitac::evaluate(&trained.twin, &test, &self.scale, Some(&polynomial))
+            digitac::evaluate(&trained.twin, &self.presses, &held_out.test, &self.scale, None)
         });
         let settings = &self.run.record.settings;
         let origin = Origin {

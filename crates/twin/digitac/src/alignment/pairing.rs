@@ -6,7 +6,6 @@ use twintac_recording::{Control, Press, Recording};
 
 use super::{Warp, WarpSettings};
 use crate::bench_fit::{BenchEstimate, Places, deepest_pose, features};
-use crate::features::Sample;
 use crate::{DigitacError, Features};
 
 /// A press, measured and simulated, on one clock.
@@ -25,20 +24,21 @@ pub struct PairedPress {
     pub features: Features,
     /// Measured force, N; `[n_frames]`, if there was one.
     pub measured_force_n: Option<Vec<f64>>,
-    /// Readings above the unloaded baseline, warped to the simulation's clock, kPa; `[n_frames][n_taxels]`.
+    /// Readings above the unloaded baseline, on the recording's own clock, kPa; `[n_frames][n_taxels]`.
     pub readings_kpa: Vec<Vec<f64>>,
-    /// Whether the reading counts: usable, and simulated; `[n_frames][n_taxels]`.
+    /// Whether the reading is usable; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
-    /// How the readings were warped.
+    /// How the readings would have to be warped to rise and fall when the simulated gel does. Nothing is trained or scored on warped readings.
     pub warp: Warp,
 }
 
-impl<'a> From<&'a PairedPress> for Sample<'a> {
-    fn from(press: &'a PairedPress) -> Self {
+impl PairedPress {
+    /// The press with its readings warped onto the simulation's clock.
+    pub(crate) fn warped(&self) -> Self {
         Self {
-            features: &press.features,
-            readings_kpa: &press.readings_kpa,
-            valid: &press.valid,
+            readings_kpa: self.warp.apply(&self.readings_kpa),
+            valid: self.warp.apply_valid(&self.valid),
+            ..self.clone()
         }
     }
 }
@@ -85,25 +85,20 @@ fn pair_press(
         Control::Pose => warp(press, &features, &settings.warp),
         Control::Force => Warp::identity(n_frames),
     };
-    let readings_kpa = warp.apply(&press.taxels_kpa);
-    let mut valid = warp.apply_valid(&press.valid);
-    for ((row, readings), simulated) in valid.iter_mut().zip(&readings_kpa).zip(&features.simulated) {
+    let mut valid = press.valid.clone();
+    for (row, readings) in valid.iter_mut().zip(&press.taxels_kpa) {
         for (valid, reading) in row.iter_mut().zip(readings) {
-            *valid &= *simulated && reading.is_finite();
+            *valid &= reading.is_finite();
         }
     }
-    let measured_force_n = press.force_n.as_ref().map(|force_n| {
-        let rows: Vec<Vec<f64>> = force_n.iter().map(|f| vec![*f]).collect();
-        warp.apply(&rows).into_iter().flatten().collect()
-    });
     Ok(PairedPress {
         name: press.name.clone(),
         mounting: press.mounting.clone(),
         indenter: press.indenter.clone(),
         place_mm: deepest_pose(press)?.position_mm.truncate().to_array(),
         features,
-        measured_force_n,
-        readings_kpa,
+        measured_force_n: press.force_n.clone(),
+        readings_kpa: press.taxels_kpa.clone(),
         valid,
         warp,
     })

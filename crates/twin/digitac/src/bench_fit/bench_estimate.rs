@@ -20,6 +20,12 @@ pub struct BenchEstimate {
     /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where it
     /// cannot be told from the gains, and where the tip was fitted.
     pub stiffness: Option<Estimate>,
+    /// Where ports are and how wide, against the description; `[n_taxels]`, or empty if they were taken as described.
+    #[serde(default)]
+    pub ports: Vec<PortEstimate>,
+    /// Whether the gel remembers the presses before.
+    #[serde(default)]
+    pub has_history: bool,
     /// The gains that went with these values.
     pub gains: Option<Gains>,
     /// Mean absolute deviation of the fit over the largest reading, %.
@@ -37,6 +43,8 @@ impl BenchEstimate {
             contact_offset_mm: BTreeMap::new(),
             contact_offset_elsewhere_mm: 0.0,
             stiffness: None,
+            ports: Vec::new(),
+            has_history: false,
             gains: None,
             deviation_percent: 0.0,
             doubts: Vec::new(),
@@ -58,6 +66,23 @@ impl BenchEstimate {
     }
 }
 
+/// How a port differs from its description.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PortEstimate {
+    /// How far it is shifted along x and y, mm.
+    pub shift_mm: [f64; 2],
+    /// By how much its radius is larger, mm. The same for all ports of a sensor.
+    pub wider_mm: f64,
+}
+
+impl PortEstimate {
+    /// By how much this changes the port's pressure, from how the pressure changes with its place along x, along y and with its radius.
+    pub(crate) fn change_kpa(&self, slope_kpa_per_mm: [f64; 3]) -> f64 {
+        let [x, y, wider] = slope_kpa_per_mm;
+        x * self.shift_mm[0] + y * self.shift_mm[1] + wider * self.wider_mm
+    }
+}
+
 /// How a bench is fitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -70,11 +95,19 @@ pub struct BenchSettings {
     /// Largest correction of the contact height, mm; not above the margin of
     /// [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
     pub contact_offset_limit_mm: f64,
+    /// How far a port may be from where it is described, mm. Zero fits no places.
+    pub port_shift_limit_mm: f64,
+    /// By how much the radius of all ports may differ from its description, mm. Zero fits none.
+    pub port_radius_limit_mm: f64,
     /// Smallest and largest stiffness over the simulated one. Fitted to presses of prescribed force, if the tip is known: a blunter tip on a
     /// stiffer gel makes the same contact.
     pub stiffness_limits: [f64; 2],
-    /// Time constants of the barometers' memory, s.
+    /// Time constants of the barometers' memory that the fit starts from, s.
     pub time_constants_s: Vec<f64>,
+    /// Whether barometers may read otherwise than in proportion to the pressure.
+    pub port_law: bool,
+    /// Whether the gel remembers the presses before.
+    pub history: bool,
     /// Taxels that the fit leaves out, by index.
     pub left_out: BTreeSet<usize>,
     /// How many blocks of places are left out in turn for the uncertainties.
@@ -86,9 +119,13 @@ impl Default for BenchSettings {
         Self {
             tip_radii_mm: vec![2.0, 3.0, 4.5, 6.5],
             n_places: 10,
-            contact_offset_limit_mm: 0.3,
+            contact_offset_limit_mm: 0.4,
+            port_shift_limit_mm: 0.5,
+            port_radius_limit_mm: 0.5,
             stiffness_limits: [0.5, 2.0],
             time_constants_s: TIME_CONSTANTS_S.to_vec(),
+            port_law: true,
+            history: true,
             left_out: BTreeSet::new(),
             n_blocks: 6,
         }

@@ -7,10 +7,11 @@ mod problem;
 mod search;
 mod simulated;
 
-pub use bench_estimate::{BenchEstimate, BenchSettings};
+pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;
 pub(crate) use places::deepest_pose;
 pub use places::{PlaceSettings, Places};
-pub use search::fit_bench;
+pub(crate) use search::in_order;
+pub use search::{fit_bench, refine_bench};
 pub use simulated::features;
 pub(crate) use simulated::{curves, features_along};

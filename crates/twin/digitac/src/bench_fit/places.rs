@@ -19,7 +19,8 @@ const FORCE_MARGIN: f64 = 1.1;
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlaceSettings {
-    /// How much deeper to simulate than was pressed, mm: room for the contact height to be corrected.
+    /// How much deeper to simulate than was pressed, mm: room for the contact height to be corrected. Presses near the bottom of a gel
+    /// cost the most.
     pub margin_mm: f64,
     /// Depth at which to give up where the force was prescribed instead of the pose, mm.
     pub force_control_depth_mm: f64,
@@ -28,7 +29,7 @@ pub struct PlaceSettings {
 impl Default for PlaceSettings {
     fn default() -> Self {
         Self {
-            margin_mm: 0.4,
+            margin_mm: 0.15,
             force_control_depth_mm: 3.0,
         }
     }

@@ -1,262 +1,516 @@
-//! The presses, tables and unknowns that a bench is fitted with, and how well a guess explains them.
+//! The presses, tables and unknowns that a bench is fitted with, as port pressures that answer to them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
-use twintac_depth_table::{DepthCurves, DepthTableSource};
-use twintac_recording::{Control, Press, Recording};
+use twintac_depth_table::DepthCurves;
+use twintac_recording::{Control, Press};
 
-use super::{BenchEstimate, BenchSettings, Estimate, Places, curves, features_along};
-use crate::features::{Gains, Sample};
-use crate::numerics::minimize;
-use crate::{DigitacError, Features};
+use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate};
+use crate::DigitacError;
+use crate::numerics::Unknown;
+use crate::physical_fit::{Elastic, Pressures, Slope};
 
-/// Frames of a press that the fit looks at.
-const MAX_FRAMES: usize = 96;
-/// Knots of curves between two radii.
-const KNOTS: usize = 40;
-/// A press that by itself would put the contact farther than this from its file's is worth a warning, mm.
-const SUSPICIOUS_MM: f64 = 0.08;
-/// Tolerance of a press's own contact height, mm.
-const TOLERANCE_MM: f64 = 2e-3;
+/// Depths at which tables are resampled.
+const N_DEPTHS: usize = 96;
+/// They stand closer near the surface, by this power.
+const DEPTH_POWER: f64 = 1.5;
+/// Step of ln radius and ln stiffness for slopes.
+const STEP: f64 = 1e-3;
+/// Pull of a port to its place, for each square millimetre.
+const SHIFT_PULL: f64 = 1e-3;
+/// Pull of the ports' radius to its description, for each square millimetre.
+const RADIUS_PULL: f64 = 1e-3;
+/// Presses must be spread over at least this along an axis for the ports' places along it to be fitted, mm.
+const SPREAD_MM: f64 = 2.0;
+
+/// A press, in the order of the series.
+pub(crate) struct Along<'a> {
+    pub(crate) press: &'a Press,
+    /// Its place among the resampled ones.
+    pub(crate) place: usize,
+    pub(crate) touch_z_mm: f64,
+}
+
+/// A table over depth at evenly graded depths.
+struct Resampled {
+    depth_mm: f64,
+    /// Force, then of each taxel pressure and its three slopes; `[N_DEPTHS][1 + 4 * n_taxels]`, for each radius.
+    rows: Vec<Vec<Vec<f64>>>,
+}
 
 /// Values of all unknowns.
 #[derive(Clone, Debug)]
-pub(crate) struct Guess {
-    pub(crate) ln_radius: f64,
-    pub(crate) offsets_mm: BTreeMap<String, f64>,
-    pub(crate) ln_stiffness: f64,
+struct Guess<'a> {
+    offsets_mm: &'a [f64],
+    ln_radius: f64,
+    ln_stiffness: f64,
+    ports: Vec<PortEstimate>,
 }
 
-pub(crate) struct Thinned {
-    pub(crate) press: Press,
-    place: usize,
-    touch_z_mm: f64,
+pub(crate) struct BenchProblem<'a> {
+    presses: Vec<Along<'a>>,
+    /// Frames of each press.
+    frames: Vec<Range<usize>>,
+    /// Mountings of prescribed pose, with their frames.
+    mountings: Vec<(String, Range<usize>)>,
+    places: Vec<Resampled>,
+    ln_radii: Vec<f64>,
+    ln_stiffness: [f64; 2],
+    /// Axes along which ports may be shifted.
+    axes: Vec<usize>,
+    n_taxels: usize,
+    settings: &'a BenchSettings,
 }
 
-pub(crate) struct Problem<'a> {
-    pub(crate) presses: Vec<Thinned>,
-    /// `[n_radii][n_places]`; a single row if the indenter is as described.
-    curves: Vec<Vec<DepthCurves>>,
-    pub(crate) ln_radii: Vec<f64>,
-    pub(crate) ln_stiffness_limits: [f64; 2],
-    pub(crate) settings: &'a BenchSettings,
-}
-
-impl<'a> Problem<'a> {
+impl<'a> BenchProblem<'a> {
+    /// `curves` are those of each radius at each place; `[n_radii][n_places]`. One radius, or none, is not fitted.
     pub(crate) fn new(
-        recording: &Recording,
-        places: &Places,
-        chosen: &[usize],
-        source: &dyn DepthTableSource,
+        presses: Vec<Along<'a>>,
+        curves: &[Vec<DepthCurves>],
+        radii_mm: &[f64],
+        n_taxels: usize,
         settings: &'a BenchSettings,
-    ) -> Result<Self, DigitacError> {
-        let used: Vec<usize> = chosen
-            .iter()
-            .map(|&p| places.of_press[p])
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .collect();
-        let forced = chosen
-            .iter()
-            .any(|&press| recording.presses[press].control == Control::Force);
-        let ln_stiffness_limits = if forced && settings.tip_radii_mm.len() < 2 {
-            settings.stiffness_limits.map(f64::ln)
-        } else {
-            [0.0, 0.0]
-        };
-        let here = Places {
-            requests: used.iter().map(|&i| places.requests[i].clone()).collect(),
-            of_press: Vec::new(),
-        }
-        .with_stiffness(ln_stiffness_limits[0].exp());
-        let radii: Vec<Option<f64>> = match &settings.tip_radii_mm[..] {
-            [] => vec![None],
-            radii => radii.iter().copied().map(Some).collect(),
-        };
-        // All radii in one request: the source may work on them side by side.
-        let requests: Vec<_> = radii
-            .iter()
-            .flat_map(|&radius| here.clone().with_tip_radius(radius).requests)
-            .collect();
-        let tables = source.depth_tables(&requests).map_err(DigitacError::Simulation)?;
-        if tables.len() != requests.len() {
-            return Err(DigitacError::DepthTableCount {
-                expected: requests.len(),
-                found: tables.len(),
-            });
-        }
-        let curves = tables
-            .chunks(used.len())
-            .map(|tables| curves(&here, tables, recording.taxels.len()))
-            .collect::<Result<_, _>>()?;
-        let presses = chosen.iter().map(|&index| {
-            let place = places.of_press[index];
-            Thinned {
-                press: thin(&recording.presses[index]),
-                place: used.partition_point(|&other| other < place),
-                touch_z_mm: places.requests[place].gel_from_indenter_at_touch.position_mm.z,
+    ) -> Self {
+        let mut frames: Vec<Range<usize>> = Vec::with_capacity(presses.len());
+        let mut mountings: Vec<(String, Range<usize>)> = Vec::new();
+        for along in &presses {
+            let start = frames.last().map_or(0, |before| before.end);
+            let end = start + along.press.time_s.len();
+            frames.push(start..end);
+            if along.press.control == Control::Force {
+                continue;
             }
-        });
-        let ln_radii = settings.tip_radii_mm.iter().map(|radius| radius.ln()).collect();
-        Ok(Self {
-            presses: presses.collect(),
-            curves,
-            ln_radii,
-            ln_stiffness_limits,
+            match mountings.last_mut() {
+                Some((name, range)) if *name == along.press.mounting => range.end = end,
+                _ => mountings.push((along.press.mounting.clone(), start..end)),
+            }
+        }
+        let is_forced = presses.iter().any(|along| along.press.control == Control::Force);
+        let position = |axis: usize| {
+            let all = presses
+                .iter()
+                .flat_map(|along| along.press.gel_from_indenter.first());
+            all.map(move |pose| pose.position_mm[axis])
+        };
+        let spread_mm = |axis: usize| {
+            let low = position(axis).fold(f64::INFINITY, f64::min);
+            position(axis).fold(f64::NEG_INFINITY, f64::max) - low
+        };
+        let has_places = settings.port_shift_limit_mm > 0.0;
+        let n_places = curves.first().map_or(0, Vec::len);
+        Self {
+            axes: (0..2)
+                .filter(|axis| has_places && spread_mm(*axis) > SPREAD_MM)
+                .collect(),
+            ln_stiffness: if is_forced && settings.tip_radii_mm.len() < 2 {
+                settings.stiffness_limits.map(f64::ln)
+            } else {
+                [0.0; 2]
+            },
+            places: (0..n_places)
+                .map(|place| resampled(curves, place, n_taxels))
+                .collect(),
+            ln_radii: radii_mm.iter().map(|radius| radius.ln()).collect(),
+            presses,
+            frames,
+            mountings,
+            n_taxels,
             settings,
+        }
+    }
+
+    fn fits_radius(&self) -> bool {
+        self.ln_radii.len() > 1
+    }
+
+    fn fits_stiffness(&self) -> bool {
+        self.ln_stiffness[0] < self.ln_stiffness[1]
+    }
+
+    fn fits_port_radius(&self) -> bool {
+        self.settings.port_radius_limit_mm > 0.0 && !self.axes.is_empty()
+    }
+
+    fn guess<'v>(&self, values: &'v [f64]) -> Guess<'v> {
+        let (offsets_mm, rest) = values.split_at(self.mountings.len());
+        let mut rest = rest.iter().copied();
+        let mut next = |is_fitted: bool| if is_fitted { rest.next() } else { None };
+        let ln_radius =
+            next(self.fits_radius()).unwrap_or_else(|| self.ln_radii.first().copied().unwrap_or(0.0));
+        let ln_stiffness = next(self.fits_stiffness()).unwrap_or(0.0);
+        let wider_mm = next(self.fits_port_radius()).unwrap_or(0.0);
+        let mut ports = vec![
+            PortEstimate {
+                wider_mm,
+                ..PortEstimate::default()
+            };
+            self.n_taxels
+        ];
+        for port in &mut ports {
+            for &axis in &self.axes {
+                port.shift_mm[axis] = next(true).unwrap_or(0.0);
+            }
+        }
+        Guess {
+            offsets_mm,
+            ln_radius,
+            ln_stiffness,
+            ports,
+        }
+    }
+
+    /// The estimate that values stand for, with those of fits that each leave out some presses.
+    pub(crate) fn estimate(&self, values: &[f64], without: &[Vec<f64>]) -> BenchEstimate {
+        let guess = self.guess(values);
+        let others: Vec<Guess<'_>> = without.iter().map(|values| self.guess(values)).collect();
+        let estimate = |value: &dyn Fn(&Guess<'_>) -> f64| {
+            Estimate::jackknife(value(&guess), &others.iter().map(value).collect::<Vec<_>>())
+        };
+        let offsets = self.mountings.iter().enumerate();
+        let contact_offset_mm: BTreeMap<String, Estimate> = offsets
+            .map(|(index, (name, _))| (name.clone(), estimate(&|guess| guess.offsets_mm[index])))
+            .collect();
+        BenchEstimate {
+            tip_radius_mm: (!self.ln_radii.is_empty()).then(|| estimate(&|guess| guess.ln_radius.exp())),
+            contact_offset_elsewhere_mm: median(
+                contact_offset_mm.values().map(|offset| offset.value).collect(),
+            ),
+            contact_offset_mm,
+            stiffness: self
+                .fits_stiffness()
+                .then(|| estimate(&|guess| guess.ln_stiffness.exp())),
+            ports: if self.axes.is_empty() {
+                Vec::new()
+            } else {
+                guess.ports.clone()
+            },
+            doubts: self.doubts(values),
+            ..BenchEstimate::nominal()
+        }
+    }
+
+    fn doubts(&self, values: &[f64]) -> Vec<String> {
+        let mut doubts = Vec::new();
+        for (what, (value, unknown)) in self.names().into_iter().zip(values.iter().zip(self.unknowns())) {
+            let [low, high] = unknown.bounds;
+            let near = 0.01 * (high - low);
+            if low < high && (value - low < near || high - value < near) {
+                doubts.push(format!("{what} ended at a limit of its range"));
+            }
+        }
+        doubts
+    }
+
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self
+            .mountings
+            .iter()
+            .map(|(name, _)| format!("the contact height of {name}"))
+            .collect();
+        let scalars = [
+            (self.fits_radius(), "the tip's radius"),
+            (self.fits_stiffness(), "the stiffness"),
+            (self.fits_port_radius(), "the radius of the ports"),
+        ];
+        names.extend(
+            scalars
+                .iter()
+                .filter(|(is_fitted, _)| *is_fitted)
+                .map(|(_, name)| (*name).to_owned()),
+        );
+        for taxel in 0..self.n_taxels {
+            names.extend(
+                self.axes
+                    .iter()
+                    .map(|axis| format!("the place of port {taxel} along {}", ["x", "y"][*axis])),
+            );
+        }
+        names
+    }
+
+    /// Weights of the radii's tables for a radius between them: the polynomial in ln radius through all.
+    fn radius_weights(&self, ln_radius: f64) -> Vec<f64> {
+        if self.ln_radii.len() < 2 {
+            return vec![1.0];
+        }
+        let weight = |i: usize| {
+            let others = self.ln_radii.iter().enumerate().filter(move |(j, _)| *j != i);
+            others
+                .map(|(_, other)| (ln_radius - other) / (self.ln_radii[i] - other))
+                .product()
+        };
+        (0..self.ln_radii.len()).map(weight).collect()
+    }
+
+    /// Pressures and their slopes by depth and by the ports, of each frame.
+    fn read(&self, guess: &Guess<'_>) -> Read {
+        let n_frames = self.frames.last().map_or(0, |frames| frames.end);
+        let mut read = Read::zeros(self.n_taxels, n_frames);
+        let weights = self.radius_weights(guess.ln_radius);
+        let tables: Vec<Vec<Vec<f64>>> = self.places.iter().map(|place| place.blended(&weights)).collect();
+        let stiffness = guess.ln_stiffness.exp();
+        let offset_mm = |mounting: &str| {
+            let index = self.mountings.iter().position(|(name, _)| name == mounting);
+            index.map_or(0.0, |index| guess.offsets_mm[index])
+        };
+        for (along, frames) in self.presses.iter().zip(&self.frames) {
+            let (place, table) = (&self.places[along.place], &tables[along.place]);
+            let press = along.press;
+            let is_forced = press.control == Control::Force;
+            let factor = if is_forced { stiffness } else { 1.0 };
+            let offset_mm = offset_mm(&press.mounting);
+            for (frame, to) in frames.clone().enumerate() {
+                let found = if is_forced {
+                    let force_n = press.force_n.as_ref().and_then(|force_n| force_n.get(frame));
+                    at_force(table, force_n.copied().unwrap_or(0.0) / stiffness)
+                } else {
+                    place
+                        .at_depth(along.touch_z_mm - press.gel_from_indenter[frame].position_mm.z + offset_mm)
+                };
+                let Some((i, share)) = found else { continue };
+                let step_mm = place.depth_at(i + 1) - place.depth_at(i);
+                for (k, port) in guess.ports.iter().enumerate() {
+                    let column = |c: usize| {
+                        let (low, high) = (table[i][1 + 4 * k + c], table[i + 1][1 + 4 * k + c]);
+                        [
+                            factor * (low + share * (high - low)),
+                            factor * (high - low) / step_mm,
+                        ]
+                    };
+                    let [value, x, y, wider] = [0, 1, 2, 3].map(column);
+                    let slope = [x[0], y[0], wider[0]];
+                    read.kpa[k][to] = value[0] + port.change_kpa(slope);
+                    read.by_depth[k][to] = value[1] + port.change_kpa([x[1], y[1], wider[1]]);
+                    for (to_way, slope) in read.by_port[k].iter_mut().zip(slope) {
+                        to_way[to] = slope;
+                    }
+                }
+            }
+        }
+        read
+    }
+}
+
+/// Port pressures of all frames with slopes.
+struct Read {
+    /// `[n_taxels][n_frames]`
+    kpa: Vec<Vec<f64>>,
+    by_depth: Vec<Vec<f64>>,
+    /// By place along x, along y, and radius; `[n_taxels][3][n_frames]`
+    by_port: Vec<[Vec<f64>; 3]>,
+}
+
+impl Read {
+    fn zeros(n_taxels: usize, n_frames: usize) -> Self {
+        let row = || vec![0.0; n_frames];
+        Self {
+            kpa: (0..n_taxels).map(|_| row()).collect(),
+            by_depth: (0..n_taxels).map(|_| row()).collect(),
+            by_port: (0..n_taxels).map(|_| [row(), row(), row()]).collect(),
+        }
+    }
+}
+
+impl Elastic for BenchProblem<'_> {
+    fn unknowns(&self) -> Vec<Unknown> {
+        let unknown = |start: f64, bounds: [f64; 2], pull: f64| Unknown {
+            start,
+            bounds,
+            center: 0.0,
+            pull,
+        };
+        let within = |limit: f64, pull: f64| unknown(0.0, [-limit, limit], pull);
+        let mut unknowns = vec![within(self.settings.contact_offset_limit_mm, 0.0); self.mountings.len()];
+        if let (true, Some(low), Some(high)) =
+            (self.fits_radius(), self.ln_radii.first(), self.ln_radii.last())
+        {
+            unknowns.push(unknown(0.5 * (low + high), [*low, *high], 0.0));
+        }
+        if self.fits_stiffness() {
+            unknowns.push(unknown(0.0, self.ln_stiffness, 0.0));
+        }
+        if self.fits_port_radius() {
+            unknowns.push(within(self.settings.port_radius_limit_mm, RADIUS_PULL));
+        }
+        let n_shifts = self.n_taxels * self.axes.len();
+        unknowns.extend((0..n_shifts).map(|_| within(self.settings.port_shift_limit_mm, SHIFT_PULL)));
+        unknowns
+    }
+
+    fn pressures(&self, values: &[f64], with_slopes: bool) -> Result<Pressures, DigitacError> {
+        let guess = self.guess(values);
+        let read = self.read(&guess);
+        let mut slopes = Vec::new();
+        if with_slopes {
+            let all = 0..read.kpa.first().map_or(0, Vec::len);
+            for (unknown, (_, frames)) in self.mountings.iter().enumerate() {
+                slopes.push(Slope {
+                    unknown,
+                    taxel: None,
+                    frames: frames.clone(),
+                    kpa: read
+                        .by_depth
+                        .iter()
+                        .map(|row| row[frames.clone()].to_vec())
+                        .collect(),
+                });
+            }
+            let mut unknown = self.mountings.len();
+            let mut quotient = |low: Guess<'_>, high: Guess<'_>| {
+                let (low, high) = (self.read(&low).kpa, self.read(&high).kpa);
+                let rows = low.iter().zip(&high);
+                let kpa = rows.map(|(low, high)| {
+                    low.iter()
+                        .zip(high)
+                        .map(|(l, h)| (h - l) / (2.0 * STEP))
+                        .collect()
+                });
+                slopes.push(Slope {
+                    unknown,
+                    taxel: None,
+                    frames: all.clone(),
+                    kpa: kpa.collect(),
+                });
+                unknown += 1;
+            };
+            if self.fits_radius() {
+                let moved = |by: f64| Guess {
+                    ln_radius: guess.ln_radius + by,
+                    ..guess.clone()
+                };
+                quotient(moved(-STEP), moved(STEP));
+            }
+            if self.fits_stiffness() {
+                let moved = |by: f64| Guess {
+                    ln_stiffness: guess.ln_stiffness + by,
+                    ..guess.clone()
+                };
+                quotient(moved(-STEP), moved(STEP));
+            }
+            if self.fits_port_radius() {
+                slopes.push(Slope {
+                    unknown,
+                    taxel: None,
+                    frames: all.clone(),
+                    kpa: read.by_port.iter().map(|ways| ways[2].clone()).collect(),
+                });
+                unknown += 1;
+            }
+            for (taxel, ways) in read.by_port.iter().enumerate() {
+                for &axis in &self.axes {
+                    slopes.push(Slope {
+                        unknown,
+                        taxel: Some(taxel),
+                        frames: all.clone(),
+                        kpa: vec![ways[axis].clone()],
+                    });
+                    unknown += 1;
+                }
+            }
+        }
+        Ok(Pressures {
+            kpa: read.kpa,
+            slopes,
         })
     }
+}
 
-    pub(crate) fn n_places(&self) -> usize {
-        self.curves[0].len()
-    }
-
-    pub(crate) fn n_blocks(&self) -> usize {
-        let n = self.settings.n_blocks.min(self.n_places());
-        if n < 2 { 0 } else { n }
-    }
-
-    /// The gains that fit best, and the mean over taxels of the mean absolute deviation, kPa.
-    pub(crate) fn deviation(
-        &self,
-        curves: &[DepthCurves],
-        guess: &Guess,
-        without_block: Option<usize>,
-    ) -> Result<(Gains, f64), DigitacError> {
-        let bench = BenchEstimate {
-            contact_offset_mm: guess
-                .offsets_mm
-                .iter()
-                .map(|(file, mm)| (file.clone(), exactly(*mm)))
-                .collect(),
-            stiffness: Some(exactly(guess.ln_stiffness.exp())),
-            ..BenchEstimate::nominal()
-        };
-        let kept: Vec<&Thinned> = self
-            .presses
-            .iter()
-            .filter(|p| without_block.is_none_or(|block| p.place % self.n_blocks() != block))
-            .collect();
-        let features: Vec<Features> = kept
-            .iter()
-            .map(|p| features_along(&curves[p.place], &p.press, p.touch_z_mm, &bench))
-            .collect::<Result<_, _>>()?;
-        let samples: Vec<Sample<'_>> = kept
-            .iter()
-            .zip(&features)
-            .map(|(p, features)| Sample {
-                features,
-                readings_kpa: &p.press.taxels_kpa,
-                valid: &p.press.valid,
-            })
-            .collect();
-        let memory = if features.iter().any(|f| f.n_frames() > 1) {
-            &self.settings.time_constants_s[..]
-        } else {
-            &[]
-        };
-        let (gains, deviations_kpa) = Gains::fit(&samples, memory);
-        let counted: Vec<f64> = deviations_kpa
-            .iter()
-            .enumerate()
-            .filter(|(taxel, _)| !self.settings.left_out.contains(taxel))
-            .map(|(_, deviation)| *deviation)
-            .collect();
-        let mean = counted.iter().sum::<f64>() / counted.len().max(1) as f64;
-        Ok((gains, mean))
-    }
-
-    /// The curves of a radius between those simulated, by the polynomial in ln radius through all of them.
-    pub(crate) fn curves_at(&self, ln_radius: f64) -> Result<Vec<DepthCurves>, DigitacError> {
-        if self.ln_radii.len() < 2 {
-            return Ok(self.curves[0].clone());
+fn resampled(curves: &[Vec<DepthCurves>], place: usize, n_taxels: usize) -> Resampled {
+    let own: Vec<&DepthCurves> = curves.iter().map(|of_radius| &of_radius[place]).collect();
+    let depth_mm = own
+        .iter()
+        .map(|curves| curves.max_depth_mm())
+        .fold(f64::INFINITY, f64::min);
+    let row = |curves: &DepthCurves, depth_mm: f64| {
+        let mut row = vec![curves.force_n(depth_mm)];
+        for (pressure, slope) in curves
+            .pressure_kpa(depth_mm)
+            .into_iter()
+            .zip(curves.slope_kpa_per_mm(depth_mm))
+        {
+            row.push(pressure);
+            row.extend(slope);
         }
-        let weights: Vec<f64> = (0..self.ln_radii.len())
+        debug_assert_eq!(row.len(), 1 + 4 * n_taxels);
+        row
+    };
+    let mut resampled = Resampled {
+        depth_mm,
+        rows: Vec::new(),
+    };
+    resampled.rows = own
+        .iter()
+        .map(|curves| {
+            (0..N_DEPTHS)
+                .map(|i| row(curves, resampled.depth_at(i)))
+                .collect()
+        })
+        .collect();
+    resampled
+}
+
+impl Resampled {
+    fn depth_at(&self, index: usize) -> f64 {
+        self.depth_mm * (index as f64 / (N_DEPTHS - 1) as f64).powf(DEPTH_POWER)
+    }
+
+    /// Between which rows a depth lies, and how far; `None` above the gel. What is deeper than the table lies ahead of its last two rows.
+    fn at_depth(&self, depth_mm: f64) -> Option<(usize, f64)> {
+        if depth_mm <= 0.0 {
+            return None;
+        }
+        let position = (depth_mm / self.depth_mm).powf(DEPTH_POWER.recip()) * (N_DEPTHS - 1) as f64;
+        let index = (position as usize).min(N_DEPTHS - 2);
+        let (low, high) = (self.depth_at(index), self.depth_at(index + 1));
+        Some((index, (depth_mm - low) / (high - low)))
+    }
+
+    fn blended(&self, weights: &[f64]) -> Vec<Vec<f64>> {
+        if let [rows] = &self.rows[..] {
+            return rows.clone();
+        }
+        (0..N_DEPTHS)
             .map(|i| {
-                let others = self.ln_radii.iter().enumerate().filter(|(j, _)| *j != i);
-                others
-                    .map(|(_, other)| (ln_radius - other) / (self.ln_radii[i] - other))
-                    .product()
-            })
-            .collect();
-        (0..self.n_places())
-            .map(|place| {
-                let curves: Vec<&DepthCurves> = self.curves.iter().map(|row| &row[place]).collect();
-                DepthCurves::blend(&curves, &weights, KNOTS)
-                    .map_err(|source| DigitacError::DepthTable { index: place, source })
+                let columns = 0..self.rows[0][i].len();
+                columns
+                    .map(|c| {
+                        self.rows
+                            .iter()
+                            .zip(weights)
+                            .map(|(rows, w)| w * rows[i][c])
+                            .sum()
+                    })
+                    .collect()
             })
             .collect()
     }
-
-    /// Presses that touch elsewhere than the rest of their file, found with the gains fixed.
-    pub(crate) fn odd_presses(
-        &self,
-        curves: &[DepthCurves],
-        best: &Guess,
-        gains: &Gains,
-    ) -> Result<Vec<String>, DigitacError> {
-        let reach_mm = self.settings.contact_offset_limit_mm;
-        let mut odd = Vec::new();
-        for p in self
-            .presses
-            .iter()
-            .filter(|p| p.press.control == Control::Pose && reach_mm > 0.0)
-        {
-            let mut failure = None;
-            let mut bench = BenchEstimate::nominal();
-            let at = |extra_mm: f64| {
-                bench.contact_offset_elsewhere_mm = best.offsets_mm[&p.press.mounting] + extra_mm;
-                match features_along(&curves[p.place], &p.press, p.touch_z_mm, &bench) {
-                    Ok(features) => self.own_deviation(&p.press, &gains.readings_kpa(&features)),
-                    Err(error) => {
-                        failure = Some(error);
-                        f64::INFINITY
-                    }
-                }
-            };
-            let (extra_mm, _) = minimize(-reach_mm, reach_mm, TOLERANCE_MM, at);
-            failure.map_or(Ok(()), Err)?;
-            if extra_mm.abs() > SUSPICIOUS_MM {
-                odd.push(format!(
-                    "press {} touches {extra_mm:+.2} mm deeper than the rest of its file",
-                    p.press.name
-                ));
-            }
-        }
-        Ok(odd)
-    }
-
-    fn own_deviation(&self, press: &Press, predicted: &[Vec<f64>]) -> f64 {
-        let rows = press.taxels_kpa.iter().zip(predicted).zip(&press.valid);
-        rows.flat_map(|((measured, predicted), valid)| {
-            let taxels =
-                (0..measured.len()).filter(|taxel| valid[*taxel] && !self.settings.left_out.contains(taxel));
-            taxels.map(|taxel| (measured[taxel] - predicted[taxel]).abs())
-        })
-        .sum()
-    }
 }
 
-pub(crate) fn exactly(value: f64) -> Estimate {
-    Estimate {
-        value,
-        uncertainty: 0.0,
+/// Between which rows a force lies, and how far; `None` without a force. What is more than the table has is at its end.
+fn at_force(table: &[Vec<f64>], force_n: f64) -> Option<(usize, f64)> {
+    if force_n <= 0.0 {
+        return None;
     }
+    let index = table
+        .partition_point(|row| row[0] < force_n)
+        .clamp(1, table.len() - 1)
+        - 1;
+    let (low, high) = (table[index][0], table[index + 1][0]);
+    let share = if high > low {
+        (force_n - low) / (high - low)
+    } else {
+        1.0
+    };
+    Some((index, share.clamp(0.0, 1.0)))
 }
 
-/// A press with at most [`MAX_FRAMES`] frames.
-fn thin(press: &Press) -> Press {
-    let stride = press.time_s.len().div_ceil(MAX_FRAMES).max(1);
-    fn every<T: Clone>(values: &[T], stride: usize) -> Vec<T> {
-        values.iter().step_by(stride).cloned().collect()
-    }
-    Press {
-        time_s: every(&press.time_s, stride),
-        gel_from_indenter: every(&press.gel_from_indenter, stride),
-        force_n: press.force_n.as_ref().map(|force_n| every(force_n, stride)),
-        taxels_kpa: every(&press.taxels_kpa, stride),
-        taxels_raw: Vec::new(),
-        valid: every(&press.valid, stride),
-        ..press.clone()
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    if n == 0 {
+        0.0
+    } else {
+        0.5 * (values[(n - 1) / 2] + values[n / 2])
     }
 }

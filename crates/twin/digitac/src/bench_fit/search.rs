@@ -1,26 +1,29 @@
-//! Fits a [`BenchEstimate`] by variable projection: for every trial value of radius, contact
-//! heights and stiffness, the gains that fit best are found by a linear fit.
+//! Fits a [`BenchEstimate`] together with the barometers, in two steps.
+//!
+//! The tip's radius and the gel's stiffness change what has to be simulated. They are found first, from few places that are
+//! simulated for several radii. With the tables of all places that follow, the rest is found: contact heights, and where ports are.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use twintac_depth_table::DepthTableSource;
-use twintac_recording::{Control, Recording};
+use twintac_depth_table::{DepthCurves, DepthTable, DepthTableSource};
+use twintac_recording::{Control, Press, Recording};
 
-use super::problem::{Guess, Problem, exactly};
+use super::problem::{Along, BenchProblem};
+use super::simulated::{bare_features, curves, features_along, follow_each_other};
 use super::{BenchEstimate, BenchSettings, Estimate, Places};
-use crate::DigitacError;
+use crate::features::Sample;
 use crate::numerics::minimize;
+use crate::physical_fit::{BarometerModel, Elastic, Fitted, Series, Solution, fit};
+use crate::{DigitacError, Features, Gains};
 
-/// Tolerance of ln radius and ln stiffness, and of contact heights in mm.
-const TOLERANCE: f64 = 2e-3;
-/// Places of each file that the fit looks at, at least.
+/// Places of each file that the first step looks at, at least.
 const MIN_PLACES_OF_FILE: usize = 3;
-/// Rounds over the contact heights.
-const MAX_ROUNDS: usize = 8;
-/// Reach around the best values in fits that leave a block out, in the same units.
-const JACKKNIFE_REACH: f64 = 0.2;
+/// A press that by itself would put the contact farther than this from its file's is worth a warning, mm.
+const SUSPICIOUS_MM: f64 = 0.08;
+/// Tolerance of a press's own contact height, mm.
+const TOLERANCE_MM: f64 = 2e-3;
 
-/// Fits the bench to some presses of a recording.
+/// Fits what the tables of a recording depend on, to some of its presses: the tip's radius and the gel's stiffness.
 pub fn fit_bench(
     recording: &Recording,
     places: &Places,
@@ -29,6 +32,8 @@ pub fn fit_bench(
     settings: &BenchSettings,
 ) -> Result<BenchEstimate, DigitacError> {
     check(settings)?;
+    let radii_mm = &settings.tip_radii_mm;
+    let is_forced = |index: &usize| recording.presses[*index].control == Control::Force;
     let chosen = choose(recording, places, train, settings.n_places);
     if chosen.is_empty() {
         return Err(DigitacError::TooFew {
@@ -36,12 +41,91 @@ pub fn fit_bench(
             found: "none".into(),
         });
     }
-    let problem = Problem::new(recording, places, &chosen, source, settings)?;
-    let everywhere = problem.solve(&problem.start(), None)?;
-    let without: Vec<Guess> = (0..problem.n_blocks())
-        .map(|block| problem.solve(&problem.start_near(&everywhere), Some(block)))
+    if radii_mm.len() < 2 && !chosen.iter().any(is_forced) {
+        return Ok(BenchEstimate {
+            tip_radius_mm: radii_mm.first().map(|radius| Estimate {
+                value: *radius,
+                uncertainty: 0.0,
+            }),
+            ..BenchEstimate::nominal()
+        });
+    }
+    let used: Vec<usize> = chosen
+        .iter()
+        .map(|&press| places.of_press[press])
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
+    let here = Places {
+        requests: used.iter().map(|&place| places.requests[place].clone()).collect(),
+        of_press: Vec::new(),
+    };
+    let here = if radii_mm.len() < 2 {
+        here.with_stiffness(settings.stiffness_limits[0])
+    } else {
+        here
+    };
+    let radii: Vec<Option<f64>> = match &radii_mm[..] {
+        [] => vec![None],
+        radii => radii.iter().copied().map(Some).collect(),
+    };
+    // All radii in one request: the source may work on them side by side.
+    let of_radius = |radius: &Option<f64>| here.clone().with_tip_radius(*radius).requests;
+    let requests: Vec<_> = radii.iter().flat_map(of_radius).collect();
+    let tables = source.depth_tables(&requests).map_err(DigitacError::Simulation)?;
+    if tables.len() != requests.len() {
+        return Err(DigitacError::DepthTableCount {
+            expected: requests.len(),
+            found: tables.len(),
+        });
+    }
+    let curves: Vec<Vec<DepthCurves>> = tables
+        .chunks(used.len())
+        .map(|tables| curves(&here, tables, recording.taxels.len()))
         .collect::<Result<_, _>>()?;
-    problem.bench(&everywhere, &without)
+    let place_of = |press: usize| used.partition_point(|&other| other < places.of_press[press]);
+    let bench = Fit {
+        recording,
+        places,
+        settings,
+        used: chosen.iter().copied().collect(),
+        presses: ordered(recording)
+            .filter(|press| chosen.contains(press))
+            .collect(),
+        has_history: false,
+    };
+    bench.solve(&curves, radii_mm, &place_of)
+}
+
+/// Fits the rest to all presses that teach, with the tables of all places: contact heights, the places of ports, and the barometers. All
+/// presses are passed through, so that the gel remembers those that do not teach.
+pub fn refine_bench(
+    recording: &Recording,
+    places: &Places,
+    tables: &[DepthTable],
+    train: &[usize],
+    found: &BenchEstimate,
+    settings: &BenchSettings,
+) -> Result<BenchEstimate, DigitacError> {
+    let curves = vec![curves(places, tables, recording.taxels.len())?];
+    let fit = Fit {
+        recording,
+        places,
+        settings,
+        used: train.iter().copied().collect(),
+        presses: ordered(recording).collect(),
+        has_history: settings.history,
+    };
+    let refined = fit.solve(&curves, &[], &|press| places.of_press[press])?;
+    let mut bench = BenchEstimate {
+        tip_radius_mm: found.tip_radius_mm,
+        doubts: [&found.doubts[..], &refined.doubts].concat(),
+        ..refined
+    };
+    bench.doubts.dedup();
+    let odd = fit.odd_presses(&curves[0], &bench)?;
+    bench.doubts.extend(odd);
+    Ok(bench)
 }
 
 fn check(settings: &BenchSettings) -> Result<(), DigitacError> {
@@ -123,211 +207,165 @@ fn choose(recording: &Recording, places: &Places, train: &[usize], n_places: usi
         .collect()
 }
 
-/// Where to look for them.
-#[derive(Clone, Debug)]
-struct Bounds {
-    center: Guess,
-    ln_radius: [f64; 2],
-    offset_mm: f64,
-    ln_stiffness: [f64; 2],
+/// Numbers of presses with those of one mounting together, otherwise in their order.
+pub(crate) fn in_order<'a>(mountings: impl Iterator<Item = &'a str>) -> Vec<usize> {
+    let mut first: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut keyed: Vec<(usize, usize)> = mountings
+        .enumerate()
+        .map(|(press, mounting)| (*first.entry(mounting).or_insert(press), press))
+        .collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, press)| press).collect()
 }
 
-impl Problem<'_> {
-    fn start(&self) -> Bounds {
-        let files = self
-            .presses
-            .iter()
-            .filter(|p| p.press.control == Control::Pose)
-            .map(|p| p.press.mounting.clone());
-        let ln_radius = match (self.ln_radii.first(), self.ln_radii.last()) {
-            (Some(low), Some(high)) => [*low, *high],
-            _ => [0.0, 0.0],
-        };
-        Bounds {
-            center: Guess {
-                ln_radius: 0.5 * (ln_radius[0] + ln_radius[1]),
-                offsets_mm: files.map(|file| (file, 0.0)).collect(),
-                ln_stiffness: 0.0,
-            },
-            ln_radius,
-            offset_mm: self.settings.contact_offset_limit_mm,
-            ln_stiffness: self.ln_stiffness_limits,
-        }
+fn ordered(recording: &Recording) -> impl Iterator<Item = usize> {
+    in_order(recording.presses.iter().map(|press| &press.mounting[..])).into_iter()
+}
+
+/// Presses to be fitted to.
+struct Fit<'a> {
+    recording: &'a Recording,
+    places: &'a Places,
+    settings: &'a BenchSettings,
+    /// Presses in the order in which the gel felt them.
+    presses: Vec<usize>,
+    /// Those whose readings teach.
+    used: BTreeSet<usize>,
+    has_history: bool,
+}
+
+impl Fit<'_> {
+    fn press(&self, index: usize) -> &Press {
+        &self.recording.presses[index]
     }
 
-    fn start_near(&self, guess: &Guess) -> Bounds {
-        let start = self.start();
-        let near =
-            |[low, high]: [f64; 2], at: f64| [low.max(at - JACKKNIFE_REACH), high.min(at + JACKKNIFE_REACH)];
-        Bounds {
-            ln_radius: near(start.ln_radius, guess.ln_radius),
-            offset_mm: start.offset_mm,
-            ln_stiffness: near(start.ln_stiffness, guess.ln_stiffness),
-            center: guess.clone(),
-        }
+    fn touch_z_mm(&self, index: usize) -> f64 {
+        let request = &self.places.requests[self.places.of_press[index]];
+        request.gel_from_indenter_at_touch.position_mm.z
     }
 
-    /// The best values within bounds, from all places but those of one block.
-    fn solve(&self, bounds: &Bounds, without_block: Option<usize>) -> Result<Guess, DigitacError> {
-        let mut best = bounds.center.clone();
-        let mut failure = None;
-        let mut at_radius = |ln_radius: f64| -> (Guess, f64) {
-            let start = Guess {
-                ln_radius,
-                ..best.clone()
-            };
-            match self.solve_at_radius(start, bounds, without_block) {
-                Ok((guess, value)) => {
-                    best = guess.clone();
-                    (guess, value)
-                }
-                Err(error) => {
-                    failure = Some(error);
-                    (bounds.center.clone(), f64::INFINITY)
-                }
-            }
-        };
-        let [low, high] = bounds.ln_radius;
-        let ln_radius = if low < high {
-            minimize(low, high, TOLERANCE, |at| at_radius(at).1).0
-        } else {
-            low
-        };
-        let (guess, _) = at_radius(ln_radius);
-        failure.map_or(Ok(guess), Err)
-    }
-
-    fn solve_at_radius(
+    fn solve(
         &self,
-        mut guess: Guess,
-        bounds: &Bounds,
-        without_block: Option<usize>,
-    ) -> Result<(Guess, f64), DigitacError> {
-        let curves = self.curves_at(guess.ln_radius)?;
-        let deviation = |guess: &Guess| {
-            self.deviation(&curves, guess, without_block)
-                .map_or(f64::INFINITY, |(_, d)| d)
+        curves: &[Vec<DepthCurves>],
+        radii_mm: &[f64],
+        place_of: &dyn Fn(usize) -> usize,
+    ) -> Result<BenchEstimate, DigitacError> {
+        let n_taxels = self.recording.taxels.len();
+        let along = |&index: &usize| Along {
+            press: self.press(index),
+            place: place_of(index),
+            touch_z_mm: self.touch_z_mm(index),
         };
-        let [low, high] = bounds.ln_stiffness;
-        if low < high {
-            let at = |ln_stiffness| {
-                deviation(&Guess {
-                    ln_stiffness,
-                    ..guess.clone()
-                })
-            };
-            guess.ln_stiffness = minimize(low, high, TOLERANCE, at).0;
-        }
-        if bounds.offset_mm > 0.0 && !guess.offsets_mm.is_empty() {
-            improve_offsets(&mut guess, bounds.offset_mm, deviation);
-        }
-        let (_, value) = self.deviation(&curves, &guess, without_block)?;
-        Ok((guess, value))
-    }
-
-    fn bench(&self, best: &Guess, without: &[Guess]) -> Result<BenchEstimate, DigitacError> {
-        let curves = self.curves_at(best.ln_radius)?;
-        let (gains, deviation_kpa) = self.deviation(&curves, best, None)?;
-        let mut doubts = doubts(best, &self.start());
-        doubts.extend(self.odd_presses(&curves, best, &gains)?);
-        let readings = self
-            .presses
-            .iter()
-            .flat_map(|p| p.press.taxels_kpa.iter().zip(&p.press.valid));
-        let usable = readings.flat_map(|(row, valid)| row.iter().zip(valid).filter(|(_, valid)| **valid));
-        let largest_kpa = usable.map(|(reading, _)| *reading).fold(0.0, f64::max);
-        let estimate = |value: &dyn Fn(&Guess) -> f64| {
-            Estimate::jackknife(value(best), &without.iter().map(value).collect::<Vec<_>>())
-        };
-        let start = self.start();
-        let radius_mm = (self.ln_radii.len() > 1).then(|| estimate(&|guess| guess.ln_radius.exp()));
-        let forced = start.ln_stiffness[0] < start.ln_stiffness[1];
-        let contact_offset_mm: BTreeMap<String, Estimate> = best
-            .offsets_mm
-            .keys()
-            .map(|file| (file.clone(), estimate(&|guess| guess.offsets_mm[file])))
+        let along: Vec<Along<'_>> = self.presses.iter().map(along).collect();
+        let problem = BenchProblem::new(along, curves, radii_mm, n_taxels, self.settings);
+        let all = 0..self.recording.presses.len();
+        let mut features: Vec<Features> = all
+            .map(|index| bare_features(self.press(index), self.touch_z_mm(index)))
             .collect();
-        Ok(BenchEstimate {
-            tip_radius_mm: radius_mm
-                .or_else(|| self.settings.tip_radii_mm.first().map(|radius| exactly(*radius))),
-            contact_offset_elsewhere_mm: median(
-                contact_offset_mm.values().map(|offset| offset.value).collect(),
-            ),
-            contact_offset_mm,
-            stiffness: forced.then(|| estimate(&|guess| guess.ln_stiffness.exp())),
-            gains: Some(gains),
-            deviation_percent: if largest_kpa > 0.0 {
-                100.0 * deviation_kpa / largest_kpa
+        if self.has_history {
+            follow_each_other(&self.recording.presses, &mut features);
+        }
+        let is_static = features.iter().all(|features| features.n_frames() < 2);
+        let model = BarometerModel {
+            time_constants_s: if is_static {
+                Vec::new()
             } else {
-                0.0
+                self.settings.time_constants_s.clone()
             },
-            doubts,
+            has_port_law: self.settings.port_law,
+        };
+        let solve = |is_used: &dyn Fn(usize) -> bool, near: Option<&Solution>| {
+            let fitted: Vec<Fitted<'_>> = self
+                .presses
+                .iter()
+                .map(|&index| Fitted {
+                    mounting: &self.press(index).mounting,
+                    features: &features[index],
+                    readings_kpa: &self.press(index).taxels_kpa,
+                    valid: &self.press(index).valid,
+                    is_used: self.used.contains(&index) && is_used(index),
+                })
+                .collect();
+            let series = Series::new(&fitted, n_taxels, &self.settings.left_out);
+            fit(&problem, &series, &model, &self.settings.left_out, near)
+        };
+        let everywhere = solve(&|_| true, None)?;
+        let n_places = self
+            .used
+            .iter()
+            .map(|&index| place_of(index))
+            .collect::<BTreeSet<_>>()
+            .len();
+        let n_blocks = self.settings.n_blocks.min(n_places);
+        let blocks = if n_blocks < 2 || problem.unknowns().is_empty() {
+            0
+        } else {
+            n_blocks
+        };
+        let without: Vec<Vec<f64>> = (0..blocks)
+            .map(|block| {
+                let found = solve(&|index| place_of(index) % n_blocks != block, Some(&everywhere))?;
+                Ok(found.values)
+            })
+            .collect::<Result<_, DigitacError>>()?;
+        Ok(BenchEstimate {
+            has_history: self.has_history,
+            gains: Some(everywhere.gains),
+            deviation_percent: 100.0 * everywhere.deviation,
+            ..problem.estimate(&everywhere.values, &without)
         })
     }
-}
 
-/// Searches the contact heights: of all files together, then of each on its own, until none moves. One file's
-/// height changes the gains, and through them the best heights of the others.
-fn improve_offsets(guess: &mut Guess, limit_mm: f64, deviation: impl Fn(&Guess) -> f64) {
-    let files: Vec<String> = guess.offsets_mm.keys().cloned().collect();
-    let mut groups = vec![files.clone()];
-    if files.len() > 1 {
-        groups.extend(files.into_iter().map(|file| vec![file]));
-    }
-    let mut reach_mm = limit_mm;
-    for _ in 0..MAX_ROUNDS {
-        let mut moved_mm: f64 = 0.0;
-        for group in &groups {
-            let moved_by = |shift_mm: f64| {
-                let mut moved = guess.clone();
-                for file in group {
-                    moved
-                        .offsets_mm
-                        .entry(file.clone())
-                        .and_modify(|mm| *mm = (*mm + shift_mm).clamp(-limit_mm, limit_mm));
+    /// Presses that touch elsewhere than the rest of their file, found with the barometers fixed.
+    fn odd_presses(
+        &self,
+        curves: &[DepthCurves],
+        bench: &BenchEstimate,
+    ) -> Result<Vec<String>, DigitacError> {
+        let reach_mm = self.settings.contact_offset_limit_mm;
+        let Some(gains) = bench.gains.as_ref().filter(|_| reach_mm > 0.0) else {
+            return Ok(Vec::new());
+        };
+        let mut odd = Vec::new();
+        for &index in self
+            .used
+            .iter()
+            .filter(|&&index| self.press(index).control == Control::Pose)
+        {
+            let press = self.press(index);
+            let own_mm = bench.contact_offset_mm(&press.mounting);
+            let mut failure = None;
+            let mut moved = bench.clone();
+            let at = |extra_mm: f64| {
+                moved.contact_offset_mm.clear();
+                moved.contact_offset_elsewhere_mm = own_mm + extra_mm;
+                let place = &curves[self.places.of_press[index]];
+                match features_along(place, press, self.touch_z_mm(index), &moved) {
+                    Ok(features) => self.own_deviation(press, &features, gains),
+                    Err(error) => {
+                        failure = Some(error);
+                        f64::INFINITY
+                    }
                 }
-                moved
             };
-            let (shift_mm, value) = minimize(-reach_mm, reach_mm, TOLERANCE, |shift_mm| {
-                deviation(&moved_by(shift_mm))
-            });
-            if value < deviation(guess) {
-                *guess = moved_by(shift_mm);
-                moved_mm = moved_mm.max(shift_mm.abs());
+            let (extra_mm, _) = minimize(-reach_mm, reach_mm, TOLERANCE_MM, at);
+            failure.map_or(Ok(()), Err)?;
+            if extra_mm.abs() > SUSPICIOUS_MM {
+                odd.push(format!(
+                    "press {} touches {extra_mm:+.2} mm deeper than the rest of its file",
+                    press.name
+                ));
             }
         }
-        if moved_mm < TOLERANCE {
-            break;
-        }
-        reach_mm = (2.0 * moved_mm).clamp(4.0 * TOLERANCE, limit_mm);
+        Ok(odd)
     }
-}
 
-fn doubts(best: &Guess, bounds: &Bounds) -> Vec<String> {
-    let mut doubts = Vec::new();
-    let mut doubt = |what: &str, value: f64, [low, high]: [f64; 2]| {
-        if low < high && (value - low < 3.0 * TOLERANCE || high - value < 3.0 * TOLERANCE) {
-            doubts.push(format!("{what} ended at a limit of its range"));
-        }
-    };
-    doubt("the tip's radius", best.ln_radius, bounds.ln_radius);
-    doubt("the stiffness", best.ln_stiffness, bounds.ln_stiffness);
-    for (file, offset_mm) in &best.offsets_mm {
-        doubt(
-            &format!("the contact height of {file}"),
-            *offset_mm,
-            [-bounds.offset_mm, bounds.offset_mm],
-        );
-    }
-    doubts
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n == 0 {
-        0.0
-    } else {
-        0.5 * (values[(n - 1) / 2] + values[n / 2])
+    fn own_deviation(&self, press: &Press, features: &Features, gains: &Gains) -> f64 {
+        let sample = Sample {
+            readings_kpa: &press.taxels_kpa,
+            valid: &press.valid,
+        };
+        let predicted = gains.readings_kpa(&[features]).swap_remove(0);
+        sample.deviation_kpa(&predicted, &self.settings.left_out)
     }
 }

@@ -4,6 +4,7 @@ use twintac_depth_table::{DepthCurves, DepthTable};
 use twintac_recording::{Control, Press, Recording};
 
 use super::{BenchEstimate, Places};
+use crate::features::zero_frames;
 use crate::{DigitacError, Features};
 
 /// How far beyond its end a table is still trusted, mm or N.
@@ -18,7 +19,7 @@ pub fn features(
     bench: &BenchEstimate,
 ) -> Result<Vec<Features>, DigitacError> {
     let curves = curves(places, tables, recording.taxels.len())?;
-    recording
+    let mut features: Vec<Features> = recording
         .presses
         .iter()
         .zip(&places.of_press)
@@ -26,7 +27,11 @@ pub fn features(
             let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
             features_along(&curves[place], press, touch_z_mm, bench)
         })
-        .collect()
+        .collect::<Result<_, _>>()?;
+    if bench.has_history && !features.is_empty() {
+        follow_each_other(&recording.presses, &mut features);
+    }
+    Ok(features)
 }
 
 /// Interpolates the table of each place.
@@ -102,23 +107,63 @@ pub(crate) fn features_along(
         row.iter_mut().for_each(|value| *value *= stiffness);
         row
     };
+    let pressure_kpa = |depth_mm: f64| {
+        let mut row = curves.pressure_kpa(depth_mm);
+        if !bench.ports.is_empty() {
+            let slopes = curves.slope_kpa_per_mm(depth_mm);
+            for ((value, slope), port) in row.iter_mut().zip(slopes).zip(&bench.ports) {
+                *value += port.change_kpa(slope);
+            }
+        }
+        scaled(row)
+    };
     Ok(Features {
         time_s: press.time_s.clone(),
         force_n: depth_mm
             .iter()
             .map(|depth| stiffness * curves.force_n(*depth))
             .collect(),
-        pressure_kpa: depth_mm
-            .iter()
-            .map(|depth| scaled(curves.pressure_kpa(*depth)))
-            .collect(),
+        pressure_kpa: depth_mm.iter().map(|depth| pressure_kpa(*depth)).collect(),
         stress_kpa_per_mm: depth_mm
             .iter()
             .map(|depth| scaled(curves.stress_kpa_per_mm(*depth)))
             .collect(),
+        since_previous_s: None,
+        zero_frames: zero_frames(&press.time_s, &depth_mm),
         depth_mm,
         simulated,
     })
+}
+
+/// A press without what is simulated: enough to say when it was in contact.
+pub(crate) fn bare_features(press: &Press, touch_z_mm: f64) -> Features {
+    let depth_mm = match press.control {
+        Control::Pose => depths_mm(press, touch_z_mm, 0.0),
+        Control::Force => press.force_n.clone().unwrap_or_default(),
+    };
+    Features {
+        time_s: press.time_s.clone(),
+        force_n: Vec::new(),
+        pressure_kpa: Vec::new(),
+        stress_kpa_per_mm: Vec::new(),
+        simulated: Vec::new(),
+        since_previous_s: None,
+        zero_frames: zero_frames(&press.time_s, &depth_mm),
+        depth_mm,
+    }
+}
+
+/// Writes into the features of each press how long ago the press before it ended, if that was one of the same mounting on the same clock.
+pub(crate) fn follow_each_other(presses: &[Press], features: &mut [Features]) {
+    for (pair, features) in presses.windows(2).zip(&mut features[1..]) {
+        let [before, press] = pair else { continue };
+        if let (Some(ended_s), Some(started_s)) = (before.time_s.last(), press.time_s.first())
+            && before.mounting == press.mounting
+            && started_s > ended_s
+        {
+            features.since_previous_s = Some(started_s - ended_s);
+        }
+    }
 }
 
 /// Depth of each frame below first touch, mm.

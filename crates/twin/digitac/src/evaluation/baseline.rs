@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::PairedPress;
+use crate::numerics::solve_symmetric;
 
 /// Highest power of the depth.
 const DEPTH_DEGREE: usize = 3;
@@ -25,14 +26,14 @@ pub(crate) fn zero(press: &PairedPress) -> Vec<Vec<f64>> {
 /// A polynomial in depth and position for each indenter and taxel, fitted by ridge regression. It does not use time, does not transfer
 /// between indenters, and does not extrapolate: positions are clamped to the range of the training presses.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StaticPolynomial {
+pub(crate) struct StaticPolynomial {
     by_indenter: BTreeMap<String, Fit>,
 }
 
 impl StaticPolynomial {
     /// Fits training presses.
     #[must_use]
-    pub fn fit(presses: &[&PairedPress]) -> Self {
+    pub(crate) fn fit(presses: &[&PairedPress]) -> Self {
         let mut groups: BTreeMap<String, Vec<&PairedPress>> = BTreeMap::new();
         for press in presses {
             groups.entry(press.indenter.clone()).or_default().push(press);
@@ -47,7 +48,7 @@ impl StaticPolynomial {
 
     /// Readings of a press, kPa; `[n_frames][n_taxels]`. Zeros for an indenter that was not fitted.
     #[must_use]
-    pub fn predict(&self, press: &PairedPress) -> Vec<Vec<f64>> {
+    pub(crate) fn predict(&self, press: &PairedPress) -> Vec<Vec<f64>> {
         self.by_indenter
             .get(&press.indenter)
             .map_or_else(|| zero(press), |fit| fit.predict(press))
@@ -164,32 +165,6 @@ impl Fit {
         })
         .collect()
     }
-}
-
-/// Solves by Cholesky's method; only the lower triangle is read. Not faer's: `digitac` needs nothing else of faer, which takes longer to
-/// compile than `digitac` itself, and these sums have the same order, and so the same bits, on every processor.
-fn solve_symmetric(mut l: Vec<f64>, mut x: Vec<f64>) -> Vec<f64> {
-    let n = x.len();
-    for i in 0..n {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|k| l[i * n + k] * l[j * n + k]).sum();
-            let left = l[i * n + j] - dot;
-            l[i * n + j] = if i == j {
-                left.max(f64::MIN_POSITIVE).sqrt()
-            } else {
-                left / l[j * n + j]
-            };
-        }
-    }
-    for i in 0..n {
-        let dot: f64 = (0..i).map(|k| l[i * n + k] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i * n + i];
-    }
-    for i in (0..n).rev() {
-        let dot: f64 = (i + 1..n).map(|k| l[k * n + i] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i * n + i];
-    }
-    x
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! A twin's predictions compared with the measurement, press by press.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
-use super::{Errors, Scale, Score, StaticPolynomial, baseline, score};
-use crate::{PairedPress, Twin, Variant};
+use super::{Errors, Kernel, Scale, Score, StaticPolynomial, baseline, score};
+use crate::{DigitacError, Features, PairedPress, Twin, Variant};
 
 /// A press, measured and predicted. Per-frame vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,7 +29,7 @@ pub struct PressEvaluation {
     pub predicted_kpa: Vec<Vec<f64>>,
     /// Whether the reading counts; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
-    /// Largest time by which readings were warped, s.
+    /// Largest time by which readings would have to be warped, s.
     pub largest_shift_s: f64,
     /// Errors of this press alone.
     pub errors: Errors,
@@ -42,33 +44,70 @@ pub struct Evaluation {
     pub taxels: Vec<String>,
     /// The twin's errors.
     pub twin: Score,
+    /// The same if readings are warped onto the simulation's clock before they are compared.
+    pub warped: Errors,
     /// Errors of predicting zero.
     pub zero: Score,
     /// Errors of a polynomial in depth and position, if one was fitted.
     pub polynomial: Option<Score>,
+    /// Errors of a power of depth times a function of distance, if one was fitted.
+    #[serde(default)]
+    pub kernel: Option<Score>,
     /// The presses.
     pub presses: Vec<PressEvaluation>,
 }
 
-/// Evaluates a twin on presses. The polynomial should have been fitted to the twin's training presses.
+/// Curves without physics that a twin is compared with.
+pub struct Baselines {
+    polynomial: StaticPolynomial,
+    kernel: Kernel,
+}
+
+impl Baselines {
+    /// Fits teachers among recorded presses. `ports_mm` are the ports' places in the gel's plane, `[n_taxels]`; taxels in `left_out` do not
+    /// pull at what all share.
+    ///
+    /// # Errors
+    /// None that a recording causes.
+    pub fn fit(
+        recorded: &[PairedPress],
+        teachers: &[usize],
+        ports_mm: &[[f64; 2]],
+        left_out: &BTreeSet<usize>,
+    ) -> Result<Self, DigitacError> {
+        let presses: Vec<&PairedPress> = teachers.iter().map(|&index| &recorded[index]).collect();
+        Ok(Self {
+            polynomial: StaticPolynomial::fit(&presses),
+            kernel: Kernel::fit(recorded, teachers, ports_mm, left_out)?,
+        })
+    }
+}
+
+/// Evaluates a twin on some presses of a recording, all of which the gel remembers. The baselines should have been fitted to the twin's
+/// training presses.
 #[must_use]
 pub fn evaluate(
     twin: &Twin,
-    presses: &[&PairedPress],
+    recorded: &[PairedPress],
+    chosen: &[usize],
     scale: &Scale,
-    polynomial: Option<&StaticPolynomial>,
+    baselines: Option<&Baselines>,
 ) -> Evaluation {
+    let presses: Vec<&PairedPress> = chosen.iter().map(|&index| &recorded[index]).collect();
     let all = |predict: &dyn Fn(&PairedPress) -> Vec<Vec<f64>>| -> Vec<Vec<Vec<f64>>> {
         presses.iter().map(|press| predict(press)).collect()
     };
-    let predictions = all(&|press| twin.predict(&press.features));
+    let predictions = predict_some(twin, recorded, chosen);
     let judge = |predictions: &[Vec<Vec<f64>>]| score(presses.iter().copied(), predictions, scale);
+    let warped: Vec<PairedPress> = presses.iter().map(|press| press.warped()).collect();
     Evaluation {
         variant: twin.variant(),
         taxels: twin.taxels().to_vec(),
         twin: judge(&predictions),
+        warped: score(&warped, &predictions, scale).overall,
         zero: judge(&all(&baseline::zero)),
-        polynomial: polynomial.map(|polynomial| judge(&all(&|press| polynomial.predict(press)))),
+        polynomial: baselines.map(|b| judge(&all(&|press| b.polynomial.predict(press)))),
+        kernel: baselines.map(|b| judge(&all(&|press| b.kernel.predict(press)))),
         presses: presses
             .iter()
             .zip(&predictions)
@@ -87,4 +126,20 @@ pub fn evaluate(
             })
             .collect(),
     }
+}
+
+/// What a twin says of some presses of a recording, kPa; `[n_chosen][n_frames][n_taxels]`.
+fn predict_some(twin: &Twin, recorded: &[PairedPress], chosen: &[usize]) -> Vec<Vec<Vec<f64>>> {
+    let all: Vec<&Features> = recorded.iter().map(|press| &press.features).collect();
+    let mut predictions = twin.predict(&all);
+    chosen
+        .iter()
+        .map(|&index| std::mem::take(&mut predictions[index]))
+        .collect()
+}
+
+/// The errors of a twin on some presses of a recording.
+pub(crate) fn score_some(twin: &Twin, recorded: &[PairedPress], chosen: &[usize], scale: &Scale) -> Score {
+    let presses = chosen.iter().map(|&index| &recorded[index]);
+    score(presses, &predict_some(twin, recorded, chosen), scale)
 }

@@ -84,7 +84,7 @@ pub struct Score {
 
 /// Scores predictions, `[n_presses][n_frames][n_taxels]`, kPa.
 #[must_use]
-pub fn score<'a>(
+pub(crate) fn score<'a>(
     presses: impl IntoIterator<Item = &'a PairedPress>,
     predictions: &[Vec<Vec<f64>>],
     scale: &Scale,

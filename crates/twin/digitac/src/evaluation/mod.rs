@@ -2,12 +2,16 @@
 
 mod baseline;
 mod evaluate;
+mod kernel;
 pub(crate) mod metric;
 mod recalibrate;
 mod repeatability;
 
-pub use baseline::StaticPolynomial;
-pub use evaluate::{Evaluation, PressEvaluation, evaluate};
-pub use metric::{Errors, Mean, Scale, Score, score};
+pub(crate) use baseline::StaticPolynomial;
+pub(crate) use evaluate::score_some;
+pub use evaluate::{Baselines, Evaluation, PressEvaluation, evaluate};
+pub(crate) use kernel::Kernel;
+pub(crate) use metric::score;
+pub use metric::{Errors, Mean, Scale, Score};
 pub use recalibrate::{Recalibration, recalibrate};
 pub use repeatability::{Repeatability, repeatability};

@@ -8,9 +8,10 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::DepthTable;
-use twintac_recording::{Control, Press, Recording};
+use twintac_recording::{Control, Recording};
 
 use crate::bench_fit::{BenchEstimate, Estimate, Places, curves, features_along};
+use crate::features::Sample;
 use crate::numerics::minimize;
 use crate::{DigitacError, Twin};
 
@@ -57,27 +58,31 @@ pub fn recalibrate(
     }
     let used = of_file[..N_PRESSES].to_vec();
     let curves = curves(places, tables, recording.taxels.len())?;
-    let deviation_kpa = |index: usize, offset_mm: f64| -> Result<f64, DigitacError> {
-        let press = &recording.presses[index];
-        let place = places.of_press[index];
+    let deviation_kpa = |presses: &[usize], offset_mm: f64| -> Result<f64, DigitacError> {
         let mut bench = bench.clone();
-        bench.contact_offset_mm.insert(
-            file.to_owned(),
-            Estimate {
-                value: offset_mm,
-                uncertainty: 0.0,
-            },
-        );
-        let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
-        let features = features_along(&curves[place], press, touch_z_mm, &bench)?;
-        Ok(mean_deviation_kpa(press, &twin.predict(&features), left_out))
+        let height = Estimate {
+            value: offset_mm,
+            uncertainty: 0.0,
+        };
+        bench.contact_offset_mm.insert(file.to_owned(), height);
+        let mut sum = 0.0;
+        for &index in presses {
+            let (press, place) = (&recording.presses[index], places.of_press[index]);
+            let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
+            let features = features_along(&curves[place], press, touch_z_mm, &bench)?;
+            let sample = Sample {
+                readings_kpa: &press.taxels_kpa,
+                valid: &press.valid,
+            };
+            sum += sample.deviation_kpa(&twin.predict(&[&features])[0], left_out);
+        }
+        Ok(sum)
     };
     let center = bench.contact_offset_elsewhere_mm;
     let fit = |presses: &[usize]| -> Result<f64, DigitacError> {
         let mut failure = None;
         let value = |offset_mm: f64| {
-            let sum: Result<f64, _> = presses.iter().map(|&press| deviation_kpa(press, offset_mm)).sum();
-            sum.unwrap_or_else(|error| {
+            deviation_kpa(presses, offset_mm).unwrap_or_else(|error| {
                 failure = Some(error);
                 f64::INFINITY
             })
@@ -113,15 +118,4 @@ pub fn recalibrate(
         used,
         doubts,
     }))
-}
-
-fn mean_deviation_kpa(press: &Press, predicted: &[Vec<f64>], left_out: &BTreeSet<usize>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for ((measured, predicted), valid) in press.taxels_kpa.iter().zip(predicted).zip(&press.valid) {
-        for taxel in (0..measured.len()).filter(|taxel| valid[*taxel] && !left_out.contains(taxel)) {
-            sum += (measured[taxel] - predicted[taxel]).abs();
-            count += 1.0;
-        }
-    }
-    if count > 0.0 { sum / count } else { 0.0 }
 }

@@ -1,21 +1,28 @@
-//! How well measured presses repeat. A twin that is given only the press cannot be expected to have much smaller errors than this.
+//! How well measured presses repeat: what two presses of the same place, depth and speed differ by.
+
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Errors, Scale, score};
-use crate::{PairedPress, Warp};
+use crate::{Features, PairedPress};
 
 /// The definition that goes with the numbers.
-const DEFINITION: &str = "Two presses of one indenter at one place (within 0.05 mm) are compared from first touch for as long as both were \
-    driven alike (depths within 0.05 mm), in contact for at least 0.5 s. Errors are those of taking one's readings for the other's, so a \
-    twin that predicts their mean has half of them.";
+const DEFINITION: &str = "Two presses of one indenter at one place (within 0.05 mm), to one depth (within 0.05 mm) and at one speed (within 10 %) \
+    are compared phase by phase: going down and coming up at the same depth, holding at the same time after the end of the way down, coming up \
+    only after holds of one length (within 10 %). Errors are those of taking one's readings for the other's; a twin that predicts the mean of \
+    both has half of them.";
 
 /// Places closer than this are one, mm.
 const SAME_PLACE_MM: f64 = 0.05;
 /// Depths closer than this are one, mm.
 const SAME_DEPTH_MM: f64 = 0.05;
-/// Shortest common stretch that counts, s.
-const SHORTEST_S: f64 = 0.5;
+/// Speeds and durations whose ratio is closer to one than this are one.
+const SAME_RATIO: f64 = 0.1;
+/// Holds that differ by less are of one length, s.
+const SAME_HOLD_S: f64 = 0.2;
+/// A hold begins and ends where the depth is this close to the deepest, mm.
+const HOLD_MM: f64 = 0.02;
 
 /// How well presses repeat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +46,7 @@ pub fn repeatability(presses: &[PairedPress], scale: &Scale) -> Option<Repeatabi
             if first.indenter == second.indenter
                 && close(0)
                 && close(1)
-                && let Some((common, other)) = common_stretch(first, second)
+                && let Some((common, other)) = compare(first, second)
             {
                 compared.push(common);
                 predictions.push(other);
@@ -53,70 +60,99 @@ pub fn repeatability(presses: &[PairedPress], scale: &Scale) -> Option<Repeatabi
     })
 }
 
-/// The first press from first touch for as long as the second was driven alike, and the second's readings at
-/// its frames.
-fn common_stretch(first: &PairedPress, second: &PairedPress) -> Option<(PairedPress, Vec<Vec<f64>>)> {
-    let (touch_s, other_touch_s) = (touch_time_s(first)?, touch_time_s(second)?);
+/// Frames of one way down, one hold and one way up.
+struct Phases {
+    down: Range<usize>,
+    hold: Range<usize>,
+    up: Range<usize>,
+    deepest_mm: f64,
+    /// Of the way down, from first touch.
+    down_s: f64,
+    hold_s: f64,
+}
+
+impl Phases {
+    /// `None` if the gel is not touched on the way down.
+    fn of(features: &Features) -> Option<Self> {
+        let depth_mm = &features.depth_mm;
+        let deepest_mm = depth_mm.iter().copied().fold(0.0, f64::max);
+        let touch = depth_mm.iter().position(|depth| *depth > 0.0)?;
+        let is_held = |depth: &f64| deepest_mm - depth < HOLD_MM;
+        let start = depth_mm.iter().position(is_held)?;
+        let end = depth_mm.iter().rposition(is_held)? + 1;
+        let out = (end..depth_mm.len())
+            .find(|&i| depth_mm[i] <= 0.0)
+            .unwrap_or(depth_mm.len());
+        let time_s = &features.time_s;
+        (start > touch).then(|| Self {
+            down: touch..start,
+            hold: start..end,
+            up: end..out,
+            deepest_mm,
+            down_s: time_s[start] - time_s[touch],
+            hold_s: time_s[end - 1] - time_s[start],
+        })
+    }
+}
+
+/// The first press where both are in the same phase, and the second's readings at its frames.
+fn compare(first: &PairedPress, second: &PairedPress) -> Option<(PairedPress, Vec<Vec<f64>>)> {
     let (f, g) = (&first.features, &second.features);
-    let start = f.time_s.partition_point(|t| *t < touch_s);
-    let at = |frame: usize| index_at(&g.time_s, f.time_s[frame] - touch_s + other_touch_s);
-    let mut frames = Vec::new();
-    for frame in start..f.n_frames() {
-        let Some(index) = at(frame) else { break };
-        let warp = Warp {
-            measured_index: vec![index],
-            cost: 0.0,
-            largest_shift_s: 0.0,
-        };
-        let depth_mm = warp.apply(&g.depth_mm.iter().map(|d| vec![*d]).collect::<Vec<_>>())[0][0];
-        if (depth_mm - f.depth_mm[frame]).abs() > SAME_DEPTH_MM {
-            break;
-        }
-        frames.push((frame, index));
-    }
-    let (&(from, _), &(to, _)) = (frames.first()?, frames.last()?);
-    if f.time_s[to] - f.time_s[from] < SHORTEST_S {
+    let (a, b) = (Phases::of(f)?, Phases::of(g)?);
+    let alike = |one: f64, other: f64| (one - other).abs() <= SAME_RATIO * one.max(other);
+    if (a.deepest_mm - b.deepest_mm).abs() > SAME_DEPTH_MM || !alike(a.down_s, b.down_s) {
         return None;
     }
-    let indices = frames.iter().map(|(_, index)| *index).collect();
-    let warp = Warp {
-        measured_index: indices,
-        cost: 0.0,
-        largest_shift_s: 0.0,
+    let negative = |depth_mm: &[f64]| -> Vec<f64> { depth_mm.iter().map(|depth| -depth).collect() };
+    let mut frames: Vec<(usize, f64)> = Vec::new();
+    let mut add = |own: Range<usize>, at: &dyn Fn(usize) -> Option<f64>| {
+        frames.extend(own.filter_map(|frame| Some((frame, at(frame)?))));
     };
-    let other_valid = warp.apply_valid(&second.valid);
+    add(a.down.clone(), &|i| index_at(&g.depth_mm, &b.down, f.depth_mm[i]));
+    let (held_since_s, other_since_s) = (f.time_s[a.hold.start], g.time_s[b.hold.start]);
+    add(a.hold.clone(), &|i| {
+        index_at(&g.time_s, &b.hold, f.time_s[i] - held_since_s + other_since_s)
+    });
+    if alike(a.hold_s, b.hold_s) || (a.hold_s - b.hold_s).abs() < SAME_HOLD_S {
+        let rising = negative(&g.depth_mm);
+        add(a.up.clone(), &|i| index_at(&rising, &b.up, -f.depth_mm[i]));
+    }
     let mut common = first.clone();
-    let c = &mut common.features;
-    c.time_s = f.time_s[from..=to].to_vec();
-    c.depth_mm = f.depth_mm[from..=to].to_vec();
-    c.simulated = vec![true; c.time_s.len()];
-    common.readings_kpa = first.readings_kpa[from..=to].to_vec();
-    common.valid = first.valid[from..=to].to_vec();
-    for (row, other) in common.valid.iter_mut().zip(&other_valid) {
-        row.iter_mut()
-            .zip(other)
-            .for_each(|(valid, other)| *valid &= *other);
-    }
-    Some((common, warp.apply(&second.readings_kpa)))
+    let pick = |rows: &[f64]| frames.iter().map(|(i, _)| rows[*i]).collect::<Vec<f64>>();
+    common.features.time_s = pick(&f.time_s);
+    common.features.depth_mm = pick(&f.depth_mm);
+    common.features.simulated = vec![true; frames.len()];
+    common.readings_kpa = frames
+        .iter()
+        .map(|(i, _)| first.readings_kpa[*i].clone())
+        .collect();
+    let mut other = Vec::with_capacity(frames.len());
+    common.valid = frames
+        .iter()
+        .map(|(i, at)| {
+            let (low, share) = (*at as usize, at.fract());
+            let high = (low + 1).min(second.readings_kpa.len() - 1);
+            let rows = second.readings_kpa[low].iter().zip(&second.readings_kpa[high]);
+            other.push(rows.map(|(l, h)| l + share * (h - l)).collect());
+            let valid = second.valid[low].iter().zip(&second.valid[high]);
+            first.valid[*i]
+                .iter()
+                .zip(valid)
+                .map(|(own, (l, h))| *own && *l && *h)
+                .collect()
+        })
+        .collect();
+    (!frames.is_empty()).then_some((common, other))
 }
 
-/// When the tip first passes the surface, between frames, s.
-fn touch_time_s(press: &PairedPress) -> Option<f64> {
-    let f = &press.features;
-    let after = f.depth_mm.iter().position(|depth| *depth > 0.0)?;
-    let before = after.checked_sub(1)?;
-    let share = f.depth_mm[before] / (f.depth_mm[before] - f.depth_mm[after]);
-    Some(f.time_s[before] + share * (f.time_s[after] - f.time_s[before]))
-}
-
-/// The index, between frames, of a time.
-fn index_at(time_s: &[f64], at_s: f64) -> Option<f64> {
-    let after = time_s.partition_point(|t| *t <= at_s);
-    if after == 0 || after == time_s.len() {
-        return None;
+/// The index, between the frames of a phase, at which rising values come to one.
+fn index_at(values: &[f64], phase: &Range<usize>, at: f64) -> Option<f64> {
+    let after = phase.clone().find(|&i| values[i] >= at)?;
+    let before = after.checked_sub(1).filter(|before| phase.contains(before));
+    match before {
+        Some(before) => Some(before as f64 + (at - values[before]) / (values[after] - values[before])),
+        None => (values[after] == at).then_some(after as f64),
     }
-    let (low, high) = (time_s[after - 1], time_s[after]);
-    Some((after - 1) as f64 + (at_s - low) / (high - low))
 }
 
 #[cfg(test)]
@@ -126,37 +162,50 @@ mod tests {
     use super::*;
     use crate::synthetic::by_hand;
 
-    /// Down at 1 mm/s from 0.5 mm above, then a hold; readings proportional to the depth.
-    fn press(place_mm: f64, deepest_mm: f64, late_s: f64, gain: f64) -> PairedPress {
-        let depth = |i: i32| (0.1 * f64::from(i) - late_s - 0.5).min(deepest_mm);
-        let frames: Vec<(f64, [f64; 2])> = (0..60)
+    /// Down at 1 mm/s from 0.5 mm above, a hold, and up; readings proportional to the depth.
+    fn press(place_mm: f64, deepest_mm: f64, hold_s: f64, late_s: f64, gain: f64) -> PairedPress {
+        let up_s = 0.5 + deepest_mm + hold_s + late_s;
+        let depth = |i: i32| {
+            let t = 0.1 * f64::from(i);
+            (t - late_s - 0.5).min(deepest_mm).min(deepest_mm - (t - up_s))
+        };
+        let frames: Vec<(f64, [f64; 2])> = (0..90)
             .map(|i| (depth(i), [gain * depth(i).max(0.0), 0.0]))
             .collect();
         by_hand("", "file", [place_mm, 0.0], &frames)
     }
 
     #[test]
-    fn the_same_press_is_compared_whatever_its_delay_and_only_while_it_is_the_same() {
+    fn the_same_press_is_compared_phase_by_phase_whatever_its_delay() {
         let presses = [
-            press(0.0, 2.0, 0.0, 10.0),
-            press(0.01, 3.0, 0.07, 10.2),
-            press(1.0, 2.0, 0.0, 15.0),
+            press(0.0, 2.0, 1.0, 0.0, 10.0),
+            press(0.01, 2.0, 1.0, 0.07, 10.2),
+            press(0.0, 3.0, 1.0, 0.0, 20.0),
+            press(1.0, 2.0, 1.0, 0.0, 15.0),
         ];
         let scale = Scale::of(&presses[..1], BTreeSet::new());
         let found = repeatability(&presses, &scale).unwrap();
         assert_eq!(found.n_pairs, 1);
-        // Two percent of the reading, which itself grows up to the largest.
+        // Two percent of the reading, which itself grows up to the largest and falls again.
         let percent = found.errors.nearest_in_contact.percent;
-        assert!((0.8..1.3).contains(&percent), "{found:?}");
+        assert!((1.0..1.6).contains(&percent), "{found:?}");
+        assert!(found.errors.nearest_in_contact.count > 40, "{found:?}");
+    }
+
+    #[test]
+    fn the_way_up_after_another_hold_is_not_compared() {
+        let presses = [press(0.0, 2.0, 1.0, 0.0, 10.0), press(0.0, 2.0, 3.0, 0.0, 10.0)];
+        let found = repeatability(&presses, &Scale::of(&presses, BTreeSet::new())).unwrap();
+        assert!(found.errors.nearest_in_contact.percent < 1e-9, "{found:?}");
         assert!(
-            (19..=21).contains(&found.errors.nearest_in_contact.count),
+            (25..32).contains(&found.errors.nearest_in_contact.count),
             "{found:?}"
         );
     }
 
     #[test]
     fn nothing_repeats_nothing() {
-        let presses = [press(0.0, 2.0, 0.0, 10.0), press(1.0, 2.0, 0.0, 10.0)];
+        let presses = [press(0.0, 2.0, 1.0, 0.0, 10.0), press(1.0, 2.0, 1.0, 0.0, 10.0)];
         assert!(repeatability(&presses, &Scale::of(&presses, BTreeSet::new())).is_none());
     }
 }

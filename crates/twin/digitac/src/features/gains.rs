@@ -1,16 +1,18 @@
-//! What each barometer makes of the pressure at its port, fitted directly: the start of every physical
-//! variant, and the inner fit of the bench.
+//! What each barometer makes of the pressure at its port.
+
+use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Features, overstress};
-use crate::numerics::{fit_nonnegative, minimize};
+use super::{Features, overstress, port_law};
 
-/// Linear readings: gain × (pressure + Σ memory × overstress), taxel by taxel.
+/// Readings of barometers, taxel by taxel: the port law of gain × pressure, and a memory of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gains {
-    /// Reading over port pressure of the relaxed gel; `[n_taxels]`.
+    /// Reading over port pressure of the relaxed gel, for small pressures; `[n_taxels]`.
     pub gain: Vec<f64>,
+    /// By how much a reading grows beyond proportion, for each kPa of it; `[n_taxels]`.
+    pub stiffening_per_kpa: Vec<f64>,
     /// Share of each time constant's overstress in the reading; `[n_taxels][n_time_constants]`.
     pub memory: Vec<Vec<f64>>,
     /// The time constants, s.
@@ -20,107 +22,127 @@ pub struct Gains {
 /// Time constants that fits start from, s: two are enough for barometers cast into rubber, one while the load
 /// moves and one in a hold.
 pub(crate) const TIME_CONSTANTS_S: [f64; 2] = [0.25, 4.0];
-/// How far from its start a time constant is looked for, as a factor.
-const TIME_CONSTANT_REACH: f64 = 4.0;
 
-/// A press as far as this fit sees it.
+/// Readings of a press.
 pub(crate) struct Sample<'a> {
-    pub(crate) features: &'a Features,
     pub(crate) readings_kpa: &'a [Vec<f64>],
     pub(crate) valid: &'a [Vec<bool>],
 }
 
-impl Gains {
-    /// Fits by least absolute deviations; no gain and no memory is negative. Returns with it the mean
-    /// absolute deviation of each taxel, kPa. Static samples, of one frame, have no memory.
-    pub(crate) fn fit(samples: &[Sample<'_>], time_constants_s: &[f64]) -> (Self, Vec<f64>) {
-        let n_taxels = samples
-            .first()
-            .and_then(|s| s.features.pressure_kpa.first())
-            .map_or(0, Vec::len);
-        let mut gains = Self {
-            gain: Vec::new(),
-            memory: Vec::new(),
-            time_constants_s: time_constants_s.to_vec(),
-        };
-        let mut deviations_kpa = Vec::with_capacity(n_taxels);
-        for taxel in 0..n_taxels {
-            let (columns, target) = columns(samples, taxel, time_constants_s);
-            let (fit, deviation) = fit_nonnegative(&columns, &target);
-            gains.gain.push(fit[0]);
-            let share = |a: &f64| if fit[0] > 0.0 { a / fit[0] } else { 0.0 };
-            gains.memory.push(fit[1..].iter().map(share).collect());
-            deviations_kpa.push(deviation);
-        }
-        (gains, deviations_kpa)
-    }
-
-    /// Fits the time constants too, one after the other, each within a factor of four of where it starts.
-    pub(crate) fn fit_with_time_constants(samples: &[Sample<'_>], start_s: &[f64]) -> Self {
-        let deviation = |constants_s: &[f64]| Self::fit(samples, constants_s).1.iter().sum::<f64>();
-        let mut constants_s = start_s.to_vec();
-        for _ in 0..2 {
-            for index in 0..constants_s.len() {
-                let center = start_s[index].ln();
-                let reach = TIME_CONSTANT_REACH.ln();
-                let mut trial = constants_s.clone();
-                let at = |ln_constant: f64| {
-                    trial[index] = ln_constant.exp();
-                    deviation(&trial)
-                };
-                constants_s[index] = minimize(center - reach, center + reach, 0.02, at).0.exp();
-            }
-        }
-        Self::fit(samples, &constants_s).0
-    }
-
-    /// The reading that these gains alone give, kPa; `[n_frames][n_taxels]`.
-    #[must_use]
-    pub fn readings_kpa(&self, features: &Features) -> Vec<Vec<f64>> {
-        let elastic = features.pressure_kpa.iter();
-        let elastic: Vec<Vec<f64>> = elastic
-            .map(|row| row.iter().zip(&self.gain).map(|(p, gain)| gain * p).collect())
-            .collect();
-        self.remember(&features.time_s, elastic)
-    }
-
-    /// Adds the overstresses to elastic readings; `[n_frames][n_taxels]`, any unit.
-    pub(crate) fn remember(&self, time_s: &[f64], mut readings: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        for (taxel, shares) in self.memory.iter().enumerate() {
-            let elastic: Vec<f64> = readings.iter().map(|row| row[taxel]).collect();
-            for (share, constant_s) in shares.iter().zip(&self.time_constants_s) {
-                for (row, q) in readings
-                    .iter_mut()
-                    .zip(overstress::of(time_s, &elastic, *constant_s))
-                {
-                    row[taxel] += share * q;
-                }
-            }
-        }
-        readings
+impl Sample<'_> {
+    /// Sum of the absolute deviations of predictions from usable readings, kPa.
+    pub(crate) fn deviation_kpa(&self, predicted_kpa: &[Vec<f64>], left_out: &BTreeSet<usize>) -> f64 {
+        let rows = self.readings_kpa.iter().zip(predicted_kpa).zip(self.valid);
+        rows.flat_map(|((measured, predicted), valid)| {
+            let taxels = (0..measured.len()).filter(|taxel| valid[*taxel] && !left_out.contains(taxel));
+            taxels.map(|taxel| (measured[taxel] - predicted[taxel]).abs())
+        })
+        .sum()
     }
 }
 
-/// Pressure and overstresses of one taxel over all usable frames, and the readings.
-fn columns(samples: &[Sample<'_>], taxel: usize, time_constants_s: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let mut columns = vec![Vec::new(); 1 + time_constants_s.len()];
-    let mut target = Vec::new();
-    for sample in samples {
-        let pressure: Vec<f64> = sample
-            .features
-            .pressure_kpa
-            .iter()
-            .map(|row| row[taxel])
-            .collect();
-        let usable: Vec<usize> = (0..pressure.len())
-            .filter(|&frame| sample.valid[frame][taxel])
-            .collect();
-        columns[0].extend(usable.iter().map(|&frame| pressure[frame]));
-        target.extend(usable.iter().map(|&frame| sample.readings_kpa[frame][taxel]));
-        for (column, time_constant_s) in columns[1..].iter_mut().zip(time_constants_s) {
-            let q = overstress::of(&sample.features.time_s, &pressure, *time_constant_s);
-            column.extend(usable.iter().map(|&frame| q[frame]));
+/// What barometers remember from one frame to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Remembered {
+    /// Readings of the relaxed gel at the last frame, kPa; `[n_taxels]`. Empty before the first.
+    relaxed_kpa: Vec<f64>,
+    /// Overstresses, kPa; `[n_taxels * n_time_constants]`.
+    overstress_kpa: Vec<f64>,
+}
+
+impl Gains {
+    /// One more frame: turns gain × pressure of each taxel into readings, kPa; `[n_taxels]`. `since_s` is the time since the last frame;
+    /// `None` if the gel has rested until now.
+    pub(crate) fn step(&self, remembered: &mut Remembered, since_s: Option<f64>, readings_kpa: &mut [f64]) {
+        let n_constants = self.time_constants_s.len();
+        for (reading, stiffening) in readings_kpa.iter_mut().zip(&self.stiffening_per_kpa) {
+            *reading = port_law::reading(*stiffening, *reading);
+        }
+        match since_s {
+            Some(since_s) if !remembered.relaxed_kpa.is_empty() => {
+                for (j, constant_s) in self.time_constants_s.iter().enumerate() {
+                    let (kept, arrived) = overstress::step(since_s, *constant_s);
+                    let taxels = remembered
+                        .relaxed_kpa
+                        .iter_mut()
+                        .zip(readings_kpa.iter())
+                        .enumerate();
+                    for (k, (before, now)) in taxels {
+                        let q = &mut remembered.overstress_kpa[k * n_constants + j];
+                        *q = kept * *q + arrived * (now - *before);
+                    }
+                }
+            }
+            _ => {
+                remembered.overstress_kpa.clear();
+                remembered
+                    .overstress_kpa
+                    .resize(readings_kpa.len() * n_constants, 0.0);
+            }
+        }
+        remembered.relaxed_kpa.clear();
+        remembered.relaxed_kpa.extend_from_slice(readings_kpa);
+        if n_constants == 0 {
+            return;
+        }
+        let overstresses = remembered.overstress_kpa.chunks_exact(n_constants);
+        for ((reading, shares), overstresses) in readings_kpa.iter_mut().zip(&self.memory).zip(overstresses) {
+            for (share, q) in shares.iter().zip(overstresses) {
+                *reading += share * q;
+            }
         }
     }
-    (columns, target)
+
+    /// Readings along presses that follow each other, from gain × pressure, kPa; `[n_presses][n_frames][n_taxels]`. Readings are zero, in
+    /// the mean, over the frames over which the measured ones were set to zero.
+    pub(crate) fn remember(
+        &self,
+        presses: &[&Features],
+        mut readings_kpa: Vec<Vec<Vec<f64>>>,
+    ) -> Vec<Vec<Vec<f64>>> {
+        let mut remembered = Remembered::default();
+        for (press, rows) in presses.iter().zip(&mut readings_kpa) {
+            let mut since_s = press.since_previous_s;
+            for (frame, row) in rows.iter_mut().enumerate() {
+                if frame > 0 {
+                    since_s = Some(press.time_s[frame] - press.time_s[frame - 1]);
+                }
+                self.step(&mut remembered, since_s, row);
+            }
+            set_to_zero(rows, press.zero_frames.clone());
+        }
+        readings_kpa
+    }
+
+    /// The reading that these gains alone give along presses that follow each other, kPa; `[n_presses][n_frames][n_taxels]`.
+    #[must_use]
+    pub fn readings_kpa(&self, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
+        let elastic = |press: &&Features| -> Vec<Vec<f64>> {
+            let rows = press.pressure_kpa.iter();
+            rows.map(|row| row.iter().zip(&self.gain).map(|(p, gain)| gain * p).collect())
+                .collect()
+        };
+        self.remember(presses, presses.iter().map(elastic).collect())
+    }
+}
+
+/// Takes the mean over some frames from all; `[n_frames][n_taxels]`.
+pub(crate) fn set_to_zero(rows: &mut [Vec<f64>], zero_frames: std::ops::Range<usize>) {
+    if zero_frames.is_empty() {
+        return;
+    }
+    let count = zero_frames.len() as f64;
+    let n_taxels = rows.first().map_or(0, Vec::len);
+    let mut means = vec![0.0; n_taxels];
+    for row in &rows[zero_frames] {
+        means
+            .iter_mut()
+            .zip(row)
+            .for_each(|(mean, value)| *mean += value / count);
+    }
+    for row in rows {
+        row.iter_mut()
+            .zip(&means)
+            .for_each(|(value, mean)| *value -= mean);
+    }
 }

@@ -6,7 +6,7 @@
 
 /// Shares of the old overstress that stay, and of the change that arrives, over a time step on which r
 /// changes linearly (exact).
-fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
+pub(crate) fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
     let ratio = duration_s / time_constant_s;
     let kept = (-ratio).exp();
     let arrived = if ratio > 1e-8 {
@@ -18,7 +18,8 @@ fn step(duration_s: f64, time_constant_s: f64) -> (f64, f64) {
 }
 
 /// The overstress of each frame, starting from none; `[n_frames]`.
-pub(crate) fn of(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f64> {
+#[cfg(test)]
+fn of(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f64> {
     let mut q = vec![0.0; elastic.len()];
     for i in 1..elastic.len() {
         let (kept, arrived) = step(time_s[i] - time_s[i - 1], time_constant_s);
@@ -27,7 +28,7 @@ pub(crate) fn of(time_s: &[f64], elastic: &[f64], time_constant_s: f64) -> Vec<f
     q
 }
 
-/// [`of`] as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames
+/// The overstresses of a press from rest as a matrix, row by row, with the overstress of frame i = Σ over j of `matrix[i * n_frames
 /// + j]` × elastic reading j.
 pub(crate) fn matrix(time_s: &[f64], time_constant_s: f64) -> Vec<f64> {
     let n = time_s.len();

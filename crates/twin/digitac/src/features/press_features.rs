@@ -1,5 +1,7 @@
 //! The simulated gel along a press.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 /// The simulated gel along a press. All vectors have the same length, `n_frames`.
@@ -15,9 +17,19 @@ pub struct Features {
     pub pressure_kpa: Vec<Vec<f64>>,
     /// Stress feature of the TwinTac paper (arXiv 2509.10063, equation 6), kPa/mm; `[n_frames][n_taxels]`.
     pub stress_kpa_per_mm: Vec<Vec<f64>>,
-    /// Whether the frame was simulated: not deeper than the last frame of the place's table.
+    /// Whether the frame was simulated: not deeper than the last frame of the place's table, whose values stand for what is deeper.
     pub simulated: Vec<bool>,
+    /// Time since the last frame of the press before, s; `None` if the gel had rested. A gel remembers presses that followed each other
+    /// within seconds.
+    pub since_previous_s: Option<f64>,
+    /// Frames over which readings were set to zero: the last second before the tip comes near the gel.
+    pub zero_frames: Range<usize>,
 }
+
+/// Frames at least this high above the gel are away from it, mm.
+const AWAY_MM: f64 = 0.5;
+/// How long readings are averaged for their zero, s.
+const ZERO_WINDOW_S: f64 = 1.0;
 
 impl Features {
     /// Number of frames.
@@ -25,4 +37,13 @@ impl Features {
     pub fn n_frames(&self) -> usize {
         self.time_s.len()
     }
+}
+
+/// The last second before the tip comes nearer to the gel than half a millimetre; empty if it never was farther.
+pub(crate) fn zero_frames(time_s: &[f64], depth_mm: &[f64]) -> Range<usize> {
+    let end = depth_mm.iter().take_while(|depth| **depth <= -AWAY_MM).count();
+    let Some(last_s) = end.checked_sub(1).map(|last| time_s[last]) else {
+        return 0..0;
+    };
+    time_s[..end].partition_point(|t| *t < last_s - ZERO_WINDOW_S)..end
 }

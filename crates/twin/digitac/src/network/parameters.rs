@@ -136,6 +136,10 @@ impl Parameters {
                 .zip(&self.gain_change)
                 .map(|(gain, change)| gain * f64::from(*change).exp())
                 .collect(),
+            stiffening_per_kpa: match physics.variant {
+                Variant::Paper => vec![0.0; n_taxels],
+                _ => physics.gains.stiffening_per_kpa.clone(),
+            },
             memory: (0..n_taxels)
                 .map(|k| {
                     let shares = memory.iter().skip(k).step_by(n_taxels);

@@ -73,6 +73,14 @@ impl Physics {
             .collect()
     }
 
+    /// Relative growth of readings of order one; `[n_taxels]`.
+    pub(crate) fn stiffening(&self) -> Vec<f64> {
+        let growth = self.gains.stiffening_per_kpa.iter();
+        growth
+            .map(|per_kpa| per_kpa * self.normalization.reading_kpa)
+            .collect()
+    }
+
     /// Memory before the softplus; `[n_time_constants][n_taxels]`, row by row.
     pub(crate) fn start_memory(&self) -> Vec<f32> {
         let inverse_softplus = |share: f64| share.max(SMALLEST_MEMORY).exp_m1().ln();

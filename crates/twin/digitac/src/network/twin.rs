@@ -24,20 +24,23 @@ impl Twin {
         }
     }
 
-    /// What the barometers would read above their unloaded baseline along a simulated press, kPa;
-    /// `[n_frames][n_taxels]`.
+    /// What the barometers would read above their unloaded baseline along simulated presses, kPa; `[n_presses][n_frames][n_taxels]`.
+    /// The gel remembers presses that follow each other: see [`Features::since_previous_s`].
     #[must_use]
-    pub fn predict(&self, features: &Features) -> Vec<Vec<f64>> {
-        if features.n_frames() == 0 {
-            return Vec::new();
-        }
-        let inputs = self.physics.inputs(features);
-        let elastic = self.parameters.elastic(&self.physics, &inputs, &inputs).readings;
+    pub fn predict(&self, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
         let reading_kpa = self.physics.normalization.reading_kpa;
-        let rows = elastic
-            .rows()
-            .map(|row| row.iter().map(|r| reading_kpa * f64::from(*r)).collect());
-        self.gains.remember(&features.time_s, rows.collect())
+        let elastic = |press: &&Features| -> Vec<Vec<f64>> {
+            if press.n_frames() == 0 {
+                return Vec::new();
+            }
+            let inputs = self.physics.inputs(press);
+            let elastic = self.parameters.elastic(&self.physics, &inputs, &inputs).readings;
+            let rows = elastic.rows();
+            rows.map(|row| row.iter().map(|r| reading_kpa * f64::from(*r)).collect())
+                .collect()
+        };
+        self.gains
+            .remember(presses, presses.iter().map(elastic).collect())
     }
 
     /// Names of the taxels, in the order of every row.

@@ -1,7 +1,11 @@
-//! Numerical methods that do not depend on what they are used for: a search in one dimension, and a robust linear fit.
+//! Numerical methods that do not depend on what they are used for: searches, robust fits, and small linear systems.
 
 mod golden_section;
 mod least_absolute_deviations;
+mod levenberg_marquardt;
+mod symmetric;
 
 pub(crate) use golden_section::minimize;
 pub(crate) use least_absolute_deviations::fit_nonnegative;
+pub(crate) use levenberg_marquardt::{Quadratic, Unknown, minimize_robust};
+pub(crate) use symmetric::solve_symmetric;

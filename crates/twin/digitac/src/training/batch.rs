@@ -3,9 +3,9 @@
 use rand::seq::SliceRandom;
 use twintac_random::RandomStream;
 
-use crate::features::overstress_matrix;
+use crate::features::{overstress_matrix, port_reading, port_slopes};
 use crate::network::{Matrix, Parameters, Pass, Physics};
-use crate::{Features, PairedPress, seed};
+use crate::{Features, PairedPress, Variant, seed};
 
 /// Presses side by side, padded to the longest.
 pub(crate) struct Batch {
@@ -17,6 +17,8 @@ pub(crate) struct Batch {
     /// One where a reading counts; `[n_presses * n_frames][n_taxels]`
     mask: Vec<f32>,
     n_counted: f64,
+    /// Relative growth of the elastic readings; `[n_taxels]`, none for the paper's variant.
+    stiffening: Vec<f64>,
     /// From the elastic readings of each press to its overstresses, `[n_time_constants * n_frames][n_frames]`; empty if the variant has no
     /// memory.
     operators: Vec<Matrix>,
@@ -73,6 +75,11 @@ impl Batch {
             targets,
             mask,
             n_counted,
+            stiffening: if physics.variant == Variant::Paper {
+                vec![0.0; n_taxels]
+            } else {
+                physics.stiffening()
+            },
             operators: if remembers {
                 thinned.iter().map(operator).collect()
             } else {
@@ -111,7 +118,11 @@ impl Batch {
 
     fn forward(&self, parameters: &Parameters, physics: &Physics, seen: &Matrix) -> Forward {
         let pass = parameters.elastic(physics, &self.inputs, seen);
-        let mut readings = pass.readings.values.clone();
+        let elastic = pass.readings.values.iter().zip(self.stiffening.iter().cycle());
+        let relaxed: Vec<f32> = elastic
+            .map(|(e, s)| port_reading(*s, f64::from(*e)) as f32)
+            .collect();
+        let mut readings = relaxed.clone();
         let n_taxels = physics.n_taxels();
         let n_values = self.n_frames * n_taxels;
         let shares = parameters.memory(physics);
@@ -119,7 +130,7 @@ impl Batch {
         for (index, operator) in self.operators.iter().enumerate() {
             let press = index * n_values..(index + 1) * n_values;
             let elastic = Matrix {
-                values: pass.readings.values[press.clone()].to_vec(),
+                values: relaxed[press.clone()].to_vec(),
                 n_columns: n_taxels,
             };
             let overstress = operator.times(&elastic);
@@ -184,6 +195,15 @@ impl Batch {
                 *to += through;
             }
         }
+        let elastic = forward
+            .pass
+            .readings
+            .values
+            .iter()
+            .zip(self.stiffening.iter().cycle());
+        for (slope, (e, s)) in of_elastic.values.iter_mut().zip(elastic) {
+            *slope *= port_slopes(*s, f64::from(*e))[0] as f32;
+        }
         let mut gradient = parameters.elastic_gradient(physics, &self.inputs, &forward.pass, of_elastic);
         if !self.operators.is_empty() {
             let of_memory: Vec<f32> = of_shares
@@ -237,6 +257,8 @@ pub(crate) fn thin(press: &PairedPress, max_frames: usize) -> PairedPress {
         pressure_kpa: every(&f.pressure_kpa, stride),
         stress_kpa_per_mm: every(&f.stress_kpa_per_mm, stride),
         simulated: every(&f.simulated, stride),
+        since_previous_s: None,
+        zero_frames: 0..0,
     };
     let (readings_kpa, valid) = (every(&press.readings_kpa, stride), every(&press.valid, stride));
     PairedPress {
@@ -261,7 +283,6 @@ mod tests {
     use rand::Rng;
 
     use super::*;
-    use crate::Variant;
     use crate::features::Gains;
     use crate::network::Normalization;
     use crate::synthetic::by_hand;
@@ -271,6 +292,7 @@ mod tests {
             variant,
             gains: Gains {
                 gain: vec![0.8, 1.3],
+                stiffening_per_kpa: vec![0.3, -0.2],
                 memory: vec![vec![0.2, 0.1], vec![0.3, 0.05]],
                 time_constants_s: vec![0.25, 4.0],
             },

@@ -39,8 +39,10 @@ pub struct TrainSettings {
     /// Largest correction, as a share of the size of the frame's readings. It bounds the error
     /// that it can make far from the training presses.
     pub correction_limit: f64,
-    /// Start of the memory's time constants, s.
+    /// Time constants of the barometers' memory that the fit starts from, s.
     pub time_constants_s: Vec<f64>,
+    /// Whether barometers may read otherwise than in proportion to the pressure.
+    pub port_law: bool,
     /// Frames in a batch, about.
     pub batch_frames: usize,
     /// Frames of one press used in training; longer presses are thinned.
@@ -65,6 +67,7 @@ impl Default for TrainSettings {
             correction_hidden: vec![24, 24],
             correction_limit: 0.3,
             time_constants_s: TIME_CONSTANTS_S.to_vec(),
+            port_law: true,
             batch_frames: 512,
             max_frames: 128,
         }

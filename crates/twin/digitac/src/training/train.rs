@@ -1,15 +1,18 @@
 //! Trains the variants, and chooses among them by their errors on validation presses.
 
+use std::collections::BTreeSet;
+
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use super::adamw::AdamW;
-use super::batch::{Batch, batches, thin};
+use super::batch::{Batch, batches};
 use super::{Split, TrainSettings};
-use crate::evaluation::{Scale, Score, score};
-use crate::features::{Gains, Sample};
+use crate::bench_fit::in_order;
+use crate::evaluation::{Scale, Score, score_some};
 use crate::network::{Normalization, Parameters, Physics};
-use crate::{DigitacError, PairedPress, Twin, Variant, seed};
+use crate::physical_fit::{BarometerModel, Fitted, Known, Series, fit};
+use crate::{DigitacError, Features, Gains, PairedPress, Twin, Variant, seed};
 
 /// The learning rate does not fall below this.
 const SMALLEST_RATE: f64 = 1e-6;
@@ -51,7 +54,8 @@ pub struct Trained {
     pub history: Vec<Epoch>,
 }
 
-/// Trains every variant of the settings, in their order.
+/// Trains every variant of the settings, in their order. `presses` are all presses of the recording: the gel remembers those that do not
+/// teach.
 pub fn train(
     presses: &[PairedPress],
     taxels: &[String],
@@ -62,48 +66,41 @@ pub fn train(
 ) -> Result<Vec<Trained>, DigitacError> {
     settings.check()?;
     let parts = Parts::new(presses, taxels, split)?;
-    let samples = |presses: &[&PairedPress]| -> Vec<PairedPress> {
-        presses
-            .iter()
-            .map(|press| thin(press, settings.max_frames))
-            .collect()
-    };
-    let thinned = samples(&parts.train);
-    let samples: Vec<Sample<'_>> = thinned.iter().map(Sample::from).collect();
-    let is_static = parts.train.iter().all(|press| press.features.n_frames() < 2);
-    let elastic = Gains::fit(&samples, &[]).0;
-    let remembering = if is_static || !settings.variants.iter().any(|v| v.has_memory()) {
-        elastic.clone()
-    } else {
-        Gains::fit_with_time_constants(&samples, &settings.time_constants_s)
-    };
     let no_scale = || DigitacError::TooFew {
         expected: "usable readings above zero to train with".into(),
         found: "none".into(),
     };
-    let normalization = Normalization::of(&parts.train).ok_or_else(no_scale)?;
+    let normalization = Normalization::of(&parts.of(&split.train)).ok_or_else(no_scale)?;
+    let both = [&split.train[..], &split.validation].concat();
     settings
         .variants
         .iter()
         .map(|&variant| {
-            let physics = Physics {
-                variant,
-                gains: if variant.has_memory() {
-                    remembering.clone()
-                } else {
-                    elastic.clone()
-                },
-                normalization: normalization.clone(),
-                correction_limit: settings.correction_limit,
+            let physics = |teachers: &[usize]| -> Result<Physics, DigitacError> {
+                Ok(Physics {
+                    variant,
+                    gains: parts.gains(variant, teachers, &scale.left_out, settings)?,
+                    normalization: normalization.clone(),
+                    correction_limit: settings.correction_limit,
+                })
             };
-            let (parameters, history) = train_variant(&physics, &parts, settings, progress)?;
-            let twin = Twin::new(taxels.to_vec(), physics, parameters);
-            let predictions: Vec<_> = parts
-                .validation
-                .iter()
-                .map(|press| twin.predict(&press.features))
-                .collect();
-            let validation = score(parts.validation.iter().copied(), &predictions, scale);
+            let of_train = physics(&split.train)?;
+            let mut history = Vec::new();
+            let parameters = if variant.has_perceptron() {
+                let (parameters, losses) = train_variant(&of_train, &parts, split, settings, progress)?;
+                history = losses;
+                parameters
+            } else {
+                Parameters::new(&of_train, &[], settings.seed)
+            };
+            let mut twin = Twin::new(taxels.to_vec(), of_train, parameters);
+            let validation = score_some(&twin, presses, &split.validation, scale);
+            if !variant.has_perceptron() {
+                // Nothing that the validation presses stopped: they may teach as well, now that they have judged.
+                let of_both = physics(&both)?;
+                let parameters = Parameters::new(&of_both, &[], settings.seed);
+                twin = Twin::new(taxels.to_vec(), of_both, parameters);
+            }
             Ok(Trained {
                 twin,
                 validation,
@@ -122,27 +119,17 @@ pub fn choose(trained: &[Trained]) -> Option<&Trained> {
 }
 
 struct Parts<'a> {
-    train: Vec<&'a PairedPress>,
-    validation: Vec<&'a PairedPress>,
+    presses: &'a [PairedPress],
+    n_taxels: usize,
 }
 
 impl<'a> Parts<'a> {
     fn new(presses: &'a [PairedPress], taxels: &[String], split: &Split) -> Result<Self, DigitacError> {
-        let part = |indices: &[usize]| -> Result<Vec<&'a PairedPress>, DigitacError> {
-            let missing = |index: &usize| DigitacError::TooFew {
+        for index in split.train.iter().chain(&split.validation) {
+            let press = presses.get(*index).ok_or_else(|| DigitacError::TooFew {
                 expected: format!("a press number {index}, as the split says"),
                 found: format!("{} presses", presses.len()),
-            };
-            indices
-                .iter()
-                .map(|index| presses.get(*index).ok_or_else(|| missing(index)))
-                .collect()
-        };
-        let parts = Self {
-            train: part(&split.train)?,
-            validation: part(&split.validation)?,
-        };
-        for press in parts.train.iter().chain(&parts.validation) {
+            })?;
             let f = &press.features;
             let widths = [&press.readings_kpa, &f.pressure_kpa, &f.stress_kpa_per_mm];
             if widths
@@ -153,13 +140,82 @@ impl<'a> Parts<'a> {
                 return Err(DigitacError::press(&press.name, problem));
             }
         }
-        if parts.train.is_empty() || parts.validation.is_empty() {
+        if split.train.is_empty() || split.validation.is_empty() {
             return Err(DigitacError::TooFew {
                 expected: "presses to train and to validate with".into(),
-                found: format!("{} and {}", parts.train.len(), parts.validation.len()),
+                found: format!("{} and {}", split.train.len(), split.validation.len()),
             });
         }
-        Ok(parts)
+        Ok(Self {
+            presses,
+            n_taxels: taxels.len(),
+        })
+    }
+
+    fn of(&self, indices: &[usize]) -> Vec<&'a PairedPress> {
+        indices.iter().map(|&index| &self.presses[index]).collect()
+    }
+
+    /// The barometers that fit some presses best.
+    fn gains(
+        &self,
+        variant: Variant,
+        teachers: &[usize],
+        left_out: &BTreeSet<usize>,
+        settings: &TrainSettings,
+    ) -> Result<Gains, DigitacError> {
+        let is_static = self.presses.iter().all(|press| press.features.n_frames() < 2);
+        let model = BarometerModel {
+            time_constants_s: if variant.has_memory() && !is_static {
+                settings.time_constants_s.clone()
+            } else {
+                Vec::new()
+            },
+            has_port_law: settings.port_law,
+        };
+        let teachers: BTreeSet<usize> = teachers.iter().copied().collect();
+        let presses = in_order(self.presses.iter().map(|press| &press.mounting[..]));
+        let fitted: Vec<Fitted<'_>> = presses
+            .iter()
+            .map(|&index| {
+                let press = &self.presses[index];
+                Fitted {
+                    mounting: &press.mounting,
+                    features: &press.features,
+                    readings_kpa: &press.readings_kpa,
+                    valid: &press.valid,
+                    is_used: teachers.contains(&index),
+                }
+            })
+            .collect();
+        let pressure = |k: usize| {
+            let rows = fitted.iter().flat_map(|press| &press.features.pressure_kpa);
+            rows.map(|row| row[k]).collect()
+        };
+        let known = Known {
+            kpa: (0..self.n_taxels).map(pressure).collect(),
+        };
+        let series = Series::new(&fitted, self.n_taxels, left_out);
+        Ok(fit(&known, &series, &model, left_out, None)?.gains)
+    }
+
+    /// Presses as a network is taught with them: as if the gel had rested before each. What the gel still remembers of earlier presses, as
+    /// the physics alone says it, is taken from their readings.
+    fn rested(&self, physics: &Physics, indices: &[usize]) -> Vec<PairedPress> {
+        let all: Vec<&Features> = self.presses.iter().map(|press| &press.features).collect();
+        let remembered = physics.gains.readings_kpa(&all);
+        let rested = |&index: &usize| {
+            let mut press = self.presses[index].clone();
+            press.features.since_previous_s = None;
+            let alone = physics.gains.readings_kpa(&[&press.features]).swap_remove(0);
+            for ((row, with), without) in press.readings_kpa.iter_mut().zip(&remembered[index]).zip(&alone) {
+                for ((reading, with), without) in row.iter_mut().zip(with).zip(without) {
+                    *reading -= with - without;
+                }
+            }
+            press
+        };
+        indices.iter().map(rested).collect()
     }
 }
 
@@ -167,12 +223,13 @@ impl<'a> Parts<'a> {
 fn train_variant(
     physics: &Physics,
     parts: &Parts<'_>,
+    split: &Split,
     settings: &TrainSettings,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(Parameters, Vec<Epoch>), DigitacError> {
     let variant = physics.variant;
-    let train = gather(physics, &parts.train, settings);
-    let validation = gather(physics, &parts.validation, settings);
+    let train = gather(physics, &parts.rested(physics, &split.train), settings);
+    let validation = gather(physics, &parts.rested(physics, &split.validation), settings);
     let mut random = seed::stream(settings.seed, &format!("training/{variant}"));
     let mut parameters = Parameters::new(physics, settings.hidden(variant), settings.seed);
     let mut optimizer = AdamW::new(
@@ -231,7 +288,7 @@ fn train_variant(
 }
 
 /// Presses in batches of about the size of the settings.
-fn gather(physics: &Physics, presses: &[&PairedPress], settings: &TrainSettings) -> Vec<Batch> {
+fn gather(physics: &Physics, presses: &[PairedPress], settings: &TrainSettings) -> Vec<Batch> {
     let n_frames = presses
         .iter()
         .map(|p| p.features.n_frames().min(settings.max_frames))
@@ -241,7 +298,7 @@ fn gather(physics: &Physics, presses: &[&PairedPress], settings: &TrainSettings)
     batches(&(0..presses.len()).collect::<Vec<_>>(), size, settings.seed)
         .iter()
         .map(|batch| {
-            let chosen: Vec<&PairedPress> = batch.iter().map(|&index| presses[index]).collect();
+            let chosen: Vec<&PairedPress> = batch.iter().map(|&index| &presses[index]).collect();
             Batch::new(physics, &chosen, settings.max_frames)
         })
         .collect()

@@ -158,6 +158,8 @@ fn paired(press: &PressEvaluation) -> PairedPress {
             pressure_kpa: press.predicted_kpa.clone(),
             stress_kpa_per_mm: vec![vec![0.0; n_taxels]; n_frames],
             simulated: vec![true; n_frames],
+            since_previous_s: None,
+            zero_frames: 0..0,
         },
         measured_force_n: Some(force(0.05)),
         readings_kpa: press.measured_kpa.clone(),
@@ -175,6 +177,7 @@ fn table(failure: Option<&str>) -> DepthTable {
         depth_mm: 0.1 * f64::from(step),
         force_n: 0.2 * f64::from(step),
         port_pressure_kpa: vec![0.0; 8],
+        port_slope_kpa_per_mm: vec![[0.0; 3]; 8],
         stress_feature_kpa_per_mm: vec![0.0; 8],
         quality: SolveQuality {
             iterations: 4,
@@ -220,8 +223,10 @@ fn results(sensor: Sensor, presses: Vec<PressEvaluation>) -> Results {
             variant: Variant::PressureMemory,
             taxels,
             twin: twin(1.27),
+            warped: Errors::default(),
             zero: twin(38.0),
             polynomial: Some(twin(3.4)),
+            kernel: Some(twin(2.1)),
             presses,
         },
         variants: vec![
@@ -232,10 +237,13 @@ fn results(sensor: Sensor, presses: Vec<PressEvaluation>) -> Results {
         bench: BenchEstimate {
             tip_radius_mm: Some(estimate(2.85, 0.12)),
             contact_offset_mm: BTreeMap::from([("sphere_a".to_owned(), estimate(0.041, 0.009))]),
+            ports: Vec::new(),
+            has_history: false,
             gains: Some(Gains {
                 gain: (0..n_taxels)
                     .map(|taxel| 0.9 + 0.35 * ripple(taxel + 7))
                     .collect(),
+                stiffening_per_kpa: vec![0.0; 8],
                 memory: vec![Vec::new(); n_taxels],
                 time_constants_s: Vec::new(),
             }),

@@ -47,14 +47,17 @@ fn compared<'a>(report: &TwinReport<'a>) -> Vec<(&'static str, &'a Errors, Ink)>
     let evaluation = report.evaluation;
     let polynomial = evaluation.polynomial.as_ref();
     let polynomial = polynomial.map(|score| ("static polynomial", &score.overall, Ink::Sensor));
-    let floor = report
+    let kernel = evaluation.kernel.as_ref();
+    let kernel = kernel.map(|score| ("fitted curve", &score.overall, Ink::Sensor));
+    let repeats = report
         .repeatability
-        .map(|found| ("repeatability", &found.errors, Ink::Series(2)));
+        .map(|found| ("the same press again", &found.errors, Ink::Series(2)));
     [
         Some(("this twin", &evaluation.twin.overall, Ink::Twin)),
         Some(("zero", &evaluation.zero.overall, Ink::Sensor)),
         polynomial,
-        floor,
+        kernel,
+        repeats,
     ]
     .into_iter()
     .flatten()

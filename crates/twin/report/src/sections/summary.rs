@@ -53,10 +53,16 @@ fn comparison(report: &TwinReport<'_>) -> String {
             percent(polynomial.overall.nearest_in_contact.percent)
         );
     }
+    if let Some(kernel) = &evaluation.kernel {
+        text += &format!(
+            ", a fitted curve {}",
+            percent(kernel.overall.nearest_in_contact.percent)
+        );
+    }
     text += ".";
     if let Some(repeatability) = report.repeatability {
         text += &format!(
-            " The sensor repeats itself to within {}: the floor for any twin.",
+            " Two presses of the same place, depth and speed differ by {}.",
             percent(repeatability.errors.nearest_in_contact.percent)
         );
     }

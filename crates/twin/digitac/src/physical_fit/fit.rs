@@ -1,0 +1,443 @@
+//! Fits barometers, and what is unknown about the bench, to measured presses at once.
+//!
+//! The sum of absolute deviations is minimized, each over the largest reading of its file. Readings are linear in what the memory sees, so
+//! each column of the Jacobian is a derivative of the elastic reading that goes through the same memory.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::{Elastic, Pressures, Series};
+use crate::DigitacError;
+use crate::features::{Gains, overstress_step, port_reading, port_slopes};
+use crate::numerics::{Quadratic, Unknown, fit_nonnegative, minimize_robust};
+
+/// Deviations below this share of the largest reading count quadratically, larger ones linearly.
+const CORNER: f64 = 2e-3;
+/// How far from its start a time constant is looked for, as a factor.
+const TIME_CONSTANT_REACH: f64 = 6.0;
+/// Smallest and largest share of an overstress in the reading.
+const SHARES: [f64; 2] = [0.0, 5.0];
+/// Smallest and largest relative growth of a reading at the largest reading of all.
+const STIFFENING: [f64; 2] = [-1.0, 3.0];
+/// Pull of that growth to zero.
+const STIFFENING_PULL: f64 = 1e-5;
+/// How far from its start a gain is looked for, as a factor.
+const GAIN_REACH: f64 = 100.0;
+/// Gains below this share of the largest start there.
+const SMALLEST_GAIN: f64 = 1e-4;
+
+/// What barometers can do.
+#[derive(Clone, Debug)]
+pub(crate) struct BarometerModel {
+    /// Time constants that the fit starts from, s; none for barometers without memory.
+    pub(crate) time_constants_s: Vec<f64>,
+    /// Whether readings may grow otherwise than in proportion to the pressure.
+    pub(crate) has_port_law: bool,
+}
+
+/// The result of a fit.
+pub(crate) struct Solution {
+    /// Values of the unknowns of the port pressures.
+    pub(crate) values: Vec<f64>,
+    pub(crate) gains: Gains,
+    /// Weighted mean of the absolute deviations over the largest readings.
+    pub(crate) deviation: f64,
+}
+
+/// Fits to the readings of a series, from scratch or from where another fit ended. What is common to all taxels does not depend on those
+/// that are left out; these get gains all the same.
+pub(crate) fn fit(
+    elastic: &dyn Elastic,
+    series: &Series,
+    model: &BarometerModel,
+    left_out: &BTreeSet<usize>,
+    near: Option<&Solution>,
+) -> Result<Solution, DigitacError> {
+    let mut unknowns = elastic.unknowns();
+    let n_elastic = unknowns.len();
+    let gains = if let Some(near) = near {
+        for (unknown, value) in unknowns.iter_mut().zip(&near.values) {
+            unknown.start = *value;
+        }
+        near.gains.clone()
+    } else {
+        let start: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
+        start_gains(
+            &elastic.pressures(&start, false)?,
+            series,
+            &model.time_constants_s,
+        )
+    };
+    let largest_kpa = series
+        .per_kpa
+        .iter()
+        .filter(|p| **p > 0.0)
+        .map(|p| p.recip())
+        .fold(0.0, f64::max);
+    let layout = Layout {
+        n_elastic,
+        n_constants: model.time_constants_s.len(),
+        largest_kpa,
+    };
+    unknowns.extend(layout.unknowns(&gains, model));
+    let problem = Problem {
+        elastic,
+        series,
+        left_out,
+        layout: &layout,
+    };
+    let near = |x: &[f64]| problem.near(x);
+    let (x, _) = minimize_robust(&unknowns, near, |x| problem.cost(x))?;
+    Ok(Solution {
+        gains: layout.gains(&x, series.weights.len()),
+        deviation: problem.deviation(&x)?,
+        values: x[..n_elastic].to_vec(),
+    })
+}
+
+/// Nonnegative gains and shares that fit best at the time constants, by least absolute deviations.
+fn start_gains(pressures: &Pressures, series: &Series, time_constants_s: &[f64]) -> Gains {
+    let all = 0..series.n_frames();
+    let mut gains = Gains {
+        gain: Vec::new(),
+        stiffening_per_kpa: vec![0.0; pressures.kpa.len()],
+        memory: Vec::new(),
+        time_constants_s: time_constants_s.to_vec(),
+    };
+    let fadings: Vec<Fading> = time_constants_s
+        .iter()
+        .map(|tau| Fading::new(&series.since_s, *tau))
+        .collect();
+    for (k, pressure) in pressures.kpa.iter().enumerate() {
+        let used: Vec<usize> = (0..series.n_frames())
+            .filter(|i| series.weights[k][*i] > 0.0)
+            .collect();
+        let pick = |mut values: Vec<f64>| -> Vec<f64> {
+            series.set_to_zero(&all, &mut values);
+            used.iter().map(|&i| values[i] * series.per_kpa[i]).collect()
+        };
+        let mut columns = vec![pick(pressure.clone())];
+        columns.extend(fadings.iter().map(|fading| pick(fading.follow(&all, pressure))));
+        let target: Vec<f64> = used
+            .iter()
+            .map(|&i| series.readings_kpa[k][i] * series.per_kpa[i])
+            .collect();
+        let (fit, _) = fit_nonnegative(&columns, &target);
+        gains.gain.push(fit[0]);
+        let share = |a: &f64| if fit[0] > 0.0 { a / fit[0] } else { 0.0 };
+        gains.memory.push(fit[1..].iter().map(share).collect());
+    }
+    gains
+}
+
+/// Which unknown stands where: those of the port pressures, ln time constants, and of each taxel ln gain, relative growth at the largest
+/// reading, and shares of the overstresses.
+struct Layout {
+    n_elastic: usize,
+    n_constants: usize,
+    largest_kpa: f64,
+}
+
+impl Layout {
+    fn unknowns(&self, gains: &Gains, model: &BarometerModel) -> Vec<Unknown> {
+        let unknown = |start: f64, bounds: [f64; 2], pull: f64| Unknown {
+            start,
+            bounds,
+            center: 0.0,
+            pull,
+        };
+        let around = |center: f64, reach: f64| unknown(center, [center - reach, center + reach], 0.0);
+        let constants = gains.time_constants_s.iter();
+        let mut unknowns: Vec<Unknown> = constants
+            .map(|tau| around(tau.ln(), TIME_CONSTANT_REACH.ln()))
+            .collect();
+        let largest = gains.gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        for (k, (gain, shares)) in gains.gain.iter().zip(&gains.memory).enumerate() {
+            unknowns.push(around(gain.max(SMALLEST_GAIN * largest).ln(), GAIN_REACH.ln()));
+            let stiffening = if model.has_port_law { STIFFENING } else { [0.0; 2] };
+            unknowns.push(unknown(
+                self.largest_kpa * gains.stiffening_per_kpa[k],
+                stiffening,
+                STIFFENING_PULL,
+            ));
+            unknowns.extend(shares.iter().map(|share| unknown(*share, SHARES, 0.0)));
+        }
+        unknowns
+    }
+
+    /// Where the unknowns of a taxel start.
+    fn of_taxel(&self, k: usize) -> usize {
+        self.n_elastic + self.n_constants + k * (2 + self.n_constants)
+    }
+
+    fn gains(&self, x: &[f64], n_taxels: usize) -> Gains {
+        let of = |k: usize| &x[self.of_taxel(k)..self.of_taxel(k + 1)];
+        let constants = &x[self.n_elastic..self.n_elastic + self.n_constants];
+        Gains {
+            gain: (0..n_taxels).map(|k| of(k)[0].exp()).collect(),
+            stiffening_per_kpa: (0..n_taxels)
+                .map(|k| of(k)[1] / self.largest_kpa.max(f64::MIN_POSITIVE))
+                .collect(),
+            memory: (0..n_taxels).map(|k| of(k)[2..].to_vec()).collect(),
+            time_constants_s: constants.iter().map(|ln| ln.exp()).collect(),
+        }
+    }
+}
+
+/// The memory of one time constant over all frames.
+struct Fading {
+    /// Shares of the old overstress that stay, and of the change that arrives, with their derivatives by ln time constant; `[n_frames]`.
+    shares: Vec<[f64; 4]>,
+}
+
+impl Fading {
+    fn new(since_s: &[Option<f64>], time_constant_s: f64) -> Self {
+        let shares = since_s.iter().map(|since_s| {
+            since_s.map_or([0.0; 4], |since_s| {
+                let (kept, arrived) = overstress_step(since_s, time_constant_s);
+                [kept, arrived, kept * since_s / time_constant_s, arrived - kept]
+            })
+        });
+        Self {
+            shares: shares.collect(),
+        }
+    }
+
+    /// The overstress that follows values, which belong to the frames of `range` and are zero before it.
+    fn follow(&self, range: &Range<usize>, values: &[f64]) -> Vec<f64> {
+        let mut q = vec![0.0; values.len()];
+        for (i, [kept, arrived, ..]) in self.shares[range.clone()].iter().enumerate().skip(1) {
+            q[i] = kept * q[i - 1] + arrived * (values[i] - values[i - 1]);
+        }
+        q
+    }
+
+    /// Derivative by ln time constant of an overstress that follows values.
+    fn slope(&self, values: &[f64], q: &[f64]) -> Vec<f64> {
+        let mut slope = vec![0.0; values.len()];
+        for (i, [kept, _, kept_slope, arrived_slope]) in self.shares.iter().enumerate().skip(1) {
+            slope[i] =
+                kept * slope[i - 1] + kept_slope * q[i - 1] + arrived_slope * (values[i] - values[i - 1]);
+        }
+        slope
+    }
+}
+
+struct Problem<'a> {
+    elastic: &'a dyn Elastic,
+    series: &'a Series,
+    left_out: &'a BTreeSet<usize>,
+    layout: &'a Layout,
+}
+
+/// What one taxel reads, and what it is made of.
+struct TaxelPass {
+    elastic_kpa: Vec<f64>,
+    overstress_kpa: Vec<Vec<f64>>,
+    relaxed_kpa: Vec<f64>,
+    /// Over the largest reading of the mounting.
+    deviations: Vec<f64>,
+}
+
+impl Problem<'_> {
+    fn fadings(&self, gains: &Gains) -> Vec<Fading> {
+        let constants = gains.time_constants_s.iter();
+        constants
+            .map(|tau| Fading::new(&self.series.since_s, *tau))
+            .collect()
+    }
+
+    fn pass(&self, k: usize, pressure_kpa: &[f64], gains: &Gains, fadings: &[Fading]) -> TaxelPass {
+        let all = 0..pressure_kpa.len();
+        let elastic_kpa: Vec<f64> = pressure_kpa.iter().map(|p| gains.gain[k] * p).collect();
+        let stiffening = gains.stiffening_per_kpa[k];
+        let relaxed_kpa: Vec<f64> = elastic_kpa.iter().map(|e| port_reading(stiffening, *e)).collect();
+        let overstress_kpa: Vec<Vec<f64>> = fadings
+            .iter()
+            .map(|fading| fading.follow(&all, &relaxed_kpa))
+            .collect();
+        let mut readings = relaxed_kpa.clone();
+        for (share, q) in gains.memory[k].iter().zip(&overstress_kpa) {
+            readings
+                .iter_mut()
+                .zip(q)
+                .for_each(|(reading, q)| *reading += share * q);
+        }
+        self.series.set_to_zero(&all, &mut readings);
+        let measured = self.series.readings_kpa[k].iter().zip(&self.series.per_kpa);
+        TaxelPass {
+            deviations: readings
+                .iter()
+                .zip(measured)
+                .map(|(r, (m, per_kpa))| (r - m) * per_kpa)
+                .collect(),
+            elastic_kpa,
+            overstress_kpa,
+            relaxed_kpa,
+        }
+    }
+
+    fn cost(&self, x: &[f64]) -> Result<f64, DigitacError> {
+        self.sum(x, &|deviation| deviation.hypot(CORNER) - CORNER, true)
+    }
+
+    /// Weighted mean of the absolute deviations of the taxels that are not left out.
+    fn deviation(&self, x: &[f64]) -> Result<f64, DigitacError> {
+        self.sum(x, &|deviation| deviation.abs(), false)
+    }
+
+    fn sum(&self, x: &[f64], penalty: &dyn Fn(f64) -> f64, all_taxels: bool) -> Result<f64, DigitacError> {
+        let pressures = self.elastic.pressures(&x[..self.layout.n_elastic], false)?;
+        let gains = self.layout.gains(x, pressures.kpa.len());
+        let fadings = self.fadings(&gains);
+        let taxels = pressures.kpa.iter().enumerate();
+        let counted = taxels.filter(|(k, _)| all_taxels || !self.left_out.contains(k));
+        Ok(counted
+            .map(|(k, kpa)| {
+                let pass = self.pass(k, kpa, &gains, &fadings);
+                let weighted = pass.deviations.iter().zip(&self.series.weights[k]);
+                weighted
+                    .map(|(deviation, weight)| weight * penalty(*deviation))
+                    .sum::<f64>()
+            })
+            .sum())
+    }
+
+    fn near(&self, x: &[f64]) -> Result<Quadratic, DigitacError> {
+        let n = x.len();
+        let pressures = self.elastic.pressures(&x[..self.layout.n_elastic], true)?;
+        let gains = self.layout.gains(x, pressures.kpa.len());
+        let fadings = self.fadings(&gains);
+        let mut quadratic = Quadratic {
+            gradient: vec![0.0; n],
+            matrix: vec![0.0; n * n],
+        };
+        for (k, kpa) in pressures.kpa.iter().enumerate() {
+            let pass = self.pass(k, kpa, &gains, &fadings);
+            let columns = self.columns(k, &pass, &pressures, &gains, &fadings);
+            self.add(k, &pass, &columns, &mut quadratic);
+        }
+        Ok(quadratic)
+    }
+
+    /// Derivatives of a taxel's deviations.
+    fn columns(
+        &self,
+        k: usize,
+        pass: &TaxelPass,
+        pressures: &Pressures,
+        gains: &Gains,
+        fadings: &[Fading],
+    ) -> Vec<Column> {
+        let all = 0..pass.relaxed_kpa.len();
+        let law: Vec<[f64; 2]> = pass
+            .elastic_kpa
+            .iter()
+            .map(|e| port_slopes(gains.stiffening_per_kpa[k], *e))
+            .collect();
+        // What the memory and the zero make of a change of the relaxed reading.
+        let remember = |unknown: usize, frames: Range<usize>, mut values: Vec<f64>| {
+            let followed: Vec<Vec<f64>> = fadings
+                .iter()
+                .map(|fading| fading.follow(&frames, &values))
+                .collect();
+            for (share, q) in gains.memory[k].iter().zip(&followed) {
+                values
+                    .iter_mut()
+                    .zip(q)
+                    .for_each(|(value, q)| *value += share * q);
+            }
+            self.column(unknown, frames, values)
+        };
+        let own = self.layout.of_taxel(k);
+        let of_gain = law.iter().zip(&pass.elastic_kpa).map(|([slope, _], e)| slope * e);
+        let of_stiffening = law.iter().map(|[_, slope]| slope / self.layout.largest_kpa);
+        let mut columns = vec![
+            remember(own, all.clone(), of_gain.collect()),
+            remember(own + 1, all.clone(), of_stiffening.collect()),
+        ];
+        for (j, q) in pass.overstress_kpa.iter().enumerate() {
+            columns.push(self.column(own + 2 + j, all.clone(), q.clone()));
+        }
+        if self.left_out.contains(&k) {
+            return columns;
+        }
+        for (j, (fading, q)) in fadings.iter().zip(&pass.overstress_kpa).enumerate() {
+            let share = gains.memory[k][j];
+            let slope = fading.slope(&pass.relaxed_kpa, q).into_iter().map(|s| share * s);
+            columns.push(self.column(self.layout.n_elastic + j, all.clone(), slope.collect()));
+        }
+        for slope in &pressures.slopes {
+            let kpa = match slope.taxel {
+                None => &slope.kpa[k],
+                Some(taxel) if taxel == k => &slope.kpa[0],
+                Some(_) => continue,
+            };
+            let law = &law[slope.frames.clone()];
+            let values = kpa
+                .iter()
+                .zip(law)
+                .map(|(p, [by_elastic, _])| by_elastic * gains.gain[k] * p);
+            columns.push(remember(slope.unknown, slope.frames.clone(), values.collect()));
+        }
+        columns
+    }
+
+    fn column(&self, unknown: usize, frames: Range<usize>, mut values: Vec<f64>) -> Column {
+        self.series.set_to_zero(&frames, &mut values);
+        let per_kpa = &self.series.per_kpa[frames.clone()];
+        values
+            .iter_mut()
+            .zip(per_kpa)
+            .for_each(|(value, per_kpa)| *value *= per_kpa);
+        Column {
+            unknown,
+            frames,
+            values,
+        }
+    }
+
+    fn add(&self, k: usize, pass: &TaxelPass, columns: &[Column], quadratic: &mut Quadratic) {
+        let n = quadratic.gradient.len();
+        let weights: Vec<f64> = pass
+            .deviations
+            .iter()
+            .zip(&self.series.weights[k])
+            .map(|(deviation, weight)| weight / deviation.hypot(CORNER))
+            .collect();
+        for (a, column) in columns.iter().enumerate() {
+            let weighted: Vec<f64> = column
+                .values
+                .iter()
+                .zip(&weights[column.frames.clone()])
+                .map(|(value, weight)| value * weight)
+                .collect();
+            let slopes = weighted.iter().zip(&pass.deviations[column.frames.clone()]);
+            quadratic.gradient[column.unknown] += slopes.map(|(w, deviation)| w * deviation).sum::<f64>();
+            for other in &columns[..=a] {
+                let common =
+                    column.frames.start.max(other.frames.start)..column.frames.end.min(other.frames.end);
+                if common.is_empty() {
+                    continue;
+                }
+                let part = |frames: &Range<usize>| common.start - frames.start..common.end - frames.start;
+                let products = weighted[part(&column.frames)]
+                    .iter()
+                    .zip(&other.values[part(&other.frames)]);
+                let sum: f64 = products.map(|(a, b)| a * b).sum();
+                let (i, j) = (
+                    column.unknown.max(other.unknown),
+                    column.unknown.min(other.unknown),
+                );
+                quadratic.matrix[i * n + j] += sum;
+            }
+        }
+    }
+}
+
+/// Derivative of a taxel's deviations by one unknown, over some frames; zero elsewhere.
+struct Column {
+    unknown: usize,
+    frames: Range<usize>,
+    values: Vec<f64>,
+}
