@@ -441,3 +441,155 @@ struct Column {
     frames: Range<usize>,
     values: Vec<f64>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Features;
+    use crate::features::zero_frames;
+    use crate::physical_fit::{Fitted, Slope};
+
+    /// Two presses that follow each other within a second, down, held and up again, and one after a rest; two taxels.
+    fn presses() -> Vec<Features> {
+        let press = |start_s: f64, deepest_mm: f64, since_previous_s: Option<f64>| {
+            let time_s: Vec<f64> = (0..120).map(|i| start_s + 0.06 * f64::from(i)).collect();
+            let way_mm = |t: f64| (t - 1.2).min(deepest_mm).min(6.0 - t).max(-0.8);
+            let depth_mm: Vec<f64> = time_s.iter().map(|t| way_mm(t - start_s)).collect();
+            let pressure =
+                |depth_mm: &f64| vec![depth_mm.max(0.0).powf(1.6), 0.4 * depth_mm.max(0.0).powf(1.4)];
+            Features {
+                force_n: vec![0.0; time_s.len()],
+                pressure_kpa: depth_mm.iter().map(pressure).collect(),
+                stress_kpa_per_mm: vec![vec![0.0; 2]; time_s.len()],
+                simulated: vec![true; time_s.len()],
+                since_previous_s,
+                zero_frames: zero_frames(&time_s, &depth_mm),
+                time_s,
+                depth_mm,
+            }
+        };
+        vec![
+            press(0.0, 1.5, None),
+            press(7.5, 1.0, Some(0.36)),
+            press(0.0, 2.0, None),
+        ]
+    }
+
+    fn truth() -> Gains {
+        Gains {
+            gain: vec![0.8, 1.3],
+            stiffening_per_kpa: vec![0.15, -0.1],
+            memory: vec![vec![0.3, 0.1], vec![0.2, 0.25]],
+            time_constants_s: vec![0.4, 5.0],
+        }
+    }
+
+    fn series(presses: &[Features], readings_kpa: &[Vec<Vec<f64>>], valid: &[Vec<bool>]) -> Series {
+        let fitted: Vec<Fitted<'_>> = presses
+            .iter()
+            .zip(readings_kpa)
+            .map(|(features, readings_kpa)| Fitted {
+                mounting: "file",
+                features,
+                readings_kpa,
+                valid,
+                is_used: true,
+            })
+            .collect();
+        Series::new(&fitted, 2, &BTreeSet::new())
+    }
+
+    /// Pressures that grow by a share that is unknown.
+    struct Scaled {
+        kpa: Vec<Vec<f64>>,
+    }
+
+    impl Elastic for Scaled {
+        fn unknowns(&self) -> Vec<Unknown> {
+            vec![Unknown {
+                start: 0.1,
+                bounds: [-0.5, 0.5],
+                center: 0.0,
+                pull: 0.0,
+            }]
+        }
+
+        fn pressures(&self, values: &[f64], _with_slopes: bool) -> Result<Pressures, DigitacError> {
+            let scaled = |by: f64| {
+                self.kpa
+                    .iter()
+                    .map(|row| row.iter().map(|p| by * p).collect())
+                    .collect()
+            };
+            Ok(Pressures {
+                kpa: scaled(1.0 + values[0]),
+                slopes: vec![Slope {
+                    unknown: 0,
+                    taxel: None,
+                    frames: 0..self.kpa[0].len(),
+                    kpa: scaled(1.0),
+                }],
+            })
+        }
+    }
+
+    fn kpa(presses: &[Features]) -> Vec<Vec<f64>> {
+        let rows = || presses.iter().flat_map(|press| &press.pressure_kpa);
+        (0..2).map(|k| rows().map(|row| row[k]).collect()).collect()
+    }
+
+    #[test]
+    fn barometers_are_recovered_from_what_they_read_along_presses_that_follow_each_other() {
+        let presses = presses();
+        let readings_kpa = truth().readings_kpa(&presses.iter().collect::<Vec<_>>());
+        let valid = vec![vec![true; 2]; 120];
+        let series = series(&presses, &readings_kpa, &valid);
+        let model = BarometerModel {
+            time_constants_s: vec![0.25, 4.0],
+            has_port_law: true,
+        };
+        let known = crate::physical_fit::Known { kpa: kpa(&presses) };
+        let found = fit(&known, &series, &model, &BTreeSet::new(), None).unwrap();
+        assert!(found.deviation < 1e-3, "{} {:?}", found.deviation, found.gains);
+        let near = |found: &[f64], expected: &[f64]| {
+            let pairs = found.iter().zip(expected);
+            pairs.fold(0.0_f64, |most, (f, e)| most.max((f - e).abs()))
+        };
+        assert!(near(&found.gains.gain, &truth().gain) < 0.02, "{:?}", found.gains);
+        let stiffening = near(&found.gains.stiffening_per_kpa, &truth().stiffening_per_kpa);
+        assert!(stiffening < 0.02, "{:?}", found.gains);
+    }
+
+    #[test]
+    fn slopes_of_the_cost_are_quotients_of_differences() {
+        let presses = presses();
+        let readings_kpa = truth().readings_kpa(&presses.iter().collect::<Vec<_>>());
+        let valid = vec![vec![true; 2]; 120];
+        let series = series(&presses, &readings_kpa, &valid);
+        let layout = Layout {
+            n_elastic: 1,
+            n_constants: 2,
+            largest_kpa: 4.0,
+        };
+        let problem = Problem {
+            elastic: &Scaled { kpa: kpa(&presses) },
+            series: &series,
+            left_out: &BTreeSet::new(),
+            layout: &layout,
+        };
+        let x = [0.1, -1.2, 1.5, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2];
+        let gradient = problem.near(&x).unwrap().gradient;
+        for (i, slope) in gradient.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut x = x;
+                x[i] += by;
+                problem.cost(&x).unwrap()
+            };
+            let quotient = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            assert!(
+                (slope - quotient).abs() < 1e-5 + 1e-3 * quotient.abs(),
+                "{i}: {slope}, quotient {quotient}"
+            );
+        }
+    }
+}
