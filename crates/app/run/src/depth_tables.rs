@@ -12,9 +12,8 @@ use twintac_simulate::{Gel, PressPlace};
 use crate::Progress;
 use crate::files::{read_json, sha256, write_json};
 
-/// Over the gel's height, the spacing of a lattice of places that is simulated in place of more places, and interpolated: the largest at
-/// which that changes pressures by less than the mesh does.
-const LATTICE_SPACING: f64 = 0.25;
+/// Spacing of a lattice over the gel's height, for places along a line and over a plane, which has so many more of them.
+const LATTICE_SPACINGS: [f64; 2] = [1.0 / 4.0, 1.0 / 3.0];
 
 /// Sweeps of one gel, kept in a folder: what is there is not computed again.
 pub(crate) struct DepthTableStore<'a> {
@@ -156,7 +155,9 @@ impl DepthTableStore<'_> {
         let at = |place: &PressPlace| DVec2::new(place.x_mm, place.y_mm);
         let low = own().map(at).reduce(DVec2::min)?;
         let high = own().map(at).reduce(DVec2::max)?;
-        let lattice = Lattice::covering(low, high, LATTICE_SPACING * self.gel.height_mm());
+        let is_plane = (high - low).min_element() > 0.0;
+        let spacing = LATTICE_SPACINGS[usize::from(is_plane)];
+        let lattice = Lattice::covering(low, high, spacing * self.gel.height_mm());
         let place = PressPlace {
             depth_mm: own().map(|place| place.depth_mm).fold(0.0, f64::max),
             enough_force_n: own().filter_map(|place| place.enough_force_n).reduce(f64::max),

@@ -68,6 +68,10 @@ impl RunSettings {
         resolved.split.seed = seed;
         resolved.train.seed = seed;
         resolved.bench.left_out = crate::doubtful::left_out(sensor);
+        let ports = sensor.taxels.iter();
+        resolved.bench.ports_mm = ports
+            .map(|taxel| taxel.position_mm.truncate().to_array())
+            .collect();
         if !has_unknown_tip(sensor, recording) {
             resolved.bench.tip_radii_mm.clear();
         }

@@ -29,8 +29,8 @@ mod training;
 
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
-    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortEstimate, features, fit_bench,
-    refine_bench,
+    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortEstimate, TipForm, features,
+    fit_bench, refine_bench,
 };
 pub use error::DigitacError;
 pub use evaluation::{

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::Estimate;
+use super::{Estimate, TipForm};
 use crate::features::{Gains, TIME_CONSTANTS_S};
 
 /// Values of a bench that no data sheet gives, fitted to training presses.
@@ -23,6 +23,9 @@ pub struct BenchEstimate {
     /// Where ports are and how wide, against the description; `[n_taxels]`, or empty if they were taken as described.
     #[serde(default)]
     pub ports: Vec<PortEstimate>,
+    /// What the tip does otherwise than a ball of its radius; `None` if the described indenter was taken as it is.
+    #[serde(default)]
+    pub tip_form: Option<TipForm>,
     /// Whether the gel remembers the presses before.
     #[serde(default)]
     pub has_history: bool,
@@ -44,6 +47,7 @@ impl BenchEstimate {
             contact_offset_elsewhere_mm: 0.0,
             stiffness: None,
             ports: Vec::new(),
+            tip_form: None,
             has_history: false,
             gains: None,
             deviation_percent: 0.0,
@@ -108,6 +112,11 @@ pub struct BenchSettings {
     pub port_law: bool,
     /// Whether the gel remembers the presses before.
     pub history: bool,
+    /// Places of the ports in the gel's plane, mm: the form of an unknown tip is fitted as a function of the distance from them. `[n_taxels]`;
+    /// empty fits none.
+    pub ports_mm: Vec<[f64; 2]>,
+    /// Pull of that function to none.
+    pub tip_form_pull: f64,
     /// Taxels that the fit leaves out, by index.
     pub left_out: BTreeSet<usize>,
     /// How many blocks of places are left out in turn for the uncertainties.
@@ -126,6 +135,8 @@ impl Default for BenchSettings {
             time_constants_s: TIME_CONSTANTS_S.to_vec(),
             port_law: true,
             history: true,
+            ports_mm: Vec::new(),
+            tip_form_pull: 1e-5,
             left_out: BTreeSet::new(),
             n_blocks: 6,
         }

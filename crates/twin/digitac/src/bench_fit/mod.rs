@@ -6,6 +6,7 @@ mod places;
 mod problem;
 mod search;
 mod simulated;
+mod tip_form;
 
 pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;
@@ -15,3 +16,4 @@ pub(crate) use search::in_order;
 pub use search::{fit_bench, refine_bench};
 pub use simulated::features;
 pub(crate) use simulated::{curves, features_along};
+pub use tip_form::TipForm;

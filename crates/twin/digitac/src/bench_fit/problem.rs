@@ -6,7 +6,8 @@ use std::ops::Range;
 use twintac_depth_table::DepthCurves;
 use twintac_recording::{Control, Press};
 
-use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate};
+use super::tip_form::N_TERMS;
+use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, TipForm};
 use crate::DigitacError;
 use crate::numerics::Unknown;
 use crate::physical_fit::{Elastic, Pressures, Slope};
@@ -21,6 +22,8 @@ const STEP: f64 = 1e-3;
 const SHIFT_PULL: f64 = 1e-3;
 /// Pull of the ports' radius to its description, for each square millimetre.
 const RADIUS_PULL: f64 = 1e-3;
+/// Largest coefficient of the tip's form.
+const FORM_LIMIT: f64 = 3.0;
 /// Presses must be spread over at least this along an axis for the ports' places along it to be fitted, mm.
 const SPREAD_MM: f64 = 2.0;
 
@@ -46,6 +49,7 @@ struct Guess<'a> {
     ln_radius: f64,
     ln_stiffness: f64,
     ports: Vec<PortEstimate>,
+    form: Option<TipForm>,
 }
 
 pub(crate) struct BenchProblem<'a> {
@@ -59,6 +63,8 @@ pub(crate) struct BenchProblem<'a> {
     ln_stiffness: [f64; 2],
     /// Axes along which ports may be shifted.
     axes: Vec<usize>,
+    /// The form of an unknown tip, without its coefficients.
+    form: Option<TipForm>,
     n_taxels: usize,
     settings: &'a BenchSettings,
 }
@@ -111,6 +117,7 @@ impl<'a> BenchProblem<'a> {
             places: (0..n_places)
                 .map(|place| resampled(curves, place, n_taxels))
                 .collect(),
+            form: (radii_mm.len() < 2).then(|| form(&presses, settings)).flatten(),
             ln_radii: radii_mm.iter().map(|radius| radius.ln()).collect(),
             presses,
             frames,
@@ -152,11 +159,16 @@ impl<'a> BenchProblem<'a> {
                 port.shift_mm[axis] = next(true).unwrap_or(0.0);
             }
         }
+        let form = self.form.clone().map(|form| TipForm {
+            coefficients: (0..N_TERMS).map(|_| next(true).unwrap_or(0.0)).collect(),
+            ..form
+        });
         Guess {
             offsets_mm,
             ln_radius,
             ln_stiffness,
             ports,
+            form,
         }
     }
 
@@ -185,6 +197,7 @@ impl<'a> BenchProblem<'a> {
             } else {
                 guess.ports.clone()
             },
+            tip_form: guess.form.clone(),
             doubts: self.doubts(values),
             ..BenchEstimate::nominal()
         }
@@ -226,6 +239,9 @@ impl<'a> BenchProblem<'a> {
                     .map(|axis| format!("the place of port {taxel} along {}", ["x", "y"][*axis])),
             );
         }
+        if self.form.is_some() {
+            names.extend((0..N_TERMS).map(|term| format!("term {term} of the tip's form")));
+        }
         names
     }
 
@@ -246,7 +262,11 @@ impl<'a> BenchProblem<'a> {
     /// Pressures and their slopes by depth and by the ports, of each frame.
     fn read(&self, guess: &Guess<'_>) -> Read {
         let n_frames = self.frames.last().map_or(0, |frames| frames.end);
-        let mut read = Read::zeros(self.n_taxels, n_frames);
+        let mut read = Read::zeros(
+            self.n_taxels,
+            n_frames,
+            if guess.form.is_some() { N_TERMS } else { 0 },
+        );
         let weights = self.radius_weights(guess.ln_radius);
         let tables: Vec<Vec<Vec<f64>>> = self.places.iter().map(|place| place.blended(&weights)).collect();
         let stiffness = guess.ln_stiffness.exp();
@@ -260,6 +280,18 @@ impl<'a> BenchProblem<'a> {
             let is_forced = press.control == Control::Force;
             let factor = if is_forced { stiffness } else { 1.0 };
             let offset_mm = offset_mm(&press.mounting);
+            let place_mm = press
+                .gel_from_indenter
+                .iter()
+                .min_by(|a, b| a.position_mm.z.total_cmp(&b.position_mm.z));
+            let place_mm = place_mm.map_or([0.0; 2], |pose| pose.position_mm.truncate().to_array());
+            let splines = guess.form.as_ref().map(|form| {
+                let taxels = 0..self.n_taxels;
+                (
+                    form,
+                    taxels.map(|k| form.splines(k, place_mm)).collect::<Vec<_>>(),
+                )
+            });
             for (frame, to) in frames.clone().enumerate() {
                 let found = if is_forced {
                     let force_n = press.force_n.as_ref().and_then(|force_n| force_n.get(frame));
@@ -280,10 +312,18 @@ impl<'a> BenchProblem<'a> {
                     };
                     let [value, x, y, wider] = [0, 1, 2, 3].map(column);
                     let slope = [x[0], y[0], wider[0]];
-                    read.kpa[k][to] = value[0] + port.change_kpa(slope);
-                    read.by_depth[k][to] = value[1] + port.change_kpa([x[1], y[1], wider[1]]);
+                    let formed = splines.as_ref().map_or(1.0, |(form, splines)| {
+                        let depth_mm = place.depth_at(i) + share * step_mm;
+                        let terms = form.terms(&splines[k], depth_mm);
+                        for (row, term) in read.terms[k].iter_mut().zip(terms) {
+                            row[to] = term;
+                        }
+                        form.factor(&splines[k], depth_mm)
+                    });
+                    read.kpa[k][to] = formed * (value[0] + port.change_kpa(slope));
+                    read.by_depth[k][to] = formed * (value[1] + port.change_kpa([x[1], y[1], wider[1]]));
                     for (to_way, slope) in read.by_port[k].iter_mut().zip(slope) {
-                        to_way[to] = slope;
+                        to_way[to] = formed * slope;
                     }
                 }
             }
@@ -299,15 +339,20 @@ struct Read {
     by_depth: Vec<Vec<f64>>,
     /// By place along x, along y, and radius; `[n_taxels][3][n_frames]`
     by_port: Vec<[Vec<f64>; 3]>,
+    /// Terms of the tip's form; `[n_taxels][N_TERMS][n_frames]`, or none.
+    terms: Vec<Vec<Vec<f64>>>,
 }
 
 impl Read {
-    fn zeros(n_taxels: usize, n_frames: usize) -> Self {
+    fn zeros(n_taxels: usize, n_frames: usize, n_terms: usize) -> Self {
         let row = || vec![0.0; n_frames];
         Self {
             kpa: (0..n_taxels).map(|_| row()).collect(),
             by_depth: (0..n_taxels).map(|_| row()).collect(),
             by_port: (0..n_taxels).map(|_| [row(), row(), row()]).collect(),
+            terms: (0..n_taxels)
+                .map(|_| (0..n_terms).map(|_| row()).collect())
+                .collect(),
         }
     }
 }
@@ -335,6 +380,9 @@ impl Elastic for BenchProblem<'_> {
         }
         let n_shifts = self.n_taxels * self.axes.len();
         unknowns.extend((0..n_shifts).map(|_| within(self.settings.port_shift_limit_mm, SHIFT_PULL)));
+        if self.form.is_some() {
+            unknowns.extend((0..N_TERMS).map(|_| within(FORM_LIMIT, self.settings.tip_form_pull)));
+        }
         unknowns
     }
 
@@ -408,12 +456,57 @@ impl Elastic for BenchProblem<'_> {
                     unknown += 1;
                 }
             }
+            if self.form.is_some() {
+                for term in 0..N_TERMS {
+                    let of_taxel = |k: usize| {
+                        read.kpa[k]
+                            .iter()
+                            .zip(&read.terms[k][term])
+                            .map(|(p, t)| p * t)
+                            .collect()
+                    };
+                    slopes.push(Slope {
+                        unknown,
+                        taxel: None,
+                        frames: all.clone(),
+                        kpa: (0..self.n_taxels).map(of_taxel).collect(),
+                    });
+                    unknown += 1;
+                }
+            }
         }
         Ok(Pressures {
             kpa: read.kpa,
             slopes,
         })
     }
+}
+
+/// Room for the form of a tip whose radius is not described.
+fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<TipForm> {
+    if settings.tip_radii_mm.len() < 2 || settings.ports_mm.is_empty() {
+        return None;
+    }
+    let poses = presses.iter().flat_map(|along| {
+        along
+            .press
+            .gel_from_indenter
+            .iter()
+            .map(move |pose| (along, pose))
+    });
+    let (mut far_mm, mut depth_mm) = (1e-3_f64, 1e-3_f64);
+    for (along, pose) in poses {
+        depth_mm = depth_mm.max(along.touch_z_mm - pose.position_mm.z);
+        for port in &settings.ports_mm {
+            far_mm = far_mm.max((port[0] - pose.position_mm.x).hypot(port[1] - pose.position_mm.y));
+        }
+    }
+    Some(TipForm {
+        ports_mm: settings.ports_mm.clone(),
+        reach_mm: 0.5 * far_mm,
+        depth_mm,
+        coefficients: vec![0.0; N_TERMS],
+    })
 }
 
 fn resampled(curves: &[Vec<DepthCurves>], place: usize, n_taxels: usize) -> Resampled {

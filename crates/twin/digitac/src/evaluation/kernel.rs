@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::baseline;
 use crate::features::TIME_CONSTANTS_S;
-use crate::numerics::Unknown;
+use crate::numerics::{Unknown, mirrored_splines};
 use crate::physical_fit::{BarometerModel, Elastic, Fitted, Pressures, Series, Slope, fit};
 use crate::{DigitacError, Features, Gains, PairedPress};
 
@@ -186,7 +186,7 @@ impl Curve {
         };
         let of_port = |port: &[f64; 2]| {
             let share = (distance_mm(press.place_mm, *port) / self.reach_mm).min(1.0);
-            let basis = basis(share * N_INTERVALS as f64);
+            let basis: [f64; N_COEFFICIENTS] = mirrored_splines(share * N_INTERVALS as f64);
             let height: f64 = basis.iter().zip(&shape[2..]).map(|(b, a)| a * b).sum();
             let power = shape[0] + shape[1] * share;
             let grown: Vec<f64> = drive
@@ -221,21 +221,6 @@ impl Curve {
         };
         self.ports_mm.iter().map(of_port).collect()
     }
-}
-
-/// Cubic B-splines at a position in intervals from the port, mirrored there.
-fn basis(position: f64) -> [f64; N_COEFFICIENTS] {
-    let hat = |x: f64| {
-        let x = x.abs();
-        if x < 1.0 {
-            2.0 / 3.0 - x * x + 0.5 * x.powi(3)
-        } else if x < 2.0 {
-            (2.0 - x).powi(3) / 6.0
-        } else {
-            0.0
-        }
-    };
-    std::array::from_fn(|j| hat(position - j as f64) + if j > 0 { hat(position + j as f64) } else { 0.0 })
 }
 
 fn distance_mm(a: [f64; 2], b: [f64; 2]) -> f64 {
