@@ -40,8 +40,11 @@ pub struct TwinFigures {
     pub by_file: BTreeMap<String, Figures>,
     /// By taxel.
     pub by_taxel: BTreeMap<String, Figures>,
-    /// Frames deeper than the simulation reached, where its end stands for them; they are scored all the same.
+    /// Frames deeper than the simulation reached. What it ends with stands for them, straight on; they are scored all the same.
     pub frames_not_simulated: usize,
+    /// All frames.
+    #[serde(default)]
+    pub frames: usize,
 }
 
 impl TwinFigures {
@@ -59,6 +62,7 @@ impl TwinFigures {
                 .zip(score.by_taxel.iter().map(Figures::from))
                 .collect(),
             frames_not_simulated: score.n_frames_not_simulated,
+            frames: score.n_frames,
         }
     }
 }

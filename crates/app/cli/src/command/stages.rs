@@ -94,6 +94,13 @@ fn headline(metrics: &Metrics) -> String {
             figures.nearest_in_contact_percent, figures.all_percent
         )
     }));
+    let beyond = metrics.twin.frames_not_simulated;
+    if beyond > 0 {
+        lines.push(format!(
+            "{:.1} % of the frames lie deeper than the simulation went; what it ends with stands for them, straight on.",
+            100.0 * beyond as f64 / metrics.twin.frames.max(beyond) as f64
+        ));
+    }
     lines.push(metrics.definition.clone());
     lines.join("\n")
 }

@@ -11,7 +11,7 @@ pub(crate) const DEFINITION: &str = "Errors are mean absolute differences betwee
     reading of the same file, in percent. 'Nearest, in contact' (the headline) takes, of the frames with depth > 0 whose largest \
     reading exceeds 3 % of the file's largest, the taxel with the largest reading. 'All' takes every taxel in every frame. 'Peak' \
     compares, press by press, the largest reading of the press with the largest prediction of the same taxel. Taxels left out count in \
-    neither; frames nearest to one are left out of the headline.";
+    neither; frames nearest to one are left out of the headline. Readings are compared on the recording's own clock, and every usable one counts.";
 
 /// Frames whose largest reading is below this fraction of the file's largest are not in contact.
 const CONTACT_FRACTION: f64 = 0.03;
@@ -78,8 +78,11 @@ pub struct Score {
     pub by_file: BTreeMap<String, Errors>,
     /// By taxel, left out or not; its headline takes the frames to which it is the nearest; `[n_taxels]`.
     pub by_taxel: Vec<Errors>,
-    /// Frames that are not scored because they are deeper than the simulation went.
+    /// Frames deeper than the simulation went, which are scored all the same: what it ends with stands for them, straight on.
     pub n_frames_not_simulated: usize,
+    /// All frames.
+    #[serde(default)]
+    pub n_frames: usize,
 }
 
 /// Scores predictions, `[n_presses][n_frames][n_taxels]`, kPa.
@@ -92,7 +95,7 @@ pub(crate) fn score<'a>(
     let mut overall = Sums::default();
     let mut by_file: BTreeMap<String, Sums> = BTreeMap::new();
     let mut by_taxel: Vec<Sums> = Vec::new();
-    let mut n_frames_not_simulated = 0;
+    let (mut n_frames_not_simulated, mut n_frames) = (0, 0);
     for (press, prediction) in presses.into_iter().zip(predictions) {
         let largest_kpa = scale.largest_kpa.get(&press.mounting).copied().unwrap_or(0.0);
         if largest_kpa <= 0.0 {
@@ -103,6 +106,7 @@ pub(crate) fn score<'a>(
             by_taxel.len().max(press.readings_kpa.first().map_or(0, Vec::len)),
             Sums::default,
         );
+        n_frames += press.readings_kpa.len();
         n_frames_not_simulated += press
             .features
             .simulated
@@ -162,6 +166,7 @@ pub(crate) fn score<'a>(
             .collect(),
         by_taxel: by_taxel.iter().map(Sums::errors).collect(),
         n_frames_not_simulated,
+        n_frames,
     }
 }
 

@@ -101,6 +101,7 @@ fn score(percent: f64, files: &[&str], n_taxels: usize) -> Score {
             .map(|taxel| errors(percent * (1.0 + 0.4 * ripple(taxel))))
             .collect(),
         n_frames_not_simulated: 0,
+        n_frames: 1000,
     }
 }
 
