@@ -176,14 +176,6 @@ impl Run {
         left_out(&self.sensor.sensor)
     }
 
-    /// Places of the ports in the gel's plane, mm.
-    pub(crate) fn ports_mm(&self) -> Vec<[f64; 2]> {
-        let taxels = self.sensor.sensor.taxels.iter();
-        taxels
-            .map(|taxel| taxel.position_mm.truncate().to_array())
-            .collect()
-    }
-
     /// What every stage depends on.
     pub(crate) fn inputs(&self) -> Inputs {
         Inputs::new(&self.caller.program)

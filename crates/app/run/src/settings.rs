@@ -68,10 +68,7 @@ impl RunSettings {
         resolved.split.seed = seed;
         resolved.train.seed = seed;
         resolved.bench.left_out = crate::doubtful::left_out(sensor);
-        let ports = sensor.taxels.iter();
-        resolved.bench.ports_mm = ports
-            .map(|taxel| taxel.position_mm.truncate().to_array())
-            .collect();
+        resolved.bench.ports_mm = ports_mm(sensor);
         if !has_unknown_tip(sensor, recording) {
             resolved.bench.tip_radii_mm.clear();
         }
@@ -80,6 +77,12 @@ impl RunSettings {
         }
         resolved
     }
+}
+
+/// Places of the ports in the gel's plane, mm.
+pub(crate) fn ports_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
+    let places = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
+    places.map(|place| place.to_array()).collect()
 }
 
 /// Whether all presses were made with one ball whose radius the sensor's description only infers.

@@ -9,6 +9,7 @@ use super::training::VariantRecord;
 use crate::error::At;
 use crate::files::{read_json, write_json};
 use crate::metrics::{self, Figures, Metrics, TwinFigures, baselines, names};
+use crate::settings::ports_mm;
 use crate::{Run, RunError};
 
 /// What the evaluation stage left: `evaluation.json`.
@@ -37,7 +38,12 @@ impl Run {
             let model = Model::load(&self.stage("training").join("held-out"))?;
             let split = &model.record.split;
             let teachers = [&split.train[..], &split.validation].concat();
-            let baselines = Baselines::fit(&presses, &teachers, &self.ports_mm(), &self.left_out())?;
+            let baselines = Baselines::fit(
+                &presses,
+                &teachers,
+                &ports_mm(&self.sensor.sensor),
+                &self.left_out(),
+            )?;
             let scale = Scale::of(&presses, self.left_out());
             let evaluation = evaluate(&model.twin, &presses, &split.test, &scale, Some(&baselines));
             let every_taxel = (!self.left_out().is_empty()).then(|| {

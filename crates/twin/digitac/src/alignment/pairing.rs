@@ -28,7 +28,8 @@ pub struct PairedPress {
     pub readings_kpa: Vec<Vec<f64>>,
     /// Whether the reading is usable; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
-    /// How the readings would have to be warped to rise and fall when the simulated gel does. Nothing is trained or scored on warped readings.
+    /// How the readings would have to be warped to rise and fall when the simulated gel does. Training and headline take
+    /// readings as they are.
     pub warp: Warp,
 }
 

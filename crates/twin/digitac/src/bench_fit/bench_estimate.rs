@@ -96,8 +96,8 @@ pub struct BenchSettings {
     pub tip_radii_mm: Vec<f64>,
     /// How many places, spread over taxels and readings, the fit looks at; more where a file would have too few.
     pub n_places: usize,
-    /// Largest correction of the contact height, mm; not above the margin of
-    /// [`PlaceSettings`](crate::PlaceSettings). Zero fits none.
+    /// Largest correction of the contact height, mm. Zero fits none. What it puts beyond the margin of
+    /// [`PlaceSettings`](crate::PlaceSettings) is not simulated: tables go straight on.
     pub contact_offset_limit_mm: f64,
     /// How far a port may be from where it is described, mm. Zero fits no places.
     pub port_shift_limit_mm: f64,

@@ -7,7 +7,7 @@ use twintac_depth_table::DepthCurves;
 use twintac_recording::{Control, Press};
 
 use super::tip_form::N_TERMS;
-use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, TipForm};
+use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, TipForm, deepest_pose};
 use crate::DigitacError;
 use crate::numerics::Unknown;
 use crate::physical_fit::{Elastic, Pressures, Slope};
@@ -280,11 +280,8 @@ impl<'a> BenchProblem<'a> {
             let is_forced = press.control == Control::Force;
             let factor = if is_forced { stiffness } else { 1.0 };
             let offset_mm = offset_mm(&press.mounting);
-            let place_mm = press
-                .gel_from_indenter
-                .iter()
-                .min_by(|a, b| a.position_mm.z.total_cmp(&b.position_mm.z));
-            let place_mm = place_mm.map_or([0.0; 2], |pose| pose.position_mm.truncate().to_array());
+            let place_mm =
+                deepest_pose(press).map_or([0.0; 2], |pose| pose.position_mm.truncate().to_array());
             let splines = guess.form.as_ref().map(|form| {
                 let taxels = 0..self.n_taxels;
                 (

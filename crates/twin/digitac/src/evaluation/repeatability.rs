@@ -10,7 +10,7 @@ use crate::{Features, PairedPress};
 /// The definition that goes with the numbers.
 const DEFINITION: &str = "Two presses of one indenter at one place (within 0.05 mm), to one depth (within 0.05 mm) and at one speed (within 10 %) \
     are compared phase by phase: going down and coming up at the same depth, holding at the same time after the end of the way down, coming up \
-    only after holds of one length (within 10 %). Errors are those of taking one's readings for the other's; a twin that predicts the mean of \
+    only after holds of one length (within 10 % or 0.2 s). Errors are those of taking one's readings for the other's; a twin that predicts the mean of \
     both has half of them.";
 
 /// Places closer than this are one, mm.

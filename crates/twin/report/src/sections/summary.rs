@@ -86,7 +86,7 @@ pub(super) fn warnings(report: &TwinReport<'_>) -> Vec<String> {
     let n_frames = report.evaluation.twin.n_frames_not_simulated;
     if n_frames > 0 {
         warnings.push(format!(
-            "{n_frames} frames are deeper than the simulation reached; the end of its table stands in."
+            "{n_frames} frames are deeper than the simulation reached; what it ends with stands for them, straight on."
         ));
     }
     warnings.extend(report.bench.doubts.iter().cloned());
