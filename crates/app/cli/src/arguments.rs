@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Train(Train),
     /// Evaluate a twin on recordings.
     Evaluate(Evaluate),
+    /// Judge twins of a run's recordings for several seeds and ways to hold presses out.
+    CrossValidate(CrossValidate),
     /// Write the report of a run.
     Report(Report),
 }
@@ -320,6 +322,26 @@ pub(crate) struct Evaluate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+    /// Print the figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Bench, twin and baselines are made anew each time, from what is not held out. Table and plot: mean and standard deviation over the seeds.
+#[derive(Args, Debug)]
+pub(crate) struct CrossValidate {
+    /// Folder of a simulated run, such as `reproduce` leaves.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: PathBuf,
+    /// What is held out together: press, place, file, indenter, depth (the deepest fifth), taxel.
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', default_value = "place")]
+    pub(crate) held_out: Vec<twintac_run::HeldOut>,
+    /// Number of seeds, from 1 on.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) seeds: u64,
+    /// Also leave out each step of the twin in turn, to see its gain.
+    #[arg(long)]
+    pub(crate) ablation: bool,
     /// Print the figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,

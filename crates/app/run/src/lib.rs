@@ -28,6 +28,7 @@
 //! pairs/         measured and simulated frames side by side
 //! training/      a twin that never saw the test presses, a twin of all presses, losses
 //! evaluation/    the errors
+//! cross_validation/  the errors for several seeds and ways to hold presses out, if they were asked for
 //! model/         the twin of all presses, to be used elsewhere
 //! report.html, metrics.json
 //! ```
@@ -44,6 +45,7 @@ mod cache;
 pub mod calibration;
 mod caller;
 pub mod characterization;
+mod cross_validation;
 mod demo;
 mod depth_tables;
 mod doubtful;
@@ -62,6 +64,8 @@ mod stages;
 mod unseen;
 
 pub use caller::Caller;
+pub use cross_validation::{CrossValidated, CrossValidation, CrossValidationPlan, OfSeed, Spread, Without};
+pub use digitac::HeldOut;
 pub use error::RunError;
 pub use files::sha256_of_file;
 pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};

@@ -41,10 +41,27 @@ impl RunSettings {
     /// # Errors
     /// A file that cannot be read, a field that there is not, a value that makes no sense.
     pub fn read(path: Option<&Path>) -> Result<Self, RunError> {
+        Self::default().but(path)
+    }
+
+    /// For presses that are looked at one by one: the gel is simulated more finely than for the many tables of a run.
+    #[must_use]
+    pub fn fine() -> Self {
+        Self {
+            simulate: SimulateSettings::fine(),
+            ..Self::default()
+        }
+    }
+
+    /// These settings but for those in the file, if there is one.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    pub fn but(self, path: Option<&Path>) -> Result<Self, RunError> {
         let Some(path) = path else {
-            return Ok(Self::default());
+            return Ok(self);
         };
-        let document = twintac_config::read::<Self>(path)?;
+        let document = twintac_config::read_over(path, &self)?;
         let simulate = &document.value.simulate;
         for (field, value) in [
             ("edges_per_height", simulate.edges_per_height),

@@ -16,7 +16,7 @@ impl Gel {
     /// The gel of a sensor, simulated as finely as usual.
     #[must_use]
     pub fn of(sensor: &Sensor) -> Self {
-        Self::with_settings(sensor, SimulateSettings::default())
+        Self::with_settings(sensor, SimulateSettings::fine())
     }
 
     /// The gel of a sensor, simulated as finely as asked for.

@@ -149,7 +149,7 @@ impl Case {
     fn gel(&self, tolerance: f64, linear: LinearSolver) -> Gel {
         let mut settings = SimulateSettings {
             max_path_nodes: self.n_nodes[1],
-            ..SimulateSettings::default()
+            ..SimulateSettings::fine()
         };
         if let Some(edges) = self.edges {
             settings.edges_per_height = edges;

@@ -15,6 +15,7 @@ mod place;
 
 use std::path::Path;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 
@@ -123,6 +124,46 @@ pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<Document<T>, 
             problem: format!("cannot be read: {found}"),
             hint: "give the path of a readable TOML file".to_owned(),
         }),
+    }
+}
+
+/// Reads a TOML file that has only what differs from `base`, in tables of any depth.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_over<T: DeserializeOwned + Serialize>(
+    path: impl AsRef<Path>,
+    base: &T,
+) -> Result<Document<T>, ConfigError> {
+    let document = read::<T>(path)?;
+    let failed = |problem: String| ConfigError {
+        file: document.file.clone(),
+        line: 0,
+        field: String::new(),
+        problem: format!("does not fit: {problem}"),
+        hint: "correct the file".to_owned(),
+    };
+    let mut merged = toml::Table::try_from(base).map_err(|found| failed(found.to_string()))?;
+    let own = document
+        .text
+        .parse::<toml::Table>()
+        .map_err(|found| failed(found.to_string()))?;
+    merge(&mut merged, own);
+    let value = merged
+        .try_into::<T>()
+        .map_err(|found| failed(found.to_string()))?;
+    Ok(Document { value, ..document })
+}
+
+/// Puts values over those of the same name.
+fn merge(base: &mut toml::Table, own: toml::Table) {
+    for (name, value) in own {
+        match (base.get_mut(&name), value) {
+            (Some(toml::Value::Table(base)), toml::Value::Table(own)) => merge(base, own),
+            (_, value) => {
+                base.insert(name, value);
+            }
+        }
     }
 }
 

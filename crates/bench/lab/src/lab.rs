@@ -61,7 +61,7 @@ impl Lab {
                 min_substep: 1.0 / 16.0,
                 ..SolverSettings::default()
             },
-            ..SimulateSettings::default()
+            ..SimulateSettings::fine()
         };
         let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));
         Self {

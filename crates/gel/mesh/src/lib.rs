@@ -75,6 +75,7 @@ pub mod vtk;
 
 pub use error::MeshError;
 pub use generate::{generate, generate_with_node_count};
+pub use locate::Neighbourhood;
 pub use quality::{Quality, Spread};
 pub use refine::Refinement;
 pub use settings::{Cuboid, Focus, MeshSettings, Stretch};

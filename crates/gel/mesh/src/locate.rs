@@ -6,6 +6,9 @@ use crate::TetMesh;
 use crate::boundary::FACES;
 use crate::tet_mesh::signed_volume_mm3;
 
+/// Smallest tolerance, mm: round-off may put a point on a face outside of both its tetrahedra.
+const SMALLEST_TOLERANCE_MM: f64 = 1e-9;
+
 impl TetMesh {
     /// The tetrahedron that holds a point, with the point's barycentric coordinates, which interpolate a nodal field.
     ///
@@ -13,12 +16,43 @@ impl TetMesh {
     /// On a shared face, edge or node the tetrahedron with the lowest index is taken.
     #[must_use]
     pub fn locate(&self, point_mm: DVec3, tolerance_mm: f64) -> Option<(usize, [f64; 4])> {
-        // Round-off may put a point on a face outside of both its tetrahedra.
-        let tolerance_mm = tolerance_mm.max(1e-9);
+        self.neighbourhood(point_mm, tolerance_mm)
+            .locate(point_mm, tolerance_mm)
+    }
+
+    /// The tetrahedra that a box reaches, which goes so far from its centre along each axis. Points inside are located among them.
+    #[must_use]
+    pub fn neighbourhood(&self, center_mm: DVec3, reach_mm: f64) -> Neighbourhood<'_> {
+        let reach = DVec3::splat(reach_mm.max(SMALLEST_TOLERANCE_MM));
+        let (low, high) = (center_mm - reach, center_mm + reach);
+        let is_reached = |tet: &usize| {
+            let [a, b, c, d] = self.corners_mm(*tet);
+            a.min(b).min(c.min(d)).cmple(high).all() && a.max(b).max(c.max(d)).cmpge(low).all()
+        };
+        Neighbourhood {
+            mesh: self,
+            tets: (0..self.tets.len()).filter(is_reached).collect(),
+        }
+    }
+}
+
+/// Tetrahedra of a mesh near a place, among which points are located faster than in the whole mesh.
+#[derive(Clone, Debug)]
+pub struct Neighbourhood<'a> {
+    mesh: &'a TetMesh,
+    /// In increasing order.
+    tets: Vec<usize>,
+}
+
+impl Neighbourhood<'_> {
+    /// The same as [`TetMesh::locate`], for points so far inside the box that the tolerance does not leave it.
+    #[must_use]
+    pub fn locate(&self, point_mm: DVec3, tolerance_mm: f64) -> Option<(usize, [f64; 4])> {
+        let tolerance_mm = tolerance_mm.max(SMALLEST_TOLERANCE_MM);
         let tolerance = DVec3::splat(tolerance_mm);
         let mut nearest: Option<(f64, usize, [f64; 4])> = None;
-        for tet in 0..self.tets.len() {
-            let corners = self.corners_mm(tet);
+        for &tet in &self.tets {
+            let corners = self.mesh.corners_mm(tet);
             let low = corners[0].min(corners[1]).min(corners[2].min(corners[3])) - tolerance;
             let high = corners[0].max(corners[1]).max(corners[2].max(corners[3])) + tolerance;
             if !(point_mm.cmpge(low).all() && point_mm.cmple(high).all()) {
@@ -86,4 +120,31 @@ fn nearest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
         }
     }
     nearest.1
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use twintac_shape::{Solid, Surfaces};
+
+    use crate::{MeshSettings, generate};
+
+    #[test]
+    fn a_neighbourhood_finds_what_the_whole_mesh_finds() {
+        let solid = Solid::Block {
+            size_mm: [6.0, 5.0, 4.0],
+            center_mm: [0.0, 0.0],
+            edge_radius_mm: 0.0,
+        };
+        let mesh = generate(&solid, &Surfaces::new(), &[], &MeshSettings::default()).unwrap();
+        let center_mm = DVec3::new(0.3, -0.2, 0.0);
+        let near = mesh.neighbourhood(center_mm, 1.1);
+        assert!(near.tets.len() < mesh.tets.len());
+        for i in 0..200 {
+            let angle = 0.3 * f64::from(i);
+            let offset_mm = DVec3::new(angle.cos(), angle.sin(), 0.2 * (3.0 * angle).sin());
+            let point_mm = center_mm + (f64::from(i) / 200.0) * offset_mm;
+            assert_eq!(near.locate(point_mm, 0.05), mesh.locate(point_mm, 0.05));
+        }
+    }
 }

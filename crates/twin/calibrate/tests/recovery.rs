@@ -54,7 +54,7 @@ fn gel(material: &Material) -> Gel {
         edges_per_height: 3.0,
         edges_per_contact_radius: 3.0,
         max_nodes: 1500,
-        ..SimulateSettings::default()
+        ..SimulateSettings::fine()
     };
     settings.solver.tolerance = 1e-6;
     // Steps of other lengths must not differ by what they leave of penetration.

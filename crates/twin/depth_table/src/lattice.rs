@@ -4,15 +4,11 @@
 //! splines through a lattice of a third of that height have a smaller error than the mesh.
 
 use glam::DVec2;
-use twintac_shape::Pose;
 
-use crate::{DepthTable, PressFrame};
+use crate::DepthTable;
 
 /// Places that differ by less along an axis stand in one line, mm.
 const FLAT_MM: f64 = 1e-3;
-
-/// Nodes of less weight need not reach as deep as a table between them does.
-const SMALL_WEIGHT: f64 = 0.02;
 
 /// Places x = x0 + i·dx, y = y0 + j·dy, at least four along each axis that has an extent and one along an axis that has none, with x running
 /// fastest.
@@ -77,63 +73,10 @@ impl Lattice {
             .enumerate()
             .map(|(node, table)| (table, along_x[node % self.n_x] * along_y[node / self.n_x]))
             .collect();
-        let n_frames = nodes
-            .iter()
-            .filter(|(_, weight)| weight.abs() > SMALL_WEIGHT)
-            .map(|(table, _)| table.frames.len())
-            .min()
-            .unwrap_or(0);
-        let nearest = nearest(&nodes);
-        let z_mm = nodes
-            .iter()
-            .map(|(s, w)| w * s.gel_from_indenter_at_touch.position_mm.z)
-            .sum();
-        DepthTable {
-            gel_from_indenter_at_touch: Pose {
-                position_mm: place_mm.extend(z_mm),
-                ..nearest.gel_from_indenter_at_touch
-            },
-            frames: (0..n_frames).map(|frame| blend(&nodes, nearest, frame)).collect(),
-            ..nearest.clone()
-        }
-    }
-}
-
-fn nearest<'a>(nodes: &[(&'a DepthTable, f64)]) -> &'a DepthTable {
-    let mut best = nodes[0];
-    for &candidate in nodes {
-        if candidate.1 > best.1 {
-            best = candidate;
-        }
-    }
-    best.0
-}
-
-fn blend(nodes: &[(&DepthTable, f64)], nearest: &DepthTable, frame: usize) -> PressFrame {
-    let there: Vec<(&PressFrame, f64)> = nodes
-        .iter()
-        .filter_map(|(table, weight)| Some((table.frames.get(frame)?, *weight)))
-        .collect();
-    let total: f64 = there.iter().map(|(_, weight)| weight).sum();
-    let sum = |value: &dyn Fn(&PressFrame) -> f64| -> f64 {
-        there
-            .iter()
-            .map(|(frame, weight)| weight / total * value(frame))
-            .sum()
-    };
-    let template = &nearest.frames[frame];
-    let n_taxels = template.port_pressure_kpa.len();
-    PressFrame {
-        depth_mm: sum(&|f| f.depth_mm),
-        force_n: sum(&|f| f.force_n),
-        port_pressure_kpa: (0..n_taxels).map(|k| sum(&|f| f.port_pressure_kpa[k])).collect(),
-        port_slope_kpa_per_mm: (0..n_taxels)
-            .map(|k| [0, 1, 2].map(|way| sum(&|f| f.port_slope_kpa_per_mm[k][way])))
-            .collect(),
-        stress_feature_kpa_per_mm: (0..n_taxels)
-            .map(|k| sum(&|f| f.stress_feature_kpa_per_mm[k]))
-            .collect(),
-        quality: template.quality,
+        let mut table = DepthTable::blend(&nodes);
+        let z_mm = table.gel_from_indenter_at_touch.position_mm.z;
+        table.gel_from_indenter_at_touch.position_mm = place_mm.extend(z_mm);
+        table
     }
 }
 
@@ -181,7 +124,8 @@ fn curvatures(n_nodes: usize, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SolveQuality;
+    use crate::{PressFrame, SolveQuality};
+    use twintac_shape::Pose;
 
     fn table_of(place: DVec2) -> DepthTable {
         let value = place.x.powi(3) - 2.0 * place.x * place.y + place.y.powi(2) * place.x;

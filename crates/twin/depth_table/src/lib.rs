@@ -5,6 +5,7 @@
 //! over depth ([`MonotoneCubic`]), and a [`Lattice`] interpolates tables over places. A [`DepthTableSource`] delivers the tables; this crate
 //! solves nothing.
 
+mod blend;
 mod depth_curves;
 mod depth_table;
 mod error;

@@ -9,10 +9,11 @@
 //! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
 //! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this
 //! crate are called, says at its front what it does; `numerics` and `features` come first, then `bench_fit`, `alignment`, `network`,
-//! `evaluation`, `training` and `model_folder`.
+//! `evaluation`, `training`, `cross_validation` and `model_folder`.
 
 mod alignment;
 mod bench_fit;
+mod cross_validation;
 mod error;
 mod evaluation;
 mod features;
@@ -32,6 +33,7 @@ pub use bench_fit::{
     BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortEstimate, TipForm, features,
     fit_bench, refine_bench,
 };
+pub use cross_validation::{Bench, Judgement, judge};
 pub use error::DigitacError;
 pub use evaluation::{
     Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score,
@@ -40,4 +42,6 @@ pub use evaluation::{
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
 pub use network::{Twin, Variant};
-pub use training::{Epoch, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train};
+pub use training::{
+    Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train,
+};

@@ -36,11 +36,13 @@ impl PortReadout {
     ) -> Result<Self, SimulateError> {
         let samples = disc_samples(radius_mm);
         let share = 1.0 / samples.len() as f64;
+        let around = mesh.neighbourhood(center_mm, radius_mm + PORT_TOLERANCE_MM);
         let mut weights = std::collections::BTreeMap::new();
         for sample in &samples {
             let point = center_mm + sample.extend(0.0);
             let (tet, barycentric) =
-                mesh.locate(point, PORT_TOLERANCE_MM)
+                around
+                    .locate(point, PORT_TOLERANCE_MM)
                     .ok_or_else(|| SimulateError::PortOutside {
                         place: name.to_owned(),
                         distance_mm: PORT_TOLERANCE_MM,

@@ -64,7 +64,7 @@ const SHELL: &str = "[shell]\ngap_mm = 0.2\nheight_mm = 8.0\n";
 fn gel(sensor: Arc<Sensor>, tolerance: f64) -> Gel {
     let mut settings = SimulateSettings {
         max_nodes: 3000,
-        ..SimulateSettings::default()
+        ..SimulateSettings::fine()
     };
     settings.solver.tolerance = tolerance;
     Gel::new(sensor, settings)
@@ -191,7 +191,7 @@ fn bounded_penetration_hardly_changes_the_force() {
     let forces = [0.005, 0.0005].map(|penetration_mm| {
         let mut settings = SimulateSettings {
             max_nodes: 3000,
-            ..SimulateSettings::default()
+            ..SimulateSettings::fine()
         };
         settings.solver.penetration_mm = penetration_mm;
         let gel = Gel::new(sensor(8.0, SHELL), settings);

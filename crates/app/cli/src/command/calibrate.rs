@@ -17,7 +17,7 @@ use crate::progress::Bars;
 pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let names: Vec<String> = arguments.free.iter().map(|name| name.trim().to_owned()).collect();
-    let settings = RunSettings::read(arguments.settings.as_deref())?.simulate;
+    let settings = RunSettings::fine().but(arguments.settings.as_deref())?.simulate;
     let measured = measured(arguments, &sensor, &settings)?;
     let bars = Bars::default();
     let found = calibrate(&sensor, settings, measured, &names, arguments.frames, &bars)?;

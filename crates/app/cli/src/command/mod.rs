@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod characterize;
+mod cross_validate;
 mod demo;
 mod export;
 mod files;
@@ -37,6 +38,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Align(arguments) => stages::align(&arguments),
         Command::Train(arguments) => stages::train(&arguments),
         Command::Evaluate(arguments) => stages::evaluate(&arguments),
+        Command::CrossValidate(arguments) => cross_validate::run(&arguments),
         Command::Report(arguments) => stages::report(&arguments),
     }
 }

@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Simulate) -> Result<()> {
         anyhow::bail!("give --run, or --sensor with --protocol or --path");
     };
     let sensor = SensorFile::read(sensor)?.sensor;
-    let settings = RunSettings::read(arguments.settings.as_deref())?.simulate;
+    let settings = RunSettings::fine().but(arguments.settings.as_deref())?.simulate;
     if let Some(path) = &arguments.path {
         let gel = Gel::new(Arc::clone(&sensor), settings);
         return super::follow::run(&gel, path, arguments.json, arguments.profile);

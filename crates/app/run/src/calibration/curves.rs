@@ -333,7 +333,7 @@ mod tests {
         let sensor = twintac_sensor::Sensor::read(root.join("sensors/strip4-gel-d.toml")).unwrap();
         let gel = Gel::new(
             std::sync::Arc::new(sensor),
-            twintac_simulate::SimulateSettings::default(),
+            twintac_simulate::SimulateSettings::fine(),
         );
         let recorded = |presses: &[&str], signals| Recorded {
             file: file.clone(),

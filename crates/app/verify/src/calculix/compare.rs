@@ -37,7 +37,7 @@ pub(super) struct ComparedFrame {
 
 /// Presses the gel as `twintac simulate --sensor F --path F` does, with the settings as they come.
 pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
-    let followed = follow(case, SimulateSettings::default())?;
+    let followed = follow(case, SimulateSettings::fine())?;
     if let Some(failure) = followed.failure {
         bail!("{}: {failure}", case.name);
     }
@@ -83,7 +83,7 @@ pub(super) fn compare(case: &Case, reference: &Reference) -> Result<Compared> {
 /// Presses the gel with composite and with quadratic elements on the same nodes, as deep as [`QUADRATIC_MM`].
 pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
     let case = case.as_deep_as(QUADRATIC_MM);
-    let mut settings = SimulateSettings::default();
+    let mut settings = SimulateSettings::fine();
     settings.solver.element = Element::Quadratic;
     let followed = follow(&case, settings)?;
     if let Some(failure) = followed.failure {

@@ -41,7 +41,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         Arc::new(Sensor::read("sensors/phystac.toml").context("run this where the folder `sensors` is")?);
     let mut settings = SimulateSettings {
         max_nodes: effort.choose(1500, 7300),
-        ..SimulateSettings::default()
+        ..SimulateSettings::fine()
     };
     settings.solver.tolerance = 1e-8;
     let gel = Gel::new(sensor, settings);

@@ -260,7 +260,7 @@ fn gel(material: &Material) -> Result<Gel> {
     let none = |path: &str| Err(std::io::Error::other(format!("{path} is not read here")));
     let mut settings = SimulateSettings {
         max_nodes: 1500,
-        ..SimulateSettings::default()
+        ..SimulateSettings::fine()
     };
     settings.solver.tolerance = 1e-6;
     // Steps of other lengths must not differ by what they leave of penetration.

@@ -69,11 +69,11 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         edges_per_height: 4.0,
         edges_per_contact_radius: 2.0,
         max_nodes: 900,
-        ..SimulateSettings::default()
+        ..SimulateSettings::fine()
     };
     let fine = SimulateSettings {
         max_nodes: 7300,
-        ..SimulateSettings::default()
+        ..SimulateSettings::fine()
     };
     let sets = [
         ("a coarse mesh", coarse, effort.choose(300, 10_000)),

@@ -126,8 +126,8 @@ pub struct BenchSettings {
 impl Default for BenchSettings {
     fn default() -> Self {
         Self {
-            tip_radii_mm: vec![2.0, 3.0, 4.5, 6.5],
-            n_places: 10,
+            tip_radii_mm: vec![2.0, 3.6, 6.5],
+            n_places: 5,
             contact_offset_limit_mm: 0.4,
             port_shift_limit_mm: 0.5,
             port_radius_limit_mm: 0.5,

@@ -9,7 +9,7 @@ use twintac_recording::{Control, Press};
 use super::tip_form::N_TERMS;
 use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, TipForm, deepest_pose};
 use crate::DigitacError;
-use crate::numerics::Unknown;
+use crate::numerics::{Unknown, median};
 use crate::physical_fit::{Elastic, Pressures, Slope};
 
 /// Depths at which tables are resampled.
@@ -33,6 +33,8 @@ pub(crate) struct Along<'a> {
     /// Its place among the resampled ones.
     pub(crate) place: usize,
     pub(crate) touch_z_mm: f64,
+    /// Whether its readings teach.
+    pub(crate) is_used: bool,
 }
 
 /// A table over depth at evenly graded depths.
@@ -172,8 +174,13 @@ impl<'a> BenchProblem<'a> {
         }
     }
 
-    /// The estimate that values stand for, with those of fits that each leave out some presses.
-    pub(crate) fn estimate(&self, values: &[f64], without: &[Vec<f64>]) -> BenchEstimate {
+    /// The estimate that values stand for, with those of fits that each leave out some presses. Mountings that taught nothing have none.
+    pub(crate) fn estimate(
+        &self,
+        values: &[f64],
+        without: &[Vec<f64>],
+        has_taught: &dyn Fn(&str) -> bool,
+    ) -> BenchEstimate {
         let guess = self.guess(values);
         let others: Vec<Guess<'_>> = without.iter().map(|values| self.guess(values)).collect();
         let estimate = |value: &dyn Fn(&Guess<'_>) -> f64| {
@@ -181,6 +188,7 @@ impl<'a> BenchProblem<'a> {
         };
         let offsets = self.mountings.iter().enumerate();
         let contact_offset_mm: BTreeMap<String, Estimate> = offsets
+            .filter(|(_, (name, _))| has_taught(name))
             .map(|(index, (name, _))| (name.clone(), estimate(&|guess| guess.offsets_mm[index])))
             .collect();
         BenchEstimate {
@@ -245,20 +253,6 @@ impl<'a> BenchProblem<'a> {
         names
     }
 
-    /// Weights of the radii's tables for a radius between them: the polynomial in ln radius through all.
-    fn radius_weights(&self, ln_radius: f64) -> Vec<f64> {
-        if self.ln_radii.len() < 2 {
-            return vec![1.0];
-        }
-        let weight = |i: usize| {
-            let others = self.ln_radii.iter().enumerate().filter(move |(j, _)| *j != i);
-            others
-                .map(|(_, other)| (ln_radius - other) / (self.ln_radii[i] - other))
-                .product()
-        };
-        (0..self.ln_radii.len()).map(weight).collect()
-    }
-
     /// Pressures and their slopes by depth and by the ports, of each frame.
     fn read(&self, guess: &Guess<'_>) -> Read {
         let n_frames = self.frames.last().map_or(0, |frames| frames.end);
@@ -267,7 +261,7 @@ impl<'a> BenchProblem<'a> {
             n_frames,
             if guess.form.is_some() { N_TERMS } else { 0 },
         );
-        let weights = self.radius_weights(guess.ln_radius);
+        let weights = radius_weights(&self.ln_radii, guess.ln_radius);
         let tables: Vec<Vec<Vec<f64>>> = self.places.iter().map(|place| place.blended(&weights)).collect();
         let stiffness = guess.ln_stiffness.exp();
         let offset_mm = |mounting: &str| {
@@ -327,6 +321,20 @@ impl<'a> BenchProblem<'a> {
         }
         read
     }
+}
+
+/// Weights of the radii's tables for a radius between them: the polynomial in ln radius through all.
+pub(crate) fn radius_weights(ln_radii: &[f64], ln_radius: f64) -> Vec<f64> {
+    if ln_radii.len() < 2 {
+        return vec![1.0];
+    }
+    let weight = |i: usize| {
+        let others = ln_radii.iter().enumerate().filter(move |(j, _)| *j != i);
+        others
+            .map(|(_, other)| (ln_radius - other) / (ln_radii[i] - other))
+            .product()
+    };
+    (0..ln_radii.len()).map(weight).collect()
 }
 
 /// Port pressures of all frames with slopes.
@@ -493,7 +501,9 @@ fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<TipForm> {
     });
     let (mut far_mm, mut depth_mm) = (1e-3_f64, 1e-3_f64);
     for (along, pose) in poses {
-        depth_mm = depth_mm.max(along.touch_z_mm - pose.position_mm.z);
+        if along.is_used {
+            depth_mm = depth_mm.max(along.touch_z_mm - pose.position_mm.z);
+        }
         for port in &settings.ports_mm {
             far_mm = far_mm.max((port[0] - pose.position_mm.x).hypot(port[1] - pose.position_mm.y));
         }
@@ -593,14 +603,4 @@ fn at_force(table: &[Vec<f64>], force_n: f64) -> Option<(usize, f64)> {
         1.0
     };
     Some((index, share.clamp(0.0, 1.0)))
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n == 0 {
-        0.0
-    } else {
-        0.5 * (values[(n - 1) / 2] + values[n / 2])
-    }
 }

@@ -84,17 +84,25 @@ pub fn fit_bench(
         .map(|tables| curves(&here, tables, recording.taxels.len()))
         .collect::<Result<_, _>>()?;
     let place_of = |press: usize| used.partition_point(|&other| other < places.of_press[press]);
-    let bench = Fit {
-        recording,
-        places,
-        settings,
-        used: chosen.iter().copied().collect(),
-        presses: ordered(recording)
-            .filter(|press| chosen.contains(press))
-            .collect(),
-        has_history: false,
-    };
+    let bench = Fit::rested(recording, places, &chosen, settings);
     bench.solve(&curves, radii_mm, &place_of)
+}
+
+/// The same from the tables of all places, which were simulated for each radius of the settings; `[n_radii][n_places]`.
+pub(crate) fn fit_radius(
+    recording: &Recording,
+    places: &Places,
+    tables: &[Vec<DepthTable>],
+    train: &[usize],
+    settings: &BenchSettings,
+) -> Result<BenchEstimate, DigitacError> {
+    check(settings)?;
+    let curves: Vec<Vec<DepthCurves>> = tables
+        .iter()
+        .map(|tables| curves(places, tables, recording.taxels.len()))
+        .collect::<Result<_, _>>()?;
+    let bench = Fit::rested(recording, places, train, settings);
+    bench.solve(&curves, &settings.tip_radii_mm, &|press| places.of_press[press])
 }
 
 /// Fits the rest to all presses that teach, with the tables of all places: contact heights, the places of ports, and the barometers. All
@@ -234,7 +242,26 @@ struct Fit<'a> {
     has_history: bool,
 }
 
-impl Fit<'_> {
+impl<'a> Fit<'a> {
+    /// To some presses alone, as if the gel had rested before each mounting.
+    fn rested(
+        recording: &'a Recording,
+        places: &'a Places,
+        chosen: &[usize],
+        settings: &'a BenchSettings,
+    ) -> Self {
+        Self {
+            recording,
+            places,
+            settings,
+            used: chosen.iter().copied().collect(),
+            presses: ordered(recording)
+                .filter(|press| chosen.contains(press))
+                .collect(),
+            has_history: false,
+        }
+    }
+
     fn press(&self, index: usize) -> &Press {
         &self.recording.presses[index]
     }
@@ -255,6 +282,7 @@ impl Fit<'_> {
             press: self.press(index),
             place: place_of(index),
             touch_z_mm: self.touch_z_mm(index),
+            is_used: self.used.contains(&index),
         };
         let along: Vec<Along<'_>> = self.presses.iter().map(along).collect();
         let problem = BenchProblem::new(along, curves, radii_mm, n_taxels, self.settings);
@@ -312,7 +340,11 @@ impl Fit<'_> {
             has_history: self.has_history,
             gains: Some(everywhere.gains),
             deviation_percent: 100.0 * everywhere.deviation,
-            ..problem.estimate(&everywhere.values, &without)
+            ..problem.estimate(&everywhere.values, &without, &|mounting| {
+                self.used
+                    .iter()
+                    .any(|&index| self.press(index).mounting == mounting)
+            })
         })
     }
 

@@ -25,7 +25,7 @@ pub struct TipForm {
     pub(crate) ports_mm: Vec<[f64; 2]>,
     /// Distance from which on the factor does not change, mm.
     pub(crate) reach_mm: f64,
-    /// Largest depth that was pressed, mm.
+    /// Largest depth that taught, mm: from there on the factor does not change.
     pub(crate) depth_mm: f64,
     /// `[N_SPLINES * N_POWERS]`
     pub(crate) coefficients: Vec<f64>,
@@ -41,7 +41,7 @@ impl TipForm {
 
     /// The terms of the function, whose sum with the coefficients is the factor's logarithm.
     pub(crate) fn terms(&self, splines: &[f64; N_SPLINES], depth_mm: f64) -> [f64; N_TERMS] {
-        let logarithm = (depth_mm / self.depth_mm).max(SHALLOWEST).ln();
+        let logarithm = (depth_mm / self.depth_mm).clamp(SHALLOWEST, 1.0).ln();
         std::array::from_fn(|term| splines[term / N_POWERS] * logarithm.powi((term % N_POWERS) as i32))
     }
 

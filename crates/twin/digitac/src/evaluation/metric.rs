@@ -57,7 +57,7 @@ pub struct Mean {
 }
 
 /// Errors of some presses.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Nearest taxel, frames in contact: the headline.
     pub nearest_in_contact: Mean,

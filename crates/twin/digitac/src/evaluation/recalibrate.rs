@@ -2,7 +2,8 @@
 //!
 //! Contact heights differ from one mounting to the next by some hundredths of a millimetre. This changes readings by some percent, and no
 //! model can predict it. So the contact height of a file that the bench was not fitted to is fitted to its first presses, with the trained
-//! twin unchanged and by a rule that is fixed beforehand. These presses are not scored.
+//! twin unchanged and by a rule that is fixed beforehand and looks at poses only: the first three that the twin would feel at least half as
+//! much as the most. These presses are not scored.
 
 use std::collections::BTreeSet;
 
@@ -17,6 +18,8 @@ use crate::{DigitacError, Twin};
 
 /// Presses of a file that its contact height is fitted to.
 const N_PRESSES: usize = 3;
+/// They are felt at least this much of what the most felt one of the file is, as the twin says.
+const FELT: f64 = 0.5;
 /// A press that would put the contact farther from the file's than this is worth a warning, mm.
 const SUSPICIOUS_MM: f64 = 0.08;
 /// Tolerance of heights, mm.
@@ -35,7 +38,7 @@ pub struct Recalibration {
     pub doubts: Vec<String>,
 }
 
-/// Fits the contact height of a file to its first three presses by least absolute deviations from the twin,
+/// Fits the contact height of a file to three of its presses by least absolute deviations from the twin,
 /// within `limit_mm` of the bench's median. Taxels in `left_out` do not count. `None` if the file has no
 /// presses of prescribed pose, or too few presses.
 pub fn recalibrate(
@@ -56,8 +59,29 @@ pub fn recalibrate(
     if of_file.len() <= N_PRESSES {
         return Ok(None);
     }
-    let used = of_file[..N_PRESSES].to_vec();
     let curves = curves(places, tables, recording.taxels.len())?;
+    let along = |index: usize, bench: &BenchEstimate| {
+        let (press, place) = (&recording.presses[index], places.of_press[index]);
+        let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
+        features_along(&curves[place], press, touch_z_mm, bench)
+    };
+    let felt_kpa = of_file
+        .iter()
+        .map(|&index| {
+            let predicted = twin.predict(&[&along(index, bench)?]).swap_remove(0);
+            let kept = predicted.iter().flat_map(|row| {
+                let taxels = row.iter().enumerate();
+                taxels.filter(|(taxel, _)| !left_out.contains(taxel))
+            });
+            Ok(kept.map(|(_, reading)| *reading).fold(0.0, f64::max))
+        })
+        .collect::<Result<Vec<f64>, DigitacError>>()?;
+    let most_kpa = felt_kpa.iter().copied().fold(0.0, f64::max);
+    let felt = of_file
+        .iter()
+        .zip(&felt_kpa)
+        .filter(|(_, felt)| **felt >= FELT * most_kpa);
+    let used: Vec<usize> = felt.map(|(&index, _)| index).take(N_PRESSES).collect();
     let deviation_kpa = |presses: &[usize], offset_mm: f64| -> Result<f64, DigitacError> {
         let mut bench = bench.clone();
         let height = Estimate {
@@ -67,9 +91,7 @@ pub fn recalibrate(
         bench.contact_offset_mm.insert(file.to_owned(), height);
         let mut sum = 0.0;
         for &index in presses {
-            let (press, place) = (&recording.presses[index], places.of_press[index]);
-            let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
-            let features = features_along(&curves[place], press, touch_z_mm, &bench)?;
+            let (press, features) = (&recording.presses[index], along(index, &bench)?);
             let sample = Sample {
                 readings_kpa: &press.taxels_kpa,
                 valid: &press.valid,
@@ -95,7 +117,8 @@ pub fn recalibrate(
         .iter()
         .map(|&press| fit(&[press]))
         .collect::<Result<_, _>>()?;
-    let spread = own.iter().map(|o| (o - value).powi(2)).sum::<f64>() / (own.len() * (own.len() - 1)) as f64;
+    let spread =
+        own.iter().map(|o| (o - value).powi(2)).sum::<f64>() / (own.len() * (own.len() - 1)).max(1) as f64;
     let doubts = used
         .iter()
         .zip(&own)

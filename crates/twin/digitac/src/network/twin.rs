@@ -43,6 +43,17 @@ impl Twin {
             .remember(presses, presses.iter().map(elastic).collect())
     }
 
+    /// The same twin with other gains; only for variants without a perceptron, which has learned to go with its own.
+    #[must_use]
+    pub(crate) fn with_gains(&self, gains: Gains) -> Self {
+        let physics = Physics {
+            gains,
+            ..self.physics.clone()
+        };
+        let parameters = Parameters::new(&physics, &[], 0);
+        Self::new(self.taxels.clone(), physics, parameters)
+    }
+
     /// Names of the taxels, in the order of every row.
     #[must_use]
     pub fn taxels(&self) -> &[String] {

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::{Elastic, Pressures, Series};
 use crate::DigitacError;
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
-use crate::numerics::{Quadratic, Unknown, fit_nonnegative, minimize_robust};
+use crate::numerics::{Quadratic, Unknown, fit_nonnegative, median, minimize_robust};
 
 /// Deviations below this share of the largest reading count quadratically, larger ones linearly.
 const CORNER: f64 = 2e-3;
@@ -19,8 +19,10 @@ const TIME_CONSTANT_REACH: f64 = 6.0;
 const SHARES: [f64; 2] = [0.0, 5.0];
 /// Smallest and largest relative growth of a reading at the largest reading of all.
 const STIFFENING: [f64; 2] = [-1.0, 3.0];
-/// Pull of that growth to zero.
+/// Pull of the growth that is common to all taxels to zero.
 const STIFFENING_PULL: f64 = 1e-5;
+/// Pull of a taxel's own growth to the common one.
+const OWN_STIFFENING_PULL: f64 = 1e-3;
 /// How far from its start a gain is looked for, as a factor.
 const GAIN_REACH: f64 = 100.0;
 /// Gains below this share of the largest start there.
@@ -78,6 +80,7 @@ pub(crate) fn fit(
         n_elastic,
         n_constants: model.time_constants_s.len(),
         largest_kpa,
+        usual_gain: usual_gain(&gains, left_out),
     };
     unknowns.extend(layout.unknowns(&gains, model));
     let problem = Problem {
@@ -130,12 +133,29 @@ fn start_gains(pressures: &Pressures, series: &Series, time_constants_s: &[f64])
     gains
 }
 
-/// Which unknown stands where: those of the port pressures, ln time constants, and of each taxel ln gain, relative growth at the largest
-/// reading, and shares of the overstresses.
+/// Geometric mean of the gains of taxels that are not left out.
+fn usual_gain(gains: &Gains, left_out: &BTreeSet<usize>) -> f64 {
+    let kept = || {
+        gains
+            .gain
+            .iter()
+            .enumerate()
+            .filter(|(k, gain)| !left_out.contains(k) && **gain > 0.0)
+    };
+    let sum: f64 = kept().map(|(_, gain)| gain.ln()).sum();
+    (sum / kept().count().max(1) as f64).exp()
+}
+
+/// Which unknown stands where: those of the port pressures, ln time constants, the relative growth that is common to all taxels, and of
+/// each taxel ln gain, its own relative growth, and shares of the overstresses.
+///
+/// The common growth belongs to the gel: it is the same at the same port pressure, whatever the gain. It is given at the largest reading of
+/// a taxel of usual gain; a taxel's own growth, at the largest reading.
 struct Layout {
     n_elastic: usize,
     n_constants: usize,
     largest_kpa: f64,
+    usual_gain: f64,
 }
 
 impl Layout {
@@ -152,31 +172,42 @@ impl Layout {
             .map(|tau| around(tau.ln(), TIME_CONSTANT_REACH.ln()))
             .collect();
         let largest = gains.gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let limits = if model.has_port_law { STIFFENING } else { [0.0; 2] };
+        let at_usual_gain = gains
+            .gain
+            .iter()
+            .zip(&gains.stiffening_per_kpa)
+            .map(|(gain, per_kpa)| self.largest_kpa * per_kpa * gain / self.usual_gain);
+        let common = median(at_usual_gain.collect());
+        unknowns.push(unknown(common, limits, STIFFENING_PULL));
         for (k, (gain, shares)) in gains.gain.iter().zip(&gains.memory).enumerate() {
-            unknowns.push(around(gain.max(SMALLEST_GAIN * largest).ln(), GAIN_REACH.ln()));
-            let stiffening = if model.has_port_law { STIFFENING } else { [0.0; 2] };
-            unknowns.push(unknown(
-                self.largest_kpa * gains.stiffening_per_kpa[k],
-                stiffening,
-                STIFFENING_PULL,
-            ));
+            let gain = gain.max(SMALLEST_GAIN * largest);
+            unknowns.push(around(gain.ln(), GAIN_REACH.ln()));
+            let own = self.largest_kpa * gains.stiffening_per_kpa[k] - common * self.usual_gain / gain;
+            unknowns.push(unknown(own, limits, OWN_STIFFENING_PULL));
             unknowns.extend(shares.iter().map(|share| unknown(*share, SHARES, 0.0)));
         }
         unknowns
     }
 
+    /// Where the growth that is common to all taxels stands.
+    fn common(&self) -> usize {
+        self.n_elastic + self.n_constants
+    }
+
     /// Where the unknowns of a taxel start.
     fn of_taxel(&self, k: usize) -> usize {
-        self.n_elastic + self.n_constants + k * (2 + self.n_constants)
+        self.common() + 1 + k * (2 + self.n_constants)
     }
 
     fn gains(&self, x: &[f64], n_taxels: usize) -> Gains {
         let of = |k: usize| &x[self.of_taxel(k)..self.of_taxel(k + 1)];
-        let constants = &x[self.n_elastic..self.n_elastic + self.n_constants];
+        let constants = &x[self.n_elastic..self.common()];
+        let stiffening = |k: usize| of(k)[1] + x[self.common()] * self.usual_gain / of(k)[0].exp();
         Gains {
             gain: (0..n_taxels).map(|k| of(k)[0].exp()).collect(),
             stiffening_per_kpa: (0..n_taxels)
-                .map(|k| of(k)[1] / self.largest_kpa.max(f64::MIN_POSITIVE))
+                .map(|k| stiffening(k) / self.largest_kpa.max(f64::MIN_POSITIVE))
                 .collect(),
             memory: (0..n_taxels).map(|k| of(k)[2..].to_vec()).collect(),
             time_constants_s: constants.iter().map(|ln| ln.exp()).collect(),
@@ -314,7 +345,7 @@ impl Problem<'_> {
         };
         for (k, kpa) in pressures.kpa.iter().enumerate() {
             let pass = self.pass(k, kpa, &gains, &fadings);
-            let columns = self.columns(k, &pass, &pressures, &gains, &fadings);
+            let columns = self.columns(k, &pass, &pressures, x, &fadings);
             self.add(k, &pass, &columns, &mut quadratic);
         }
         Ok(quadratic)
@@ -326,9 +357,10 @@ impl Problem<'_> {
         k: usize,
         pass: &TaxelPass,
         pressures: &Pressures,
-        gains: &Gains,
+        x: &[f64],
         fadings: &[Fading],
     ) -> Vec<Column> {
+        let gains = &self.layout.gains(x, pressures.kpa.len());
         let all = 0..pass.relaxed_kpa.len();
         let law: Vec<[f64; 2]> = pass
             .elastic_kpa
@@ -350,7 +382,13 @@ impl Problem<'_> {
             self.column(unknown, frames, values)
         };
         let own = self.layout.of_taxel(k);
-        let of_gain = law.iter().zip(&pass.elastic_kpa).map(|([slope, _], e)| slope * e);
+        // What a unit of the common growth does to this taxel's own law, which falls with its gain.
+        let share = self.layout.usual_gain / gains.gain[k] / self.layout.largest_kpa;
+        let falls = share * x[self.layout.common()];
+        let of_gain = law
+            .iter()
+            .zip(&pass.elastic_kpa)
+            .map(|([slope, by_law], e)| slope * e - by_law * falls);
         let of_stiffening = law.iter().map(|[_, slope]| slope / self.layout.largest_kpa);
         let mut columns = vec![
             remember(own, all.clone(), of_gain.collect()),
@@ -362,6 +400,8 @@ impl Problem<'_> {
         if self.left_out.contains(&k) {
             return columns;
         }
+        let of_common = law.iter().map(|[_, slope]| share * slope);
+        columns.push(remember(self.layout.common(), all.clone(), of_common.collect()));
         for (j, (fading, q)) in fadings.iter().zip(&pass.overstress_kpa).enumerate() {
             let share = gains.memory[k][j];
             let slope = fading.slope(&pass.relaxed_kpa, q).into_iter().map(|s| share * s);
@@ -570,6 +610,7 @@ mod tests {
             n_elastic: 1,
             n_constants: 2,
             largest_kpa: 4.0,
+            usual_gain: 0.8,
         };
         let problem = Problem {
             elastic: &Scaled { kpa: kpa(&presses) },
@@ -577,7 +618,7 @@ mod tests {
             left_out: &BTreeSet::new(),
             layout: &layout,
         };
-        let x = [0.1, -1.2, 1.5, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2];
+        let x = [0.1, -1.2, 1.5, 0.4, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2];
         let gradient = problem.near(&x).unwrap().gradient;
         for (i, slope) in gradient.iter().enumerate() {
             let moved = |by: f64| {

@@ -2,10 +2,12 @@
 
 mod adamw;
 mod batch;
+mod held_out;
 mod settings;
 mod split;
 mod train;
 
+pub use held_out::{Fold, HeldOut};
 pub use settings::TrainSettings;
 pub use split::{Split, SplitSettings};
 pub use train::{Epoch, Progress, Trained, choose, train};

@@ -69,16 +69,25 @@ impl Split {
                 found: format!("{}, {}", settings.test_one_in, settings.validation_one_in),
             });
         }
+        let of_mountings = |press: &Press| settings.test_mountings.contains(&press.mounting);
+        let test: BTreeSet<usize> = (0..presses.len())
+            .filter(|index| of_mountings(&presses[*index]))
+            .collect();
+        let drawn = test.is_empty();
+        Self::around(recording, test, drawn, settings)
+    }
+
+    /// Divides what is left beside test presses, which are drawn by place if they are not given.
+    pub(crate) fn around(
+        recording: &Recording,
+        test: BTreeSet<usize>,
+        is_drawn: bool,
+        settings: &SplitSettings,
+    ) -> Result<Self, DigitacError> {
+        let presses = &recording.presses;
         let mut groups: BTreeMap<Place<'_>, Vec<usize>> = BTreeMap::new();
-        let mut split = Self {
-            train: Vec::new(),
-            validation: Vec::new(),
-            test: Vec::new(),
-        };
         for (index, press) in presses.iter().enumerate() {
-            if settings.test_mountings.contains(&press.mounting) {
-                split.test.push(index);
-            } else {
+            if !test.contains(&index) {
                 groups
                     .entry(place(press, settings.block_mm)?)
                     .or_default()
@@ -98,7 +107,12 @@ impl Split {
             .into_iter()
             .partition(|(place, _)| outermost.contains(place));
         let mut inner: Vec<Vec<usize>> = inner.into_iter().map(|(_, presses)| presses).collect();
-        if settings.test_mountings.is_empty() {
+        let mut split = Self {
+            train: Vec::new(),
+            validation: Vec::new(),
+            test: test.into_iter().collect(),
+        };
+        if is_drawn {
             split.test = draw(&mut inner, settings.test_one_in, settings.seed, "test");
         }
         split.validation = draw(

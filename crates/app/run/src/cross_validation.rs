@@ -1,0 +1,362 @@
+//! A run judged many times over: for several seeds, and for several ways to hold presses out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use digitac::{Bench, Errors, Fold, HeldOut, Judgement, Places, SplitSettings, Variant, judge};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use twintac_depth_table::{DepthTable, DepthTableSource};
+use twintac_plot::{Bar, Bars, Ink, png};
+use twintac_recording::{Provenance, Recording};
+
+use crate::depth_tables::DepthTableStore;
+use crate::error::At;
+use crate::files::{write_file, write_json};
+use crate::metrics::names;
+use crate::progress::Work;
+use crate::settings::ports_mm;
+use crate::{Run, RunError, RunSettings};
+
+/// What to judge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CrossValidationPlan {
+    /// What is held out together, one after the other.
+    pub held_out: Vec<HeldOut>,
+    /// Seeds, from 1 to this.
+    pub seeds: u64,
+    /// Whether each step of the twin is also left out in turn, to see its gain; by place.
+    pub ablation: bool,
+}
+
+/// What a twin is made without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Without {
+    /// Readings are proportional to what the gel does.
+    PortLaw,
+    /// The gel rests before each press.
+    History,
+    /// The tip is a ball.
+    TipForm,
+    /// Ports are where and as wide as described.
+    Ports,
+    /// Barometers read what the gel does at once.
+    Memory,
+}
+
+impl Without {
+    const ALL: [Self; 5] = [
+        Self::PortLaw,
+        Self::History,
+        Self::TipForm,
+        Self::Ports,
+        Self::Memory,
+    ];
+
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PortLaw => "port law",
+            Self::History => "history",
+            Self::TipForm => "form of the tip",
+            Self::Ports => "places and radius of the ports",
+            Self::Memory => "memory",
+        }
+    }
+
+    fn apply(self, settings: &mut RunSettings) {
+        match self {
+            Self::PortLaw => {
+                settings.bench.port_law = false;
+                settings.train.port_law = false;
+            }
+            Self::History => settings.bench.history = false,
+            Self::TipForm => settings.bench.ports_mm.clear(),
+            Self::Ports => {
+                settings.bench.port_shift_limit_mm = 0.0;
+                settings.bench.port_radius_limit_mm = 0.0;
+            }
+            Self::Memory => {
+                settings.bench.time_constants_s.clear();
+                settings.train.time_constants_s.clear();
+            }
+        }
+    }
+}
+
+/// Mean and standard deviation over the seeds, %.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Mean, %.
+    pub mean_percent: f64,
+    /// Standard deviation of one seed, %; zero for one seed.
+    pub deviation_percent: f64,
+}
+
+impl Spread {
+    fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean_percent = values.iter().sum::<f64>() / n.max(1.0);
+        let squares: f64 = values.iter().map(|v| (v - mean_percent).powi(2)).sum();
+        Self {
+            mean_percent,
+            deviation_percent: (squares / (n - 1.0).max(1.0)).sqrt(),
+        }
+    }
+}
+
+/// The judgements of one seed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OfSeed {
+    /// The seed.
+    pub seed: u64,
+    /// One for each file, indenter or taxel that was held out, or one alone.
+    pub judgements: Vec<Judgement>,
+}
+
+/// One way to hold out, over all seeds. Figures are of the headline: nearest taxel, frames in contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CrossValidated {
+    /// What was held out together.
+    pub held_out: HeldOut,
+    /// What the twin was made without.
+    pub without: Option<Without>,
+    /// The variant that validation presses chose, seed by seed.
+    pub twin: Spread,
+    /// Each variant.
+    pub variants: BTreeMap<Variant, Spread>,
+    /// A power of depth times a function of distance, fitted to the same presses.
+    pub kernel: Option<Spread>,
+    /// Part of the frames that lie deeper than the simulation went, %; they are scored all the same.
+    pub frames_not_simulated_percent: f64,
+    /// Everything, seed by seed.
+    pub seeds: Vec<OfSeed>,
+}
+
+/// A run judged many times over.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CrossValidation {
+    /// The sensor's name.
+    pub sensor: String,
+    /// Where the readings come from.
+    pub provenance: Provenance,
+    /// Taxels left out of the headline.
+    pub taxels_left_out: Vec<String>,
+    /// One row for each way to hold out, and each part that was left out.
+    pub rows: Vec<CrossValidated>,
+}
+
+/// One row's settings, and its divisions with their seeds.
+struct Row {
+    held_out: HeldOut,
+    without: Option<Without>,
+    settings: RunSettings,
+    folds: Vec<(u64, Fold)>,
+}
+
+impl Run {
+    /// Makes and judges twins anew for each seed and each way to hold presses out: nothing of one knows what another has seen. Tables over
+    /// depth are shared: those of the run, or, if the tip's radius is unknown, tables of all places for each radius. Writes
+    /// `cross_validation/result.json` and a plot.
+    ///
+    /// # Errors
+    /// The run is not simulated yet; too few files, places or indenters for what is to be held out.
+    pub fn cross_validate(&self, plan: &CrossValidationPlan) -> Result<CrossValidation, RunError> {
+        let recording = self.recording()?;
+        let simulation = self.simulation(&recording)?;
+        let settings = self.resolved(&recording, &simulation.places);
+        let tables = self.tables_of_radii(&settings, &simulation.places, simulation.tables)?;
+        let rows = rows(plan, &settings, &recording, &self.left_out())?;
+        let ports_mm = ports_mm(&self.sensor.sensor);
+
+        let jobs: Vec<(&Row, &(u64, Fold))> = rows
+            .iter()
+            .flat_map(|row| row.folds.iter().map(move |fold| (row, fold)))
+            .collect();
+        let work = Work::start(self.progress(), "judging", jobs.len());
+        let judge_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<Judgement, RunError> {
+            let mut train = row.settings.train.clone();
+            train.seed = *seed;
+            let bench = Bench {
+                recording: &recording,
+                places: &simulation.places,
+                tables: &tables,
+                bench: &row.settings.bench,
+                pair: &row.settings.pair,
+                train: &train,
+                ports_mm: &ports_mm,
+            };
+            let found = judge(&bench, fold).at(|| format!("held out by {}, seed {seed}", row.held_out))?;
+            work.step("");
+            Ok(found)
+        };
+        let judgements: Vec<Judgement> = jobs
+            .par_iter()
+            .with_max_len(1)
+            .map(judge_one)
+            .collect::<Result<_, _>>()?;
+        let mut judgements = judgements.into_iter();
+        let found = CrossValidation {
+            sensor: self.record.sensor.clone(),
+            provenance: recording.provenance,
+            taxels_left_out: names(self.left_out(), &recording.taxels),
+            rows: rows.iter().map(|row| row.gather(&mut judgements)).collect(),
+        };
+        let folder = self.stage("cross_validation");
+        write_json(&folder.join("result.json"), &found)?;
+        write_file(&folder.join("errors.png"), &png(&found.plot().scene(), 2.0)?)?;
+        Ok(found)
+    }
+
+    /// Tables of all places for each radius that the tip may have, or those that are there.
+    fn tables_of_radii(
+        &self,
+        settings: &RunSettings,
+        places: &Places,
+        there: Vec<DepthTable>,
+    ) -> Result<Vec<Vec<DepthTable>>, RunError> {
+        let radii_mm = &settings.bench.tip_radii_mm;
+        if radii_mm.len() < 2 {
+            return Ok(vec![there]);
+        }
+        let gel = self.gel();
+        let _work = Work::start(self.progress(), "simulating", 0);
+        let folder = self.stage("cross_validation").join("depth_tables");
+        let store = DepthTableStore::new(&gel, folder, self.progress());
+        let mut requests = Vec::new();
+        for radius_mm in radii_mm {
+            requests.extend(places.requests.iter().cloned().map(|request| {
+                twintac_depth_table::DepthTableRequest {
+                    tip_radius_mm: Some(*radius_mm),
+                    ..request
+                }
+            }));
+        }
+        let tables = store
+            .depth_tables(&requests)
+            .map_err(digitac::DigitacError::Simulation)?;
+        Ok(tables
+            .chunks(places.requests.len())
+            .map(<[DepthTable]>::to_vec)
+            .collect())
+    }
+}
+
+fn rows(
+    plan: &CrossValidationPlan,
+    settings: &RunSettings,
+    recording: &Recording,
+    left_out: &BTreeSet<usize>,
+) -> Result<Vec<Row>, RunError> {
+    let row = |held_out: HeldOut, without: Option<Without>| -> Result<Row, RunError> {
+        let mut settings = settings.clone();
+        if let Some(without) = without {
+            without.apply(&mut settings);
+            settings.train.variants = vec![Variant::PressureMemory];
+        }
+        let mut folds = Vec::new();
+        for seed in 1..=plan.seeds {
+            let split = SplitSettings {
+                seed,
+                ..settings.split.clone()
+            };
+            let of_seed = Fold::all(recording, held_out, &split, left_out)?;
+            folds.extend(of_seed.into_iter().map(|fold| (seed, fold)));
+        }
+        Ok(Row {
+            held_out,
+            without,
+            settings,
+            folds,
+        })
+    };
+    let whole = plan.held_out.iter().map(|held_out| row(*held_out, None));
+    let parts: &[Without] = if plan.ablation { &Without::ALL } else { &[] };
+    let parts = parts.iter().map(|without| row(HeldOut::Place, Some(*without)));
+    whole.chain(parts).collect()
+}
+
+impl Row {
+    /// Takes the row's judgements, which come in the order of its divisions.
+    fn gather(&self, judgements: &mut impl Iterator<Item = Judgement>) -> CrossValidated {
+        let mut seeds: Vec<OfSeed> = Vec::new();
+        for ((seed, _), judgement) in self.folds.iter().zip(judgements) {
+            match seeds.last_mut() {
+                Some(last) if last.seed == *seed => last.judgements.push(judgement),
+                _ => seeds.push(OfSeed {
+                    seed: *seed,
+                    judgements: vec![judgement],
+                }),
+            }
+        }
+        let spread = |errors: &dyn Fn(&Judgement) -> Option<Errors>| {
+            let of_seed = |of_seed: &OfSeed| headline(of_seed.judgements.iter().filter_map(errors));
+            let values: Option<Vec<f64>> = seeds.iter().map(of_seed).collect();
+            values.map(|values| Spread::of(&values))
+        };
+        let all = || seeds.iter().flat_map(|of_seed| &of_seed.judgements);
+        let variants: BTreeSet<Variant> = all().flat_map(|j| j.variants.keys().copied()).collect();
+        let n_frames: usize = all().map(|j| j.n_frames).sum();
+        let n_beyond: usize = all().map(|j| j.n_frames_not_simulated).sum();
+        CrossValidated {
+            held_out: self.held_out,
+            without: self.without,
+            twin: spread(&|j| Some(j.twin)).unwrap_or(Spread::of(&[])),
+            variants: variants
+                .into_iter()
+                .filter_map(|variant| Some((variant, spread(&|j| j.variants.get(&variant).copied())?)))
+                .collect(),
+            kernel: spread(&|j| j.kernel),
+            frames_not_simulated_percent: 100.0 * n_beyond as f64 / (n_frames as f64).max(1.0),
+            seeds,
+        }
+    }
+}
+
+/// The headline over several judgements, each frame counted once; `None` if there is none.
+fn headline(errors: impl Iterator<Item = Errors>) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0);
+    for errors in errors {
+        let mean = errors.nearest_in_contact;
+        sum += mean.percent * mean.count as f64;
+        count += mean.count;
+    }
+    (count > 0).then(|| sum / count as f64)
+}
+
+impl CrossValidation {
+    /// The plot of it: a bar for each row, and for the fitted curve on the same presses.
+    fn plot(&self) -> Bars {
+        let bar = |name: String, spread: Spread, ink: Ink| Bar {
+            name,
+            value: spread.mean_percent,
+            uncertainty: Some(spread.deviation_percent),
+            text: format!("{:.2} ± {:.2} %", spread.mean_percent, spread.deviation_percent),
+            ink,
+        };
+        let mut bars = Vec::new();
+        for row in &self.rows {
+            bars.push(bar(row.name(), row.twin, Ink::Twin));
+            if let (Some(kernel), None) = (row.kernel, row.without) {
+                bars.push(bar("fitted curve".to_owned(), kernel, Ink::Muted));
+            }
+        }
+        Bars {
+            title: format!("{}, {} data", self.sensor, self.provenance),
+            x_label: "error of the nearest taxel in contact, % of the file's largest reading".into(),
+            bars,
+        }
+    }
+}
+
+impl CrossValidated {
+    /// What the row is, in words.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self.without {
+            None => format!("by {}", self.held_out),
+            Some(without) => format!("by {}, without {}", self.held_out, without.name()),
+        }
+    }
+}

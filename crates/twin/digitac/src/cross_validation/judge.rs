@@ -1,0 +1,195 @@
+//! One division of the presses: bench, twin and baselines fitted to what teaches, judged on what was held out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+
+use super::new_taxel;
+use crate::bench_fit::{fit_radius, radius_weights};
+use crate::{
+    Baselines, BenchEstimate, BenchSettings, DigitacError, Errors, Fold, PairSettings, Places, Scale, Score,
+    TrainSettings, Variant, choose, evaluate, pair, recalibrate, refine_bench, train,
+};
+
+/// A recording, the gel at its places, and how twins of it are made.
+pub struct Bench<'a> {
+    /// The presses.
+    pub recording: &'a Recording,
+    /// Their places.
+    pub places: &'a Places,
+    /// Tables of all places, for each tip radius of the settings, or as described if there are none; `[n_radii][n_places]`.
+    pub tables: &'a [Vec<DepthTable>],
+    /// How the bench is fitted.
+    pub bench: &'a BenchSettings,
+    /// How frames are paired.
+    pub pair: &'a PairSettings,
+    /// How twins are trained.
+    pub train: &'a TrainSettings,
+    /// Places of the ports in the gel's plane, mm; `[n_taxels]`.
+    pub ports_mm: &'a [[f64; 2]],
+}
+
+/// The errors on what one division held out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Judgement {
+    /// Which file, indenter or taxel; empty if presses were drawn.
+    pub held_out: String,
+    /// Presses that were scored.
+    pub n_presses: usize,
+    /// The variant that validation presses chose.
+    pub variant: Variant,
+    /// Its errors.
+    pub twin: Errors,
+    /// The errors of each variant.
+    pub variants: BTreeMap<Variant, Errors>,
+    /// Errors of a power of depth times a function of distance; `None` for a taxel, whose gain it has not learned.
+    pub kernel: Option<Errors>,
+    /// The tip radius that the teaching presses gave, mm, if it was fitted.
+    pub tip_radius_mm: Option<f64>,
+    /// Frames deeper than the simulation went, which are scored all the same.
+    pub n_frames_not_simulated: usize,
+    /// All frames that were scored.
+    pub n_frames: usize,
+}
+
+/// Fits bench, twin and baselines to the presses of a division that teach, and judges them on the others. The contact height of a file
+/// of which nothing teaches comes from its first presses, which are not scored ([`recalibrate`]).
+///
+/// # Errors
+/// Those of the fits; too few presses.
+pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> {
+    let Bench {
+        recording, places, ..
+    } = *bench;
+    let left_out = &bench.bench.left_out;
+    let split = &fold.split;
+    let teachers = [&split.train[..], &split.validation].concat();
+    let taught = fold.taxel.map(|taxel| new_taxel::without(recording, taxel));
+    let taught = taught.as_ref().unwrap_or(recording);
+
+    let settings = BenchSettings {
+        n_blocks: 0,
+        ..bench.bench.clone()
+    };
+    let mut found = BenchEstimate::nominal();
+    if bench.tables.len() > 1 {
+        found = fit_radius(taught, places, bench.tables, &teachers, &settings)?;
+    }
+    let tables = bench.tables_at(&found);
+    let mut fitted = refine_bench(taught, places, &tables, &teachers, &found, &settings)?;
+    let pairs = pair(taught, places, &tables, &fitted, bench.pair)?;
+    let scale = Scale::of(
+        &pair(recording, places, &tables, &fitted, bench.pair)?,
+        left_out.clone(),
+    );
+
+    let mut train_settings = bench.train.clone();
+    if fold.taxel.is_some() {
+        train_settings
+            .variants
+            .retain(|variant| !variant.has_perceptron());
+    }
+    let mut trained = train(
+        &pairs,
+        &recording.taxels,
+        split,
+        &scale,
+        &train_settings,
+        &mut |_| (),
+    )?;
+    let kernel = match fold.taxel {
+        None => Some(Baselines::fit(&pairs, &teachers, bench.ports_mm, left_out)?),
+        Some(_) => None,
+    };
+    let chosen = choose(&trained).ok_or_else(|| DigitacError::TooFew {
+        expected: "a variant to train".into(),
+        found: "none".into(),
+    })?;
+    let variant = chosen.twin.variant();
+
+    let known: BTreeSet<&String> = teachers
+        .iter()
+        .map(|&press| &recording.presses[press].mounting)
+        .collect();
+    let mut test: BTreeSet<usize> = split.test.iter().copied().collect();
+    let new_files: BTreeSet<&String> = test
+        .iter()
+        .map(|&press| &recording.presses[press].mounting)
+        .collect();
+    for file in new_files.difference(&known) {
+        let limit_mm = settings.contact_offset_limit_mm;
+        let pressed = (places, &tables[..]);
+        let contact = recalibrate(
+            recording,
+            pressed,
+            &fitted,
+            &chosen.twin,
+            file,
+            limit_mm,
+            left_out,
+        )?;
+        if let Some(contact) = contact {
+            test = test
+                .into_iter()
+                .filter(|press| !contact.used.contains(press))
+                .collect();
+            fitted
+                .contact_offset_mm
+                .insert(contact.file, contact.contact_offset_mm);
+        }
+    }
+    let pairs = pair(recording, places, &tables, &fitted, bench.pair)?;
+    if let Some(taxel) = fold.taxel {
+        for candidate in &mut trained {
+            candidate.twin = new_taxel::with_gain(&candidate.twin, taxel, &pairs, &teachers, left_out)?;
+        }
+    }
+    let test: Vec<usize> = test.into_iter().collect();
+    let judged = trained
+        .iter()
+        .map(|candidate| evaluate(&candidate.twin, &pairs, &test, &scale, kernel.as_ref()));
+    let errors = |score: &Score| match fold.taxel {
+        Some(taxel) => score.by_taxel.get(taxel).copied().unwrap_or_default(),
+        None => score.overall,
+    };
+    let mut judgement = Judgement {
+        held_out: fold.held_out.clone(),
+        n_presses: test.len(),
+        variant,
+        twin: Errors::default(),
+        variants: BTreeMap::new(),
+        kernel: None,
+        tip_radius_mm: found.tip_radius_mm.map(|radius| radius.value),
+        n_frames_not_simulated: 0,
+        n_frames: 0,
+    };
+    for evaluation in judged {
+        let own = errors(&evaluation.twin);
+        judgement.variants.insert(evaluation.variant, own);
+        if evaluation.variant == variant {
+            judgement.twin = own;
+            judgement.kernel = evaluation.kernel.as_ref().map(errors);
+            judgement.n_frames_not_simulated = evaluation.twin.n_frames_not_simulated;
+            judgement.n_frames = evaluation.twin.n_frames;
+        }
+    }
+    Ok(judgement)
+}
+
+impl Bench<'_> {
+    /// The table of each place for the tip radius that was found.
+    fn tables_at(&self, found: &BenchEstimate) -> Vec<DepthTable> {
+        let (Some(radius), true) = (found.tip_radius_mm, self.tables.len() > 1) else {
+            return self.tables[0].clone();
+        };
+        let ln_radii: Vec<f64> = self.bench.tip_radii_mm.iter().map(|radius| radius.ln()).collect();
+        let weights = radius_weights(&ln_radii, radius.value.ln());
+        let at = |place: usize| {
+            let of_radii = self.tables.iter().map(|tables| &tables[place]);
+            DepthTable::blend(&of_radii.zip(weights.iter().copied()).collect::<Vec<_>>())
+        };
+        (0..self.tables[0].len()).map(at).collect()
+    }
+}

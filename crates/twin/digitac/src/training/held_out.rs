@@ -1,0 +1,244 @@
+//! What a twin is judged on: ways to hold presses out.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+use twintac_recording::{Press, Recording};
+
+use super::{Split, SplitSettings};
+use crate::bench_fit::deepest_pose;
+use crate::{DigitacError, seed};
+
+/// Presses at least this near to the deepest fifth in depth belong to it, mm: commanded depths differ by less.
+const SAME_DEPTH_MM: f64 = 0.05;
+
+/// What is held out together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HeldOut {
+    /// Single presses, drawn at random: others at the same place may teach.
+    Press,
+    /// All presses of a place, between places that teach.
+    Place,
+    /// All presses of a file, one file after the other.
+    File,
+    /// All presses of an indenter, one indenter after the other.
+    Indenter,
+    /// The deepest fifth of the presses of each indenter.
+    Depth,
+    /// All readings of a taxel, one taxel after the other; its gain comes from one press.
+    Taxel,
+}
+
+impl HeldOut {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Press,
+        Self::Place,
+        Self::File,
+        Self::Indenter,
+        Self::Depth,
+        Self::Taxel,
+    ];
+
+    /// The name used in files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Press => "press",
+            Self::Place => "place",
+            Self::File => "file",
+            Self::Indenter => "indenter",
+            Self::Depth => "depth",
+            Self::Taxel => "taxel",
+        }
+    }
+}
+
+impl std::fmt::Display for HeldOut {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for HeldOut {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let names = || Self::ALL.map(Self::name).join(", ");
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| format!("cannot hold out by `{name}`; there are: {}", names()))
+    }
+}
+
+/// One division of presses, with what it holds out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fold {
+    /// Which file, indenter or taxel; empty if presses were drawn.
+    pub held_out: String,
+    /// The division.
+    pub split: Split,
+    /// The taxel whose readings teach nothing, if one is held out.
+    pub taxel: Option<usize>,
+}
+
+impl Fold {
+    /// The divisions of a recording for one seed: several if it is held out by name. Taxels in `left_out` are not held out.
+    ///
+    /// # Errors
+    /// Too few presses, files or indenters.
+    pub fn all(
+        recording: &Recording,
+        by: HeldOut,
+        settings: &SplitSettings,
+        left_out: &BTreeSet<usize>,
+    ) -> Result<Vec<Self>, DigitacError> {
+        let fold = |held_out: &str, split: Split| Self {
+            held_out: held_out.to_owned(),
+            split,
+            taxel: None,
+        };
+        match by {
+            HeldOut::Place => Ok(vec![fold("", Split::new(recording, settings)?)]),
+            HeldOut::Press => {
+                let test = drawn(recording, settings);
+                Ok(vec![fold("", Split::around(recording, test, false, settings)?)])
+            }
+            HeldOut::Depth => {
+                let test = deepest(recording)?;
+                Ok(vec![fold("", Split::around(recording, test, false, settings)?)])
+            }
+            HeldOut::File => one_by_one(recording, by, settings, |press| &press.mounting),
+            HeldOut::Indenter => one_by_one(recording, by, settings, |press| &press.indenter),
+            HeldOut::Taxel => {
+                let split = Split::new(recording, settings)?;
+                let taxels = recording.taxels.iter().enumerate();
+                Ok(taxels
+                    .filter(|(taxel, _)| !left_out.contains(taxel))
+                    .map(|(taxel, name)| Self {
+                        taxel: Some(taxel),
+                        ..fold(name, split.clone())
+                    })
+                    .collect())
+            }
+        }
+    }
+}
+
+fn one_by_one(
+    recording: &Recording,
+    by: HeldOut,
+    settings: &SplitSettings,
+    name: impl Fn(&Press) -> &String,
+) -> Result<Vec<Fold>, DigitacError> {
+    let mut groups: BTreeMap<&str, BTreeSet<usize>> = BTreeMap::new();
+    for (index, press) in recording.presses.iter().enumerate() {
+        groups.entry(name(press)).or_default().insert(index);
+    }
+    if groups.len() < 2 {
+        return Err(DigitacError::TooFew {
+            expected: format!("two of what is held out by {by}"),
+            found: groups.len().to_string(),
+        });
+    }
+    let fold = |(name, test): (&str, BTreeSet<usize>)| {
+        Ok(Fold {
+            held_out: name.to_owned(),
+            split: Split::around(recording, test, false, settings)?,
+            taxel: None,
+        })
+    };
+    groups.into_iter().map(fold).collect()
+}
+
+fn drawn(recording: &Recording, settings: &SplitSettings) -> BTreeSet<usize> {
+    let mut presses: Vec<usize> = (0..recording.presses.len()).collect();
+    presses.shuffle(&mut seed::stream(settings.seed, "split/press"));
+    presses.truncate(presses.len() / settings.test_one_in);
+    presses.into_iter().collect()
+}
+
+/// The presses of each indenter that are about as deep as its deepest fifth.
+fn deepest(recording: &Recording) -> Result<BTreeSet<usize>, DigitacError> {
+    let mut heights: BTreeMap<&str, Vec<(f64, usize)>> = BTreeMap::new();
+    for (index, press) in recording.presses.iter().enumerate() {
+        let height_mm = deepest_pose(press)?.position_mm.z;
+        heights
+            .entry(&press.indenter)
+            .or_default()
+            .push((height_mm, index));
+    }
+    let mut deepest = BTreeSet::new();
+    for mut own in heights.into_values() {
+        own.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let limit_mm = own[own.len() / 5].0 + SAME_DEPTH_MM;
+        deepest.extend(
+            own.iter()
+                .filter(|(z, _)| *z <= limit_mm)
+                .map(|(_, index)| *index),
+        );
+    }
+    Ok(deepest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Truth;
+
+    #[test]
+    fn folds_hold_out_what_they_say() {
+        let recording = Truth::new().recording(12);
+        let folds = |by| Fold::all(&recording, by, &SplitSettings::default(), &BTreeSet::from([0])).unwrap();
+        for by in [HeldOut::Press, HeldOut::Place] {
+            let [fold] = &folds(by)[..] else { panic!("{by}") };
+            let n_test = fold.split.test.len();
+            assert!(4 * n_test <= recording.presses.len() && 6 * n_test >= recording.presses.len());
+        }
+        let files = folds(HeldOut::File);
+        for fold in &files {
+            let of_file = |index: &usize| recording.presses[*index].mounting == fold.held_out;
+            assert!(fold.split.test.iter().all(of_file));
+            let teachers = [&fold.split.train[..], &fold.split.validation].concat();
+            assert!(!teachers.iter().any(of_file) && !teachers.is_empty());
+        }
+        assert_eq!(
+            files.iter().map(|fold| fold.split.test.len()).sum::<usize>(),
+            recording.presses.len()
+        );
+        let taxels: Vec<_> = folds(HeldOut::Taxel).iter().map(|fold| fold.taxel).collect();
+        assert_eq!(taxels, (1..recording.taxels.len()).map(Some).collect::<Vec<_>>());
+        let all = Fold::all(
+            &recording,
+            HeldOut::Indenter,
+            &SplitSettings::default(),
+            &BTreeSet::new(),
+        );
+        assert!(all.unwrap_err().to_string().contains("held out by indenter"));
+    }
+
+    #[test]
+    fn no_press_that_teaches_is_as_deep_as_those_held_out_by_depth() {
+        let mut recording = Truth::new().recording(12);
+        for (index, press) in recording.presses.iter_mut().enumerate() {
+            for pose in &mut press.gel_from_indenter {
+                pose.position_mm.z -= 0.2 * (index % 5) as f64;
+            }
+        }
+        let folds = Fold::all(
+            &recording,
+            HeldOut::Depth,
+            &SplitSettings::default(),
+            &BTreeSet::new(),
+        )
+        .unwrap();
+        let split = &folds[0].split;
+        let z = |index: &usize| deepest_pose(&recording.presses[*index]).unwrap().position_mm.z;
+        let deepest = split.test.iter().map(z).fold(f64::NEG_INFINITY, f64::max);
+        let teachers = split.train.iter().chain(&split.validation).map(z);
+        assert!(teachers.fold(f64::INFINITY, f64::min) > deepest + SAME_DEPTH_MM / 2.0);
+    }
+}
