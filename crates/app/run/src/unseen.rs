@@ -10,13 +10,14 @@ use digitac::{
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::{Provenance, Recording};
-use twintac_simulate::{Gel, SimulateSettings};
+use twintac_simulate::Gel;
 
 use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
 use crate::metrics::{self, BaselineFigures, Figures, TwinFigures, baselines, names};
+use crate::model::gel_of;
 use crate::progress::Work;
-use crate::{Progress, RunError, SensorFile};
+use crate::{Progress, RunError};
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
@@ -98,15 +99,6 @@ pub fn evaluate_elsewhere(
         repeatability: metrics::repeatability(repeats.as_ref()),
         contact,
     })
-}
-
-/// The gel of a model's sensor, simulated as it was for training.
-fn gel_of(model: &Model, folder: &Path) -> Result<Gel, RunError> {
-    let path = folder.join("twin.json");
-    let sensor = SensorFile::parse(&path, &model.record.sensor)?.sensor;
-    let settings: SimulateSettings = serde_json::from_value(model.record.simulation.clone())
-        .map_err(|source| RunError::Damaged { path, source })?;
-    Ok(Gel::new(sensor, settings))
 }
 
 /// A table over depth for each place that a recording presses.

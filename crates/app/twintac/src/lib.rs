@@ -39,6 +39,7 @@
 //! | [`Recording`] | recorded presses, as Parquet or from CSV files of any laboratory ([`Import`]) | `recording` |
 //! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
+//! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
 //! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
@@ -126,8 +127,10 @@ pub use press::Press;
 pub use reader::{Reader, Reading};
 pub use sensor::Sensor;
 #[cfg(feature = "twin")]
-pub use twin::{Prediction, Twin};
+pub use twin::Twin;
 
+#[cfg(feature = "twin")]
+pub use digitac::{Prediction, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Import, Provenance, Recording};

@@ -42,5 +42,5 @@ pub use evaluation::{
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
 pub use network::{Twin, Variant};
-pub use prediction::{Prediction, TwinAtPlace, TwinState, predict};
+pub use prediction::{Prediction, TwinAtPlace, TwinState, at_place, predict};
 pub use training::{Epoch, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train};

@@ -31,6 +31,12 @@ pub struct FollowedFrame {
     pub torque_n_mm: DVec3,
     /// Hydrostatic pressure -tr(σ)/3, averaged over the port of each taxel and over each point's disc, kPa.
     pub pressure_kpa: BTreeMap<String, f64>,
+    /// How the pressure at each taxel changes with its port's place along x, along y and with its radius, kPa/mm; `[n_taxels]`.
+    #[serde(skip)]
+    pub port_slope_kpa_per_mm: Vec<[f64; 3]>,
+    /// The stress feature above each taxel, as a table over depth has it, kPa/mm; `[n_taxels]`.
+    #[serde(skip)]
+    pub stress_feature_kpa_per_mm: Vec<f64>,
     /// Quality of the solve.
     pub quality: SolveQuality,
     /// Wall time of the frame, s. It is not reproducible, and no result depends on it.
@@ -152,7 +158,7 @@ impl Gel {
                 }
             };
             let pose = walk.pose().unwrap_or(path_frame.pose);
-            let nodal_kpa = gel.body.pressure_kpa(&walk.state);
+            let fields = gel.fields(&walk.state);
             followed.frames.push(FollowedFrame {
                 time_s,
                 position_mm: pose.position_mm,
@@ -161,8 +167,10 @@ impl Gel {
                 torque_n_mm: frame.indenter_torque_n_mm,
                 pressure_kpa: ports
                     .iter()
-                    .map(|(name, port)| (name.clone(), port.read(&nodal_kpa)))
+                    .map(|(name, port)| (name.clone(), port.read(&fields.pressure_kpa)))
                     .collect(),
+                port_slope_kpa_per_mm: gel.port_slopes_kpa_per_mm(&fields),
+                stress_feature_kpa_per_mm: gel.stress_features_kpa_per_mm(&fields),
                 quality: solve_quality(&frame),
                 wall_time_s: frame.wall_time_s,
                 cost: frame.cost,

@@ -7,6 +7,7 @@ mod export;
 mod files;
 mod follow;
 mod mesh;
+mod predict;
 mod record;
 mod reproduce;
 mod sensor;
@@ -37,6 +38,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Align(arguments) => stages::align(&arguments),
         Command::Train(arguments) => stages::train(&arguments),
         Command::Evaluate(arguments) => stages::evaluate(&arguments),
+        Command::Predict(arguments) => predict::run(&arguments),
         Command::Report(arguments) => stages::report(&arguments),
     }
 }

@@ -50,6 +50,8 @@ pub(crate) struct Remembered {
     relaxed_kpa: Vec<f64>,
     /// Overstresses, kPa; `[n_time_constants * n_sensors * n_taxels]`.
     overstress_kpa: Vec<f64>,
+    /// Share of each overstress in the reading, in one piece; `[n_time_constants * n_taxels]`.
+    shares: Vec<f64>,
 }
 
 impl Remembered {
@@ -60,6 +62,9 @@ impl Remembered {
             rested: vec![true; n_sensors],
             relaxed_kpa: vec![0.0; n_readings],
             overstress_kpa: vec![0.0; gains.time_constants_s.len() * n_readings],
+            shares: (0..gains.time_constants_s.len())
+                .flat_map(|j| gains.memory.iter().map(move |shares| shares[j]))
+                .collect(),
         }
     }
 
@@ -103,11 +108,12 @@ impl Gains {
             }
         }
         remembered.relaxed_kpa.copy_from_slice(readings_kpa);
-        for (j, overstresses) in remembered.overstress_kpa.chunks_exact(n_readings).enumerate() {
+        let overstresses = remembered.overstress_kpa.chunks_exact(n_readings);
+        for (overstresses, shares) in overstresses.zip(remembered.shares.chunks_exact(n_taxels)) {
             let rows = readings_kpa.chunks_exact_mut(n_taxels);
             for (row, overstresses) in rows.zip(overstresses.chunks_exact(n_taxels)) {
-                for ((reading, shares), q) in row.iter_mut().zip(&self.memory).zip(overstresses) {
-                    *reading += shares[j] * q;
+                for ((reading, share), q) in row.iter_mut().zip(shares).zip(overstresses) {
+                    *reading += share * q;
                 }
             }
         }

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use serde::Serialize;
-use twintac_depth_table::DepthTableSource;
+use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
-use crate::{BenchEstimate, DigitacError, PlaceSettings, Places, Twin, features};
+use crate::{BenchEstimate, DigitacError, Features, PlaceSettings, Places, Twin, TwinAtPlace, features};
 
 /// What a twin would read along a press. All vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -43,21 +43,13 @@ pub fn predict(
     rate_hz: f64,
 ) -> Result<Vec<Prediction>, DigitacError> {
     let n_taxels = twin.taxels().len();
-    let presses = plans.iter().map(|plan| planned(plan, source, rate_hz, n_taxels));
-    let recording = Recording {
-        sensor: String::new(),
-        provenance: Provenance::Simulated,
-        taxels: twin.taxels().to_vec(),
-        presses: presses.collect::<Result<_, _>>()?,
-    };
-    let places = Places::of(&recording, source, &PlaceSettings::default())?.at_bench(bench);
-    let tables = source
-        .depth_tables(&places.requests)
-        .map_err(DigitacError::Simulation)?;
+    let made = |plan: &PressPlan| made(plan, &plan.trajectory(rate_hz), source, n_taxels);
+    let recording = recording(twin, plans.iter().map(made).collect::<Result<_, _>>()?);
+    let (places, tables) = simulate(&recording, bench, source)?;
     let along = features(&recording, &places, &tables, bench)?;
     let mut state = twin.state();
     state.tare_untouched();
-    let predict = |(plan, along): (&PressPlan, crate::Features)| {
+    let predict = |(plan, along): (&PressPlan, Features)| {
         state.rest(0);
         let mut before_s = 0.0;
         let seen = twin.physics().seen(&along).iter().zip(&along.time_s);
@@ -81,14 +73,52 @@ pub fn predict(
     Ok(plans.iter().zip(along).map(predict).collect())
 }
 
-/// A planned press as one that was made, without readings.
-fn planned(
-    plan: &PressPlan,
+/// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
+/// it was found.
+///
+/// # Errors
+/// An indenter that the source does not know; a place that it cannot press.
+pub fn at_place(
+    twin: &Twin,
+    bench: &BenchEstimate,
     source: &dyn DepthTableSource,
-    rate_hz: f64,
+    plan: &PressPlan,
+) -> Result<TwinAtPlace, DigitacError> {
+    let deepest = made(plan, &[(0.0, plan.depth_mm)], source, twin.taxels().len())?;
+    let (_, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
+    let table = tables.first().ok_or(DigitacError::DepthTableCount {
+        expected: 1,
+        found: 0,
+    })?;
+    TwinAtPlace::new(twin, table, bench, &plan.indenter)
+}
+
+fn simulate(
+    recording: &Recording,
+    bench: &BenchEstimate,
+    source: &dyn DepthTableSource,
+) -> Result<(Places, Vec<DepthTable>), DigitacError> {
+    let places = Places::of(recording, source, &PlaceSettings::default())?.at_bench(bench);
+    let tables = source.depth_tables(&places.requests);
+    Ok((places, tables.map_err(DigitacError::Simulation)?))
+}
+
+fn recording(twin: &Twin, presses: Vec<Press>) -> Recording {
+    Recording {
+        sensor: String::new(),
+        provenance: Provenance::Simulated,
+        taxels: twin.taxels().to_vec(),
+        presses,
+    }
+}
+
+/// A planned press as one that was made, without readings. `trajectory` is time, s, and depth below first touch, mm.
+fn made(
+    plan: &PressPlan,
+    trajectory: &[(f64, f64)],
+    source: &dyn DepthTableSource,
     n_taxels: usize,
 ) -> Result<Press, DigitacError> {
-    let trajectory = plan.trajectory(rate_hz);
     let above = Pose {
         position_mm: DVec3::new(plan.x_mm, plan.y_mm, 0.0),
         rotation: plan.rotation,
