@@ -10,12 +10,12 @@ fn main() -> Result<(), Error> {
     step(Path::new(folder.as_deref().unwrap_or("runs/demo/model"))).map(drop)
 }
 
-/// Leans on the gel as a hand might, a hundred times a second, and prints what each taxel would read.
+/// Presses ever deeper, a hundred frames a second, and prints what each taxel would read.
 pub fn step(model: &Path) -> Result<Vec<f64>, Error> {
     let twin = Twin::load(model)?;
     let mut pressed = twin.at(&Press::with("cylinder").at_mm(2.0, 1.0).depth_mm(1.0))?;
     let mut readings_kpa = vec![0.0; twin.sensor().taxels().count()];
-    for frame in 0..300 {
+    for frame in 0..160 {
         let depth_mm = 0.5 - 0.5 * (0.02 * f64::from(frame)).cos();
         pressed.step(0.01, depth_mm, &mut readings_kpa); // what comes from a robot goes here
         println!(

@@ -90,6 +90,23 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
+//! The same twin, stepped as depths come:
+//!
+//! ```no_run
+//! # #[cfg(feature = "twin")] {
+//! use twintac::{Press, Twin};
+//!
+//! let twin = Twin::load("runs/demo/model")?;
+//! let mut pressed = twin.at(&Press::with("sphere-25").depth_mm(1.2))?;
+//! let mut readings_kpa = [0.0; 8];
+//! for depth_mm in [0.0, 0.3, 0.6, 0.9, 1.2] {
+//!     pressed.step(0.018, depth_mm, &mut readings_kpa);
+//!     println!("{:.2} N, {readings_kpa:.2?} kPa", pressed.force_n());
+//! }
+//! # }
+//! # Ok::<(), twintac::Error>(())
+//! ```
+//!
 //! The folder `examples/` has these as programs, and one that trains a twin on CSV files of your own.
 //!
 //! # Features
@@ -137,4 +154,6 @@ pub use twintac_recording::{Import, Provenance, Recording};
 #[cfg(feature = "run")]
 pub use twintac_run::{Caller, Metrics, Outcome, Progress, Run, RunSettings, Silent};
 pub use twintac_sensor::SensorFile;
+#[cfg(feature = "twin")]
+pub use twintac_shape::Pose;
 pub use twintac_simulate::SimulateSettings;
