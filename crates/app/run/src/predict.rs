@@ -21,8 +21,9 @@ use crate::{Planned, Progress, RunError};
 
 /// A trained twin, and the gel of its sensor.
 ///
-/// The bench is as it was found at training: an indenter goes deeper than poses say by the median of the recordings' contact heights, and ports
-/// are where they were found. An indenter that was added is as described.
+/// The bench is as it was found at training. An indenter goes deeper than poses say by the contact height of its mounting, or by the median of all
+/// where the recordings have no mounting of its name. Ports are where they were found, and a fitted tip keeps its radius and form. An indenter that was
+/// added is as described, at the median height. The gel's stiffness over the simulated one counts where forces are prescribed.
 pub struct Predictor {
     model: Model,
     gel: Gel,
@@ -93,8 +94,12 @@ impl Predictor {
         };
         let mut elastic = self.gel.material().clone();
         elastic.prony.clear();
-        let gel = self.gel.clone().with_material(elastic);
-        let path = on_bench(path, bench.contact_offset_mm(""), stiffness);
+        let mut gel = self.gel.clone().with_material(elastic);
+        if self.model.twin.variant() == Variant::Paper {
+            gel = gel.with_stress_along_paths();
+        }
+        let offset_mm = bench.contact_offset_mm(&path.indenter);
+        let path = on_bench(path, offset_mm, stiffness);
         let work = Work::start(progress, "simulating", path.frames().len());
         let followed = gel
             .follow(&shape, &path, &mut || work.step(""))

@@ -34,7 +34,8 @@ pub struct FollowedFrame {
     /// How the pressure at each taxel changes with its port's place along x, along y and with its radius, kPa/mm; `[n_taxels]`.
     #[serde(skip)]
     pub port_slope_kpa_per_mm: Vec<[f64; 3]>,
-    /// The stress feature above each taxel, as a table over depth has it, kPa/mm; `[n_taxels]`.
+    /// The stress feature above each taxel, as a table over depth has it, kPa/mm; `[n_taxels]`, or empty if the gel was not asked for it by
+    /// [`Gel::with_stress_along_paths`].
     #[serde(skip)]
     pub stress_feature_kpa_per_mm: Vec<f64>,
     /// Quality of the solve.
@@ -158,7 +159,7 @@ impl Gel {
                 }
             };
             let pose = walk.pose().unwrap_or(path_frame.pose);
-            let fields = gel.fields(&walk.state);
+            let nodal_kpa = gel.body.pressure_kpa(&walk.state);
             followed.frames.push(FollowedFrame {
                 time_s,
                 position_mm: pose.position_mm,
@@ -167,10 +168,14 @@ impl Gel {
                 torque_n_mm: frame.indenter_torque_n_mm,
                 pressure_kpa: ports
                     .iter()
-                    .map(|(name, port)| (name.clone(), port.read(&fields.pressure_kpa)))
+                    .map(|(name, port)| (name.clone(), port.read(&nodal_kpa)))
                     .collect(),
-                port_slope_kpa_per_mm: gel.port_slopes_kpa_per_mm(&fields),
-                stress_feature_kpa_per_mm: gel.stress_features_kpa_per_mm(&fields),
+                port_slope_kpa_per_mm: gel.port_slopes_kpa_per_mm(&nodal_kpa),
+                stress_feature_kpa_per_mm: if self.stress_along_paths {
+                    gel.stress_features_kpa_per_mm(&gel.fields(&walk.state))
+                } else {
+                    Vec::new()
+                },
                 quality: solve_quality(&frame),
                 wall_time_s: frame.wall_time_s,
                 cost: frame.cost,

@@ -1,5 +1,7 @@
 //! What the ports and the tip of a bench do to the pressures that are simulated.
 
+use std::collections::BTreeMap;
+
 use super::tip_form::DistanceSplines;
 use super::{BenchEstimate, PortEstimate, TipForm};
 
@@ -27,13 +29,14 @@ impl BenchEstimate {
         }
     }
 
-    /// The bench for an indenter that it was not fitted with, and that is as described: without what was found of the tip. What was found
-    /// of ports, gel and contact height stays.
+    /// The bench for an indenter that it was not fitted with, and that is as described: without what was found of tips, at the median of the
+    /// contact heights. What was found of ports and gel stays.
     #[must_use]
     pub fn with_described_tip(&self) -> Self {
         Self {
             tip_radius_mm: None,
             tip_form: None,
+            contact_offset_mm: BTreeMap::new(),
             ..self.clone()
         }
     }

@@ -19,8 +19,8 @@ pub struct TwinAtPlace {
 }
 
 impl TwinAtPlace {
-    /// A twin that nothing touches, at the place of a table over depth. Heights are those of a mounting of the bench's recordings; of any
-    /// other, the height is their median. What an untouched sensor reads is zero.
+    /// A twin that nothing touches, at the place of a table over depth. The contact height is that of a mounting of the bench's recordings, or
+    /// for any other the median. What an untouched sensor reads is zero.
     ///
     /// # Errors
     /// A table that can't be used.
