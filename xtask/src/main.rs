@@ -9,7 +9,7 @@ use anyhow::Result;
 use xtask::cargo::{cargo, run};
 use xtask::{fuzz, readme, rooms};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | bench softbody [--json] | bench scaling | bench peers | bench recording |
+const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | bench softbody [--json] | bench scaling | bench peers | bench recording | bench twin |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
@@ -21,6 +21,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
+         twin: how fast a thousand twins are stepped; writes docs/benchmarks/twin.*
   fuzz   looks for bytes that break what decodes wires and files, 60 s a target, two at a time; needs a C++ compiler; exit code 2 if it finds any
          keep: the corpus that was found becomes `fuzz/corpus`, the figures docs/benchmarks/fuzz.*
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
@@ -74,6 +75,18 @@ fn test() -> Result<()> {
 
 fn bench() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(2).collect();
+    if given.first().is_some_and(|bench| bench == "twin") {
+        // What measures the others knows no learning.
+        return cargo(&[
+            "run",
+            "--release",
+            "--quiet",
+            "--package",
+            "digitac",
+            "--example",
+            "step_rate",
+        ]);
+    }
     if given.first().is_some_and(|bench| bench == "recording") {
         cargo(&["build", "--release", "--package", "twintac-cli"])?; // it is run as its users run it
     }

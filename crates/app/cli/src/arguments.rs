@@ -52,6 +52,8 @@ pub(crate) enum Command {
     Evaluate(Evaluate),
     /// Judge twins of a run's recordings for several seeds and ways to hold presses out.
     CrossValidate(CrossValidate),
+    /// Print what a sensor would read along a path or a protocol, by its trained twin.
+    Predict(Predict),
     /// Write the report of a run.
     Report(Report),
 }
@@ -345,6 +347,42 @@ pub(crate) struct CrossValidate {
     /// Print the figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// The gel is solved with finite elements, and the twin stepped frame by frame with what reaches its ports. All numbers are simulated.
+#[derive(Args, Debug)]
+#[command(group = ArgGroup::new("motion").required(true))]
+pub(crate) struct Predict {
+    /// Folder of a model: a run's `model`.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) model: PathBuf,
+    /// Path of one indenter (TOML): down, aside, tilted, and up again.
+    #[arg(long, value_name = "FILE", group = "motion")]
+    pub(crate) path: Option<PathBuf>,
+    /// Press protocol (TOML).
+    #[arg(long, value_name = "FILE", group = "motion")]
+    pub(crate) protocol: Option<PathBuf>,
+    /// An indenter that the sensor's description does not have, or has otherwise (TOML): name, shape, and friction if there is any.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) indenter: Option<PathBuf>,
+    /// Seed of the protocol's random places.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Draw depth, force and readings over time into this PNG or SVG file.
+    #[arg(long, value_name = "FILE", value_parser = picture)]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print everything as JSON instead of comma-separated values.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A file for a picture.
+fn picture(name: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("png" | "svg") => Ok(path),
+        _ => Err("expected a name that ends in .png or .svg".to_owned()),
+    }
 }
 
 #[derive(Args, Debug)]

@@ -435,6 +435,32 @@ fn a_press_in_which_the_bench_stopped_is_left_out_and_named() {
 }
 
 #[test]
+fn a_prediction_without_a_twin() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("path.toml");
+    fs::write(&path, "summary = \"no poses\"\n").unwrap();
+    let plot = folder.path().join("plot.png");
+    let predict = |more: &[&str]| {
+        let output = twintac(&[&["predict", "--model", text(folder.path())], more].concat());
+        assert!(!plot.exists());
+        output
+    };
+    refused(
+        &predict(&["--path", text(&path), "--plot", text(&plot)]),
+        &["checksums.json", "not a usable model", "missing"],
+    );
+    refused(&predict(&[]), &["--path", "--protocol"]);
+    refused(
+        &predict(&["--path", text(&path), "--protocol", text(&path)]),
+        &["--path", "--protocol", "cannot be used with"],
+    );
+    refused(
+        &predict(&["--path", text(&path), "--plot", "plot.gif"]),
+        &["--plot", ".png or .svg"],
+    );
+}
+
+#[test]
 fn a_stream_that_cannot_be() {
     let strip = root().join("sensors/strip4-gel-a.toml");
     let stream = |more: &[&str]| twintac(&[&["stream", "--lab"], more].concat());

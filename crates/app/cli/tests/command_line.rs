@@ -43,6 +43,7 @@ fn help_on_each_command() {
         "align",
         "train",
         "evaluate",
+        "predict",
         "report",
     ] {
         insta::assert_snapshot!(format!("help_{command}"), said(&["help", command]));

@@ -35,7 +35,7 @@
 //!
 //! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`] hears. What is wrong is a [`RunError`].
 //!
-//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`calibration`] fits a gel's material, [`characterization`] reads
+//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, a [`Predictor`] takes one along a path or a protocol, [`calibration`] fits a gel's material, [`characterization`] reads
 //! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
 //! out, [`export`](mod@export) makes tables of logs.
 
@@ -54,6 +54,9 @@ pub mod export;
 mod files;
 pub mod mesh;
 mod metrics;
+mod model;
+mod predict;
+mod press_checksum;
 mod progress;
 mod protocol;
 mod report;
@@ -69,6 +72,7 @@ pub use digitac::HeldOut;
 pub use error::RunError;
 pub use files::sha256_of_file;
 pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};
+pub use predict::{Predicted, Predictor};
 pub use progress::{Outcome, Progress, Silent};
 pub use protocol::Planned;
 pub use run::{Run, RunRecord};

@@ -4,19 +4,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use digitac::{
-    Estimate, Evaluation, Model, Places, Recalibration, Repeatability, Scale, evaluate, pair, recalibrate,
-    repeatability,
+    Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale, evaluate, pair,
+    recalibrate, repeatability,
 };
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
-use twintac_recording::{Provenance, Recording};
-use twintac_simulate::{Gel, SimulateSettings};
+use twintac_recording::{Press, Provenance, Recording};
+use twintac_simulate::Gel;
 
 use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
 use crate::metrics::{self, BaselineFigures, Figures, TwinFigures, baselines, names};
+use crate::model::gel_of;
+use crate::press_checksum::press_checksum;
 use crate::progress::Work;
-use crate::{Progress, RunError, SensorFile};
+use crate::{Progress, RunError};
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
@@ -51,7 +53,7 @@ pub struct UnseenEvaluation {
 /// and scores the rest.
 ///
 /// # Errors
-/// A model that cannot be read, or that reads other taxels; a place that cannot be pressed.
+/// A model that cannot be read, or that reads other taxels; presses that taught the model; a place that cannot be pressed.
 pub fn evaluate_elsewhere(
     model_folder: &Path,
     recording: &Recording,
@@ -65,6 +67,7 @@ pub fn evaluate_elsewhere(
             record.taxels, recording.taxels
         )));
     }
+    refuse_known(recording, record)?;
     let gel = gel_of(&model, model_folder)?;
     let left_out = left_out(gel.sensor());
     let (places, tables) = simulate(&gel, recording, &model, progress)?;
@@ -100,13 +103,23 @@ pub fn evaluate_elsewhere(
     })
 }
 
-/// The gel of a model's sensor, simulated as it was for training.
-fn gel_of(model: &Model, folder: &Path) -> Result<Gel, RunError> {
-    let path = folder.join("twin.json");
-    let sensor = SensorFile::parse(&path, &model.record.sensor)?.sensor;
-    let settings: SimulateSettings = serde_json::from_value(model.record.simulation.clone())
-        .map_err(|source| RunError::Damaged { path, source })?;
-    Ok(Gel::new(sensor, settings))
+/// Presses that taught a model are not unseen.
+fn refuse_known(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
+    let known: Vec<&Press> = recording
+        .presses
+        .iter()
+        .filter(|press| record.taught_by.contains(&press_checksum(press)))
+        .collect();
+    let Some(first) = known.first() else {
+        return Ok(());
+    };
+    Err(RunError::Input(format!(
+        "{} of {} presses taught this model, `{}` of {} for one; give recordings that it has never seen",
+        known.len(),
+        recording.presses.len(),
+        first.name,
+        first.mounting
+    )))
 }
 
 /// A table over depth for each place that a recording presses.

@@ -39,6 +39,7 @@
 //! | [`Recording`] | recorded presses, as Parquet or from CSV files of any laboratory ([`Import`]) | `recording` |
 //! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
+//! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
 //! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
@@ -89,6 +90,23 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
+//! The same twin, stepped as depths come:
+//!
+//! ```no_run
+//! # #[cfg(feature = "twin")] {
+//! use twintac::{Press, Twin};
+//!
+//! let twin = Twin::load("runs/demo/model")?;
+//! let mut pressed = twin.at(&Press::with("sphere-25").depth_mm(1.2))?;
+//! let mut readings_kpa = [0.0; 8];
+//! for depth_mm in [0.0, 0.3, 0.6, 0.9, 1.2] {
+//!     pressed.step(0.018, depth_mm, &mut readings_kpa);
+//!     println!("{:.2} N, {readings_kpa:.2?} kPa", pressed.force_n());
+//! }
+//! # }
+//! # Ok::<(), twintac::Error>(())
+//! ```
+//!
 //! The folder `examples/` has these as programs, and one that trains a twin on CSV files of your own.
 //!
 //! # Features
@@ -126,12 +144,16 @@ pub use press::Press;
 pub use reader::{Reader, Reading};
 pub use sensor::Sensor;
 #[cfg(feature = "twin")]
-pub use twin::{Prediction, Twin};
+pub use twin::Twin;
 
+#[cfg(feature = "twin")]
+pub use digitac::{Prediction, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Import, Provenance, Recording};
 #[cfg(feature = "run")]
 pub use twintac_run::{Caller, Metrics, Outcome, Progress, Run, RunSettings, Silent};
 pub use twintac_sensor::SensorFile;
+#[cfg(feature = "twin")]
+pub use twintac_shape::Pose;
 pub use twintac_simulate::SimulateSettings;

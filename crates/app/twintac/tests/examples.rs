@@ -9,6 +9,8 @@ mod predict_along_a_press;
 mod press_a_ball;
 #[path = "../examples/read_a_sensor.rs"]
 mod read_a_sensor;
+#[path = "../examples/step_a_twin.rs"]
+mod step_a_twin;
 #[path = "../examples/train_from_csv.rs"]
 mod train_from_csv;
 
@@ -32,4 +34,6 @@ fn a_twin_is_trained_and_predicts() {
     let loudest = |row: &Vec<f64>| row.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let held = predicted.readings_kpa.len() / 2;
     assert!(loudest(&predicted.readings_kpa[held]) > 1.0, "{predicted:?}");
+    let pressed_kpa = step_a_twin::step(&folder.path().join("model")).unwrap();
+    assert!(loudest(&pressed_kpa) > 1.0, "{pressed_kpa:?}");
 }

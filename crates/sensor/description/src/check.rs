@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use twintac_config::{ConfigError, Document};
 
-use crate::Sensor;
 use crate::file::SensorToml;
+use crate::{Indenter, Sensor};
 
 /// Lengths that differ by less are the same, mm.
 const TOLERANCE_MM: f64 = 1e-6;
@@ -96,12 +96,7 @@ impl Checker<'_> {
     }
 
     fn name(&self, field: &str, name: &str) -> Checked {
-        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-        if !name.is_empty() && !name.starts_with('.') && name.chars().all(is_plain) {
-            return Ok(());
-        }
-        let hint = "use letters, digits, `-`, `_` and `.`, so that files can bear the name";
-        Err(self.error(field, format!("is `{name}`"), hint))
+        check_name(self.document, field, name)
     }
 
     fn gel(&self) -> Checked {
@@ -251,21 +246,9 @@ impl Checker<'_> {
     }
 
     fn indenters(&self) -> Checked {
-        for (index, indenter) in self.sensor.indenters.iter().enumerate() {
-            indenter.shape.validate().map_err(|error| {
-                let field = format!("indenters[{index}].shape.{}", error.field);
-                self.error(
-                    &field,
-                    format!("is {}", error.found),
-                    &format!("give {}", error.expected),
-                )
-            })?;
-            if let Some(friction) = indenter.friction.filter(|friction| *friction < 0.0) {
-                let field = format!("indenters[{index}].friction");
-                return Err(self.error(&field, format!("is {friction}"), "give zero or more"));
-            }
-        }
-        Ok(())
+        let mut indenters = self.sensor.indenters.iter().enumerate();
+        indenters
+            .try_for_each(|(index, indenter)| indenter.check(self.document, &format!("indenters[{index}].")))
     }
 
     fn inferred(&self) -> Checked {
@@ -278,6 +261,32 @@ impl Checker<'_> {
                     "give the path of a field, such as gel.solid.size_mm",
                 ));
             }
+        }
+        Ok(())
+    }
+}
+
+fn check_name<T>(document: &Document<T>, field: &str, name: &str) -> Checked {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if !name.is_empty() && !name.starts_with('.') && name.chars().all(is_plain) {
+        return Ok(());
+    }
+    let hint = "use letters, digits, `-`, `_` and `.`, so that files can bear the name";
+    Err(document.error(field, format!("is `{name}`"), hint))
+}
+
+impl Indenter {
+    /// `within` is where the indenter's fields stand in the document.
+    pub(crate) fn check<T>(&self, document: &Document<T>, within: &str) -> Checked {
+        check_name(document, &format!("{within}name"), &self.name)?;
+        self.shape.validate().map_err(|error| {
+            let field = format!("{within}shape.{}", error.field);
+            let hint = format!("give {}", error.expected);
+            document.error(&field, format!("is {}", error.found), hint)
+        })?;
+        if let Some(friction) = self.friction.filter(|friction| *friction < 0.0) {
+            let field = format!("{within}friction");
+            return Err(document.error(&field, format!("is {friction}"), "give zero or more"));
         }
         Ok(())
     }

@@ -8,12 +8,14 @@
 mod check;
 mod describe;
 mod file;
+mod indenter_file;
 mod load;
 mod material;
 mod material_table;
 mod sensor;
 mod sensor_file;
 
+pub use indenter_file::IndenterFile;
 pub use material::GelMaterial;
 pub use sensor::{ConfirmedTransfer, Gel, Inclusion, Indenter, LoadLimits, Readout, Sensor, Shell, Taxel};
 pub use sensor_file::SensorFile;

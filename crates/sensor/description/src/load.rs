@@ -140,18 +140,27 @@ fn load_surfaces(
         if surfaces.contains_key(path) {
             continue;
         }
-        let error = |problem: String, hint: &str| {
-            document.error(&field, format!("names `{path}`, which {problem}"), hint)
-        };
-        let bytes = load(path).map_err(|found| {
-            error(
-                format!("cannot be read: {found}"),
-                "give a path relative to this file",
-            )
-        })?;
-        let surface = TriangleSurface::from_stl(&bytes)
-            .map_err(|found| error(found.to_string(), "export it again as a closed mesh in mm"))?;
+        let surface = load_surface(document, &field, path, load)?;
         surfaces.insert(path.clone(), Arc::new(surface));
     }
     Ok(surfaces)
+}
+
+/// The surface of an STL file that a field names.
+pub(crate) fn load_surface<T>(
+    document: &Document<T>,
+    field: &str,
+    path: &str,
+    load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+) -> Result<TriangleSurface, SensorError> {
+    let error =
+        |problem: String, hint: &str| document.error(field, format!("names `{path}`, which {problem}"), hint);
+    let bytes = load(path).map_err(|found| {
+        error(
+            format!("cannot be read: {found}"),
+            "give a path relative to this file",
+        )
+    })?;
+    TriangleSurface::from_stl(&bytes)
+        .map_err(|found| error(found.to_string(), "export it again as a closed mesh in mm"))
 }

@@ -128,32 +128,45 @@ impl DepthCurves {
     /// Port pressure of each taxel at a depth, kPa; `[n_taxels]`.
     #[must_use]
     pub fn pressure_kpa(&self, depth_mm: f64) -> Vec<f64> {
+        self.pressures_kpa(depth_mm).collect()
+    }
+
+    /// The same, one after the other.
+    pub fn pressures_kpa(&self, depth_mm: f64) -> impl Iterator<Item = f64> {
         self.read(0..self.n_taxels(), depth_mm)
     }
 
     /// Stress feature of each taxel at a depth, kPa/mm; `[n_taxels]`.
     #[must_use]
     pub fn stress_kpa_per_mm(&self, depth_mm: f64) -> Vec<f64> {
+        self.stresses_kpa_per_mm(depth_mm).collect()
+    }
+
+    /// The same, one after the other.
+    pub fn stresses_kpa_per_mm(&self, depth_mm: f64) -> impl Iterator<Item = f64> {
         self.read(self.n_taxels()..2 * self.n_taxels(), depth_mm)
     }
 
     /// How each port's pressure changes with its place along x, along y and with its radius, at a depth, kPa/mm; `[n_taxels]`.
     #[must_use]
     pub fn slope_kpa_per_mm(&self, depth_mm: f64) -> Vec<[f64; 3]> {
-        let flat = self.read(2 * self.n_taxels()..self.features.len(), depth_mm);
-        flat.as_chunks().0.to_vec()
+        self.slopes_kpa_per_mm(depth_mm).collect()
+    }
+
+    /// The same, one after the other.
+    pub fn slopes_kpa_per_mm(&self, depth_mm: f64) -> impl Iterator<Item = [f64; 3]> {
+        let grown = self.grown(depth_mm);
+        let ports = self.features[2 * self.n_taxels()..].as_chunks::<3>().0.iter();
+        ports.map(move |port| port.each_ref().map(|curve| curve.at(grown)))
     }
 
     fn n_taxels(&self) -> usize {
         self.features.len() / COLUMNS
     }
 
-    fn read(&self, columns: Range<usize>, depth_mm: f64) -> Vec<f64> {
+    fn read(&self, columns: Range<usize>, depth_mm: f64) -> impl Iterator<Item = f64> {
         let grown = self.grown(depth_mm);
-        self.features[columns]
-            .iter()
-            .map(|curve| curve.at(grown))
-            .collect()
+        self.features[columns].iter().map(move |curve| curve.at(grown))
     }
 
     /// Depth at which the table ends, mm.

@@ -4,12 +4,13 @@
 //! simulates each; [`fit_bench`] finds what is unknown
 //! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
 //! [`Split`] divides presses into training, validation and test; [`train()`] makes a [`Twin`] of each [`Variant`];
-//! [`evaluate()`] computes its errors; and a [`Model`] keeps it in a folder.
+//! [`evaluate()`] computes its errors; and a [`Model`] keeps it in a folder. A twin in use is a [`TwinState`], or a [`TwinAtPlace`]: stepped frame
+//! by frame. [`predict()`] takes it along planned presses.
 //!
 //! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
 //! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this
 //! crate are called, says at its front what it does; `numerics` and `features` come first, then `bench_fit`, `alignment`, `network`,
-//! `evaluation`, `training`, `cross_validation` and `model_folder`.
+//! `prediction`, `evaluation`, `training`, `cross_validation` and `model_folder`.
 
 mod alignment;
 mod bench_fit;
@@ -23,6 +24,7 @@ mod numerics;
 mod physical_fit;
 #[cfg(test)]
 mod pipeline_test;
+mod prediction;
 mod seed;
 #[cfg(test)]
 mod synthetic;
@@ -30,8 +32,8 @@ mod training;
 
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
-    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortEstimate, TipForm, features,
-    fit_bench, refine_bench,
+    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate, TipForm,
+    features, fit_bench, refine_bench,
 };
 pub use cross_validation::{Bench, Judgement, judge};
 pub use error::DigitacError;
@@ -42,6 +44,7 @@ pub use evaluation::{
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
 pub use network::{Twin, Variant};
+pub use prediction::{Prediction, TwinAtPlace, TwinState, at_place, predict};
 pub use training::{
     Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train,
 };

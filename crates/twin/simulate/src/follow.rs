@@ -31,6 +31,13 @@ pub struct FollowedFrame {
     pub torque_n_mm: DVec3,
     /// Hydrostatic pressure -tr(σ)/3, averaged over the port of each taxel and over each point's disc, kPa.
     pub pressure_kpa: BTreeMap<String, f64>,
+    /// How the pressure at each taxel changes with its port's place along x, along y and with its radius, kPa/mm; `[n_taxels]`.
+    #[serde(skip)]
+    pub port_slope_kpa_per_mm: Vec<[f64; 3]>,
+    /// The stress feature above each taxel, as a table over depth has it, kPa/mm; `[n_taxels]`, or empty if the gel was not asked for it by
+    /// [`Gel::with_stress_along_paths`].
+    #[serde(skip)]
+    pub stress_feature_kpa_per_mm: Vec<f64>,
     /// Quality of the solve.
     pub quality: SolveQuality,
     /// Wall time of the frame, s. It is not reproducible, and no result depends on it.
@@ -163,6 +170,12 @@ impl Gel {
                     .iter()
                     .map(|(name, port)| (name.clone(), port.read(&nodal_kpa)))
                     .collect(),
+                port_slope_kpa_per_mm: gel.port_slopes_kpa_per_mm(&nodal_kpa),
+                stress_feature_kpa_per_mm: if self.stress_along_paths {
+                    gel.stress_features_kpa_per_mm(&gel.fields(&walk.state))
+                } else {
+                    Vec::new()
+                },
                 quality: solve_quality(&frame),
                 wall_time_s: frame.wall_time_s,
                 cost: frame.cost,

@@ -8,6 +8,7 @@ mod export;
 mod files;
 mod follow;
 mod mesh;
+mod predict;
 mod record;
 mod reproduce;
 mod sensor;
@@ -39,6 +40,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Train(arguments) => stages::train(&arguments),
         Command::Evaluate(arguments) => stages::evaluate(&arguments),
         Command::CrossValidate(arguments) => cross_validate::run(&arguments),
+        Command::Predict(arguments) => predict::run(&arguments),
         Command::Report(arguments) => stages::report(&arguments),
     }
 }

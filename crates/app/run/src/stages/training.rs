@@ -10,6 +10,7 @@ use twintac_recording::Recording;
 
 use super::simulation::Simulation;
 use crate::files::write_json;
+use crate::press_checksum::press_checksum;
 use crate::progress::Work;
 use crate::{Run, RunError};
 
@@ -165,6 +166,12 @@ impl<'a> Training<'a> {
             settings: self.settings.clone(),
             provenance: self.recording.provenance,
             files: files(&self.recording),
+            taught_by: split
+                .train
+                .iter()
+                .chain(&split.validation)
+                .map(|&press| press_checksum(&self.recording.presses[press]))
+                .collect(),
             split,
         };
         let model = Model::new(

@@ -3,6 +3,7 @@
 mod bench_estimate;
 mod estimate;
 mod places;
+mod port_correction;
 mod problem;
 mod search;
 mod simulated;
@@ -12,6 +13,7 @@ pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;
 pub(crate) use places::deepest_pose;
 pub use places::{PlaceSettings, Places};
+pub use port_correction::PortCorrection;
 pub(crate) use problem::radius_weights;
 pub use search::{fit_bench, refine_bench};
 pub(crate) use search::{fit_radius, in_order};

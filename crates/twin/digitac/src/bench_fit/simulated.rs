@@ -108,26 +108,10 @@ pub(crate) fn features_along(
         row
     };
     let place_mm = deepest_pose(press)?.position_mm.truncate().to_array();
-    let form = bench.tip_form.as_ref().map(|form| {
-        let taxels = 0..form.ports_mm.len();
-        (
-            form,
-            taxels.map(|k| form.splines(k, place_mm)).collect::<Vec<_>>(),
-        )
-    });
+    let correction = bench.correction_at(place_mm);
     let pressure_kpa = |depth_mm: f64| {
         let mut row = curves.pressure_kpa(depth_mm);
-        if !bench.ports.is_empty() {
-            let slopes = curves.slope_kpa_per_mm(depth_mm);
-            for ((value, slope), port) in row.iter_mut().zip(slopes).zip(&bench.ports) {
-                *value += port.change_kpa(slope);
-            }
-        }
-        if let Some((form, splines)) = &form {
-            for (value, splines) in row.iter_mut().zip(splines) {
-                *value *= form.factor(splines, depth_mm);
-            }
-        }
+        correction.apply(depth_mm, curves.slopes_kpa_per_mm(depth_mm), &mut row);
         scaled(row)
     };
     Ok(Features {

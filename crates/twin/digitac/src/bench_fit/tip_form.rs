@@ -11,6 +11,8 @@ use crate::numerics::mirrored_splines;
 const N_INTERVALS: usize = 5;
 /// Splines over the distance.
 const N_SPLINES: usize = N_INTERVALS + 2;
+/// Splines of one port's distance.
+pub(crate) type DistanceSplines = [f64; N_SPLINES];
 /// Powers of the logarithm of depth, from zero.
 const N_POWERS: usize = 3;
 /// Terms of the function.

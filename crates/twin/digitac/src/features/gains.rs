@@ -41,54 +41,80 @@ impl Sample<'_> {
     }
 }
 
-/// What barometers remember from one frame to the next.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// What the barometers of one or more sensors remember from one frame to the next. The arrays of all sensors lie side by side.
+#[derive(Clone, Debug)]
 pub(crate) struct Remembered {
-    /// Readings of the relaxed gel at the last frame, kPa; `[n_taxels]`. Empty before the first.
+    /// Whether the gel has rested until the next frame; `[n_sensors]`.
+    rested: Vec<bool>,
+    /// Readings of the relaxed gel at the last frame, kPa; `[n_sensors * n_taxels]`.
     relaxed_kpa: Vec<f64>,
-    /// Overstresses, kPa; `[n_taxels * n_time_constants]`.
+    /// Overstresses, kPa; `[n_time_constants * n_sensors * n_taxels]`.
     overstress_kpa: Vec<f64>,
+    /// Share of each overstress in the reading, in one piece; `[n_time_constants * n_taxels]`.
+    shares: Vec<f64>,
+}
+
+impl Remembered {
+    /// Sensors whose gels have rested.
+    pub(crate) fn rested(gains: &Gains, n_sensors: usize) -> Self {
+        let n_readings = n_sensors * gains.gain.len();
+        Self {
+            rested: vec![true; n_sensors],
+            relaxed_kpa: vec![0.0; n_readings],
+            overstress_kpa: vec![0.0; gains.time_constants_s.len() * n_readings],
+            shares: (0..gains.time_constants_s.len())
+                .flat_map(|j| gains.memory.iter().map(move |shares| shares[j]))
+                .collect(),
+        }
+    }
+
+    /// Lets the gel of one sensor rest until its next frame.
+    pub(crate) fn rest(&mut self, sensor: usize) {
+        self.rested[sensor] = true;
+        let (n_readings, n_taxels) = (self.relaxed_kpa.len(), self.relaxed_kpa.len() / self.rested.len());
+        for overstresses in self.overstress_kpa.chunks_exact_mut(n_readings.max(1)) {
+            overstresses[sensor * n_taxels..][..n_taxels].fill(0.0);
+        }
+    }
 }
 
 impl Gains {
-    /// One more frame: turns gain × pressure of each taxel into readings, kPa; `[n_taxels]`. `since_s` is the time since the last frame;
-    /// `None` if the gel has rested until now.
-    pub(crate) fn step(&self, remembered: &mut Remembered, since_s: Option<f64>, readings_kpa: &mut [f64]) {
-        let n_constants = self.time_constants_s.len();
-        for (reading, stiffening) in readings_kpa.iter_mut().zip(&self.stiffening_per_kpa) {
-            *reading = port_law::reading(*stiffening, *reading);
-        }
-        match since_s {
-            Some(since_s) if !remembered.relaxed_kpa.is_empty() => {
-                for (j, constant_s) in self.time_constants_s.iter().enumerate() {
-                    let (kept, arrived) = overstress::step(since_s, *constant_s);
-                    let taxels = remembered
-                        .relaxed_kpa
-                        .iter_mut()
-                        .zip(readings_kpa.iter())
-                        .enumerate();
-                    for (k, (before, now)) in taxels {
-                        let q = &mut remembered.overstress_kpa[k * n_constants + j];
-                        *q = kept * *q + arrived * (now - *before);
-                    }
-                }
-            }
-            _ => {
-                remembered.overstress_kpa.clear();
-                remembered
-                    .overstress_kpa
-                    .resize(readings_kpa.len() * n_constants, 0.0);
+    /// One more frame of each sensor: turns gain × pressure of each taxel into readings, kPa; `[n_sensors * n_taxels]`. `since_s` is the
+    /// time since the last frame, of which sensors whose gel has rested until now take no notice.
+    pub(crate) fn step(&self, remembered: &mut Remembered, since_s: f64, readings_kpa: &mut [f64]) {
+        let n_taxels = self.gain.len().max(1);
+        for row in readings_kpa.chunks_exact_mut(n_taxels) {
+            for (reading, stiffening) in row.iter_mut().zip(&self.stiffening_per_kpa) {
+                *reading = port_law::reading(*stiffening, *reading);
             }
         }
-        remembered.relaxed_kpa.clear();
-        remembered.relaxed_kpa.extend_from_slice(readings_kpa);
-        if n_constants == 0 {
+        if self.time_constants_s.is_empty() {
             return;
         }
-        let overstresses = remembered.overstress_kpa.chunks_exact(n_constants);
-        for ((reading, shares), overstresses) in readings_kpa.iter_mut().zip(&self.memory).zip(overstresses) {
-            for (share, q) in shares.iter().zip(overstresses) {
-                *reading += share * q;
+        let relaxed = remembered.relaxed_kpa.chunks_exact_mut(n_taxels);
+        let rows = readings_kpa.chunks_exact(n_taxels);
+        for ((rested, relaxed), row) in remembered.rested.iter_mut().zip(relaxed).zip(rows) {
+            if std::mem::take(rested) {
+                relaxed.copy_from_slice(row);
+            }
+        }
+        let n_readings = readings_kpa.len().max(1);
+        let overstresses = remembered.overstress_kpa.chunks_exact_mut(n_readings);
+        for (overstresses, constant_s) in overstresses.zip(&self.time_constants_s) {
+            let (kept, arrived) = overstress::step(since_s, *constant_s);
+            let changes = readings_kpa.iter().zip(&remembered.relaxed_kpa);
+            for (q, (now, before)) in overstresses.iter_mut().zip(changes) {
+                *q = kept * *q + arrived * (now - before);
+            }
+        }
+        remembered.relaxed_kpa.copy_from_slice(readings_kpa);
+        let overstresses = remembered.overstress_kpa.chunks_exact(n_readings);
+        for (overstresses, shares) in overstresses.zip(remembered.shares.chunks_exact(n_taxels)) {
+            let rows = readings_kpa.chunks_exact_mut(n_taxels);
+            for (row, overstresses) in rows.zip(overstresses.chunks_exact(n_taxels)) {
+                for ((reading, share), q) in row.iter_mut().zip(shares).zip(overstresses) {
+                    *reading += share * q;
+                }
             }
         }
     }
@@ -98,20 +124,17 @@ impl Gains {
     pub(crate) fn remember(
         &self,
         presses: &[&Features],
-        mut readings_kpa: Vec<Vec<Vec<f64>>>,
+        mut elastic_kpa: Vec<Vec<Vec<f64>>>,
     ) -> Vec<Vec<Vec<f64>>> {
-        let mut remembered = Remembered::default();
-        for (press, rows) in presses.iter().zip(&mut readings_kpa) {
-            let mut since_s = press.since_previous_s;
-            for (frame, row) in rows.iter_mut().enumerate() {
-                if frame > 0 {
-                    since_s = Some(press.time_s[frame] - press.time_s[frame - 1]);
-                }
-                self.step(&mut remembered, since_s, row);
+        let mut remembered = Remembered::rested(self, 1);
+        along(presses, |press, frame, since_s| {
+            if since_s.is_none() {
+                remembered.rest(0);
             }
-            set_to_zero(rows, press.zero_frames.clone());
-        }
-        readings_kpa
+            let mut row = std::mem::take(&mut elastic_kpa[press][frame]);
+            self.step(&mut remembered, since_s.unwrap_or(0.0), &mut row);
+            row
+        })
     }
 
     /// The reading that these gains alone give along presses that follow each other, kPa; `[n_presses][n_frames][n_taxels]`.
@@ -126,19 +149,39 @@ impl Gains {
     }
 }
 
-/// Takes the mean over some frames from all; `[n_frames][n_taxels]`.
-pub(crate) fn set_to_zero(rows: &mut [Vec<f64>], zero_frames: std::ops::Range<usize>) {
+/// Readings along presses that follow each other, kPa; `[n_presses][n_frames][n_taxels]`. `step` makes a row of them: it is given the numbers
+/// of press and frame, and the time since the last frame, `None` if the gel has rested until now.
+pub(crate) fn along(
+    presses: &[&Features],
+    mut step: impl FnMut(usize, usize, Option<f64>) -> Vec<f64>,
+) -> Vec<Vec<Vec<f64>>> {
+    let frames_of = |(number, press): (usize, &&Features)| {
+        let since_s = |frame: usize| match frame {
+            0 => press.since_previous_s,
+            _ => Some(press.time_s[frame] - press.time_s[frame - 1]),
+        };
+        let mut rows: Vec<Vec<f64>> = (0..press.n_frames())
+            .map(|frame| step(number, frame, since_s(frame)))
+            .collect();
+        set_to_zero(&mut rows, press.zero_frames.clone());
+        rows
+    };
+    presses.iter().enumerate().map(frames_of).collect()
+}
+
+/// Takes the mean over some frames from all; `[n_frames][n_taxels]`. The mean of frames that are alike is what they are, to the last bit.
+fn set_to_zero(rows: &mut [Vec<f64>], zero_frames: std::ops::Range<usize>) {
     if zero_frames.is_empty() {
         return;
     }
-    let count = zero_frames.len() as f64;
     let n_taxels = rows.first().map_or(0, Vec::len);
     let mut means = vec![0.0; n_taxels];
-    for row in &rows[zero_frames] {
+    for (before, row) in rows[zero_frames].iter().enumerate() {
+        let count = (before + 1) as f64;
         means
             .iter_mut()
             .zip(row)
-            .for_each(|(mean, value)| *mean += value / count);
+            .for_each(|(mean, value)| *mean += (value - *mean) / count);
     }
     for row in rows {
         row.iter_mut()

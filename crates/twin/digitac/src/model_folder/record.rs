@@ -1,5 +1,7 @@
 //! A twin with all that is needed to use it, and to know where it comes from.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
@@ -36,6 +38,9 @@ pub struct ModelRecord {
     pub provenance: Provenance,
     /// Files that the training presses were read from.
     pub files: Vec<String>,
+    /// Checksums of the presses that taught: what is judged elsewhere must not be among them.
+    #[serde(default)]
+    pub taught_by: BTreeSet<String>,
     /// Which presses were used for training, validation and test.
     pub split: Split,
     /// Errors on validation presses.
@@ -70,6 +75,8 @@ pub struct Origin {
     pub provenance: Provenance,
     /// Files that the training presses were read from.
     pub files: Vec<String>,
+    /// Checksums of the presses that taught.
+    pub taught_by: BTreeSet<String>,
     /// Which presses were used for training, validation and test.
     pub split: Split,
 }
@@ -89,6 +96,7 @@ impl Model {
             settings: origin.settings,
             provenance: origin.provenance,
             files: origin.files,
+            taught_by: origin.taught_by,
             split: origin.split,
             validation,
             test: test.map(|evaluation| evaluation.twin.clone()),

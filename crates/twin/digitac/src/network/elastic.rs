@@ -25,7 +25,90 @@ struct Correction {
     shares: Matrix,
 }
 
+/// Room for elastic readings of some rows, so that none has to be allocated while readings are computed.
+#[derive(Clone, Debug)]
+pub(crate) struct ElasticRows {
+    /// Inputs of order one; `[n_rows][n_taxels]`.
+    inputs: Matrix,
+    /// Readings of order one; `[n_rows][n_taxels]`.
+    readings: Matrix,
+    /// What comes out of each layer; `[n_layers]`.
+    layers: Vec<Matrix>,
+}
+
+impl ElasticRows {
+    /// Room for so many rows.
+    pub(crate) fn new(parameters: &Parameters, n_rows: usize) -> Self {
+        let n_taxels = parameters.gain_change.len();
+        let layers = parameters.layers.iter();
+        Self {
+            inputs: Matrix::zeros(n_rows, n_taxels),
+            readings: Matrix::zeros(n_rows, n_taxels),
+            layers: layers
+                .map(|layer| Matrix::zeros(n_rows, layer.bias.len()))
+                .collect(),
+        }
+    }
+
+    /// Elastic readings of order one from what the variant reads, with the gains of [`Parameters::elastic_gains`]: the bits of
+    /// [`Parameters::elastic`], row by row. `seen` has at most as many rows as there is room for; `[n_rows * n_taxels]`.
+    pub(crate) fn read(
+        &mut self,
+        parameters: &Parameters,
+        physics: &Physics,
+        gains: &[f32],
+        seen: &[f64],
+    ) -> &[f32] {
+        let n_taxels = self.inputs.n_columns.max(1);
+        self.inputs.values.resize(seen.len(), 0.0);
+        for (row, seen) in self.inputs.rows_mut().zip(seen.chunks_exact(n_taxels)) {
+            physics.scale(seen, row);
+        }
+        if physics.variant == Variant::Paper {
+            return &perceptron::outputs(&parameters.layers, &self.inputs, &mut self.layers).values;
+        }
+        self.readings.values.clear();
+        self.readings.values.extend_from_slice(&self.inputs.values);
+        multiply(&mut self.readings, gains);
+        if !parameters.layers.is_empty() {
+            let limit = physics.correction_limit as f32;
+            let shares = perceptron::outputs(&parameters.layers, &self.inputs, &mut self.layers);
+            shares.values.iter_mut().for_each(|value| *value = value.tanh());
+            for (row, shares) in self.readings.rows_mut().zip(shares.rows()) {
+                let square = square(row);
+                correct(row, square, shares, limit);
+            }
+        }
+        &self.readings.values
+    }
+}
+
+/// Multiplies each column with its gain.
+fn multiply(rows: &mut Matrix, gains: &[f32]) {
+    for row in rows.rows_mut() {
+        row.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);
+    }
+}
+
+/// Rounded sum of the squares of a row's physical readings.
+fn square(physical: &[f32]) -> f32 {
+    physical.iter().map(|p| p * p).sum::<f32>() + ROUNDING
+}
+
+/// Adds the corrections to the physical readings of a row, in shares of their largest.
+fn correct(readings: &mut [f32], square: f32, shares: &[f32], limit: f32) {
+    for (reading, share) in readings.iter_mut().zip(shares) {
+        *reading += square.sqrt() * share * limit;
+    }
+}
+
 impl Parameters {
+    /// Readings of order one over inputs of order one; `[n_taxels]`.
+    pub(crate) fn elastic_gains(&self, physics: &Physics) -> Vec<f32> {
+        let changed = physics.start_gains().into_iter().zip(&self.gain_change);
+        changed.map(|(start, change)| start * change.exp()).collect()
+    }
+
     /// Elastic readings of order one from [`Physics::inputs`]. What the perceptron sees may be noisier than what the physics sees.
     pub(crate) fn elastic(&self, physics: &Physics, inputs: &Matrix, seen: &Matrix) -> Pass {
         if physics.variant == Variant::Paper {
@@ -36,14 +119,8 @@ impl Parameters {
                 correction: None,
             };
         }
-        let changed = physics.start_gains().into_iter().zip(&self.gain_change);
-        let gains: Vec<f32> = changed.map(|(start, change)| start * change.exp()).collect();
         let mut physical = inputs.clone();
-        for row in physical.rows_mut() {
-            row.iter_mut()
-                .zip(&gains)
-                .for_each(|(value, gain)| *value *= gain);
-        }
+        multiply(&mut physical, &self.elastic_gains(physics));
         if self.layers.is_empty() {
             return Pass {
                 readings: physical,
@@ -51,19 +128,13 @@ impl Parameters {
                 correction: None,
             };
         }
-        let sum_of_squares = |row: &[f32]| row.iter().map(|p| p * p).sum::<f32>();
-        let squares: Vec<f32> = physical
-            .rows()
-            .map(|row| sum_of_squares(row) + ROUNDING)
-            .collect();
+        let squares: Vec<f32> = physical.rows().map(square).collect();
         let (mut shares, pass) = perceptron::forward(&self.layers, seen);
         shares.values.iter_mut().for_each(|value| *value = value.tanh());
         let limit = physics.correction_limit as f32;
         let mut readings = physical.clone();
         for ((row, shares), square) in readings.rows_mut().zip(shares.rows()).zip(&squares) {
-            for (reading, share) in row.iter_mut().zip(shares) {
-                *reading += square.sqrt() * share * limit;
-            }
+            correct(row, *square, shares, limit);
         }
         Pass {
             readings,

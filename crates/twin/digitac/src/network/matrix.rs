@@ -61,6 +61,14 @@ impl Matrix {
         self.product(self.n_rows(), [self.n_columns, 1], right)
     }
 
+    /// Writes the product of two matrices into a third, whose rows are made as many. Each row of it has the same bits however many there are.
+    pub(crate) fn times_into(&self, right: &Self, result: &mut Self) {
+        result.values.clear();
+        result.values.resize(self.n_rows() * right.n_columns, 0.0);
+        result.n_columns = right.n_columns;
+        multiply(&self.values, [self.n_columns, 1], right, result);
+    }
+
     /// The product of the transposed matrix and another.
     pub(crate) fn transposed_times(&self, right: &Self) -> Self {
         self.product(self.n_columns, [1, self.n_columns], right)
@@ -69,14 +77,19 @@ impl Matrix {
     /// The product with the left matrix's values `strides` apart along rows and along columns.
     fn product(&self, n_rows: usize, strides: [usize; 2], right: &Self) -> Self {
         let mut result = Self::zeros(n_rows, right.n_columns);
-        Arch::new().dispatch(Product {
-            left: &self.values,
-            strides,
-            right,
-            result: &mut result,
-        });
+        multiply(&self.values, strides, right, &mut result);
         result
     }
+}
+
+/// Adds a product to `result`, with the left matrix's values `strides` apart along rows and along columns.
+fn multiply(left: &[f32], strides: [usize; 2], right: &Matrix, result: &mut Matrix) {
+    Arch::new().dispatch(Product {
+        left,
+        strides,
+        right,
+        result,
+    });
 }
 
 /// A product, compiled for each instruction set. Not faer's: that one leaves the upper halves of vector registers set, which slows down the
@@ -172,6 +185,15 @@ mod tests {
                 }
             }
             assert_eq!(left.transposed().transposed_times(&right), product);
+            let mut row = Matrix::zeros(0, 0);
+            for (left, product) in left.rows().zip(product.rows()) {
+                let left = Matrix {
+                    values: left.to_vec(),
+                    n_columns: n_terms,
+                };
+                left.times_into(&right, &mut row);
+                assert_eq!(row.values, product);
+            }
         }
     }
 }

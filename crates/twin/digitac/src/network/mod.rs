@@ -12,7 +12,7 @@ mod physics;
 mod twin;
 mod variant;
 
-pub(crate) use elastic::Pass;
+pub(crate) use elastic::{ElasticRows, Pass};
 pub(crate) use matrix::Matrix;
 pub(crate) use normalization::Normalization;
 pub(crate) use parameters::{Parameters, Weights};

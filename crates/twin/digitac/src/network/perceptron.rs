@@ -21,7 +21,32 @@ pub(crate) struct PerceptronPass {
     sums: Vec<Matrix>,
 }
 
-/// Outputs of the layers for each row of `inputs`.
+impl Layer {
+    fn add_bias(&self, sums: &mut Matrix) {
+        for row in sums.rows_mut() {
+            row.iter_mut()
+                .zip(&self.bias)
+                .for_each(|(sum, bias)| *sum += bias);
+        }
+    }
+}
+
+/// Outputs of the layers for each row of `inputs`, in the last of `rows`, which there is one of for each layer.
+pub(crate) fn outputs<'a>(layers: &[Layer], inputs: &Matrix, rows: &'a mut [Matrix]) -> &'a mut Matrix {
+    for (index, layer) in layers.iter().enumerate() {
+        let (before, after) = rows.split_at_mut(index);
+        if let Some(sums) = before.last_mut() {
+            sums.values.iter_mut().for_each(|sum| *sum = gelu(*sum));
+            sums.times_into(&layer.weight, &mut after[0]);
+        } else {
+            inputs.times_into(&layer.weight, &mut after[0]);
+        }
+        layer.add_bias(&mut after[0]);
+    }
+    &mut rows[layers.len() - 1]
+}
+
+/// Outputs of the layers for each row of `inputs`, with what a gradient needs.
 pub(crate) fn forward(layers: &[Layer], inputs: &Matrix) -> (Matrix, PerceptronPass) {
     let mut pass = PerceptronPass {
         inputs: Vec::with_capacity(layers.len()),
@@ -30,11 +55,7 @@ pub(crate) fn forward(layers: &[Layer], inputs: &Matrix) -> (Matrix, PerceptronP
     let mut rows = inputs.clone();
     for (index, layer) in layers.iter().enumerate() {
         let mut sums = rows.times(&layer.weight);
-        for row in sums.rows_mut() {
-            row.iter_mut()
-                .zip(&layer.bias)
-                .for_each(|(sum, bias)| *sum += bias);
-        }
+        layer.add_bias(&mut sums);
         pass.inputs.push(rows);
         if index + 1 == layers.len() {
             return (sums, pass);

@@ -19,36 +19,37 @@ pub(crate) struct Physics {
 }
 
 impl Physics {
+    /// What the variant reads of a press: port pressures, kPa, or the paper's stress features, kPa/mm; `[n_frames][n_taxels]`.
+    pub(crate) fn seen<'a>(&self, features: &'a Features) -> &'a [Vec<f64>] {
+        match self.variant {
+            Variant::Paper => &features.stress_kpa_per_mm,
+            _ => &features.pressure_kpa,
+        }
+    }
+
     /// Inputs of the variant, of order one; `[n_frames][n_taxels]`.
     pub(crate) fn inputs(&self, features: &Features) -> Matrix {
+        let seen = self.seen(features);
+        let mut inputs = Matrix::zeros(seen.len(), self.n_taxels());
+        for (row, seen) in inputs.rows_mut().zip(seen) {
+            self.scale(seen, row);
+        }
+        inputs
+    }
+
+    /// Inputs of order one from what the variant reads in one frame; `[n_taxels]`.
+    pub(crate) fn scale(&self, seen: &[f64], inputs: &mut [f32]) {
         let n = &self.normalization;
-        let values = match self.variant {
-            Variant::Paper => features
-                .stress_kpa_per_mm
-                .iter()
-                .flat_map(|row| {
-                    let scales = n
-                        .stress_mean_kpa_per_mm
-                        .iter()
-                        .zip(&n.stress_deviation_kpa_per_mm);
-                    row.iter()
-                        .zip(scales)
-                        .map(|(s, (mean, deviation))| ((s - mean) / deviation) as f32)
-                })
-                .collect(),
-            _ => features
-                .pressure_kpa
-                .iter()
-                .flat_map(|row| {
-                    row.iter()
-                        .zip(&n.pressure_rms_kpa)
-                        .map(|(p, rms)| (p / rms) as f32)
-                })
-                .collect(),
-        };
-        Matrix {
-            values,
-            n_columns: self.n_taxels(),
+        if self.variant == Variant::Paper {
+            let means = &n.stress_mean_kpa_per_mm;
+            let scales = means.iter().zip(&n.stress_deviation_kpa_per_mm);
+            for ((input, s), (mean, deviation)) in inputs.iter_mut().zip(seen).zip(scales) {
+                *input = ((s - mean) / deviation) as f32;
+            }
+        } else {
+            for ((input, p), rms) in inputs.iter_mut().zip(seen).zip(&n.pressure_rms_kpa) {
+                *input = (p / rms) as f32;
+            }
         }
     }
 

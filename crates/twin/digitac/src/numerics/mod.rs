@@ -1,5 +1,6 @@
 //! Numerical methods that do not depend on what they are used for: searches, robust fits, and small linear systems.
 
+mod dot;
 mod golden_section;
 mod least_absolute_deviations;
 mod levenberg_marquardt;
@@ -7,6 +8,7 @@ mod median;
 mod splines;
 mod symmetric;
 
+pub(crate) use dot::dot;
 pub(crate) use golden_section::minimize;
 pub(crate) use least_absolute_deviations::fit_nonnegative;
 pub(crate) use levenberg_marquardt::{Quadratic, Unknown, minimize_robust};

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::{Elastic, Pressures, Series};
 use crate::DigitacError;
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
-use crate::numerics::{Quadratic, Unknown, fit_nonnegative, median, minimize_robust};
+use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, median, minimize_robust};
 
 /// Deviations below this share of the largest reading count quadratically, larger ones linearly.
 const CORNER: f64 = 2e-3;
@@ -254,6 +254,21 @@ impl Fading {
     }
 }
 
+/// Adds the shares of all overstresses that follow values, which belong to the frames of `range` and are zero before it.
+fn add_overstresses(fadings: &[Fading], shares: &[f64], range: &Range<usize>, values: &mut [f64]) {
+    let mut overstresses = vec![0.0; fadings.len()];
+    let mut before = values.first().copied().unwrap_or(0.0);
+    for (value, frame) in values.iter_mut().zip(range.clone()).skip(1) {
+        let change = *value - before;
+        before = *value;
+        for ((q, fading), share) in overstresses.iter_mut().zip(fadings).zip(shares) {
+            let [kept, arrived, ..] = fading.shares[frame];
+            *q = kept * *q + arrived * change;
+            *value += share * *q;
+        }
+    }
+}
+
 struct Problem<'a> {
     elastic: &'a dyn Elastic,
     series: &'a Series,
@@ -369,16 +384,7 @@ impl Problem<'_> {
             .collect();
         // What the memory and the zero make of a change of the relaxed reading.
         let remember = |unknown: usize, frames: Range<usize>, mut values: Vec<f64>| {
-            let followed: Vec<Vec<f64>> = fadings
-                .iter()
-                .map(|fading| fading.follow(&frames, &values))
-                .collect();
-            for (share, q) in gains.memory[k].iter().zip(&followed) {
-                values
-                    .iter_mut()
-                    .zip(q)
-                    .for_each(|(value, q)| *value += share * q);
-            }
+            add_overstresses(fadings, &gains.memory[k], &frames, &mut values);
             self.column(unknown, frames, values)
         };
         let own = self.layout.of_taxel(k);
@@ -461,10 +467,10 @@ impl Problem<'_> {
                     continue;
                 }
                 let part = |frames: &Range<usize>| common.start - frames.start..common.end - frames.start;
-                let products = weighted[part(&column.frames)]
-                    .iter()
-                    .zip(&other.values[part(&other.frames)]);
-                let sum: f64 = products.map(|(a, b)| a * b).sum();
+                let sum = dot(
+                    &weighted[part(&column.frames)],
+                    &other.values[part(&other.frames)],
+                );
                 let (i, j) = (
                     column.unknown.max(other.unknown),
                     column.unknown.min(other.unknown),

@@ -1,0 +1,245 @@
+//! `predict`: from a tiny trained twin to readings along paths and protocols.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A gel as coarse, presses as few and training as short as will go.
+const SETTINGS: &str = r#"
+[simulate]
+edges_per_height = 4.0
+edges_per_contact_radius = 3.0
+max_path_nodes = 4000
+depth_step_mm = 0.5
+[bench]
+n_places = 2
+[train]
+epochs = 2
+variants = ["pressure+memory"]
+"#;
+
+const PROTOCOL: &str = r#"
+summary = "A few presses with one ball"
+indenters = ["sphere-25"]
+places = { kind = "random", x_mm = [-9.0, 9.0], y_mm = [-4.0, 4.0], count = 10 }
+depth_mm = [0.5, 1.0]
+speed_mm_per_s = 4.0
+hold_s = 0.2
+clearance_mm = 0.3
+"#;
+
+const ONE_PRESS: &str = r#"
+summary = "One press"
+indenters = ["sphere-25"]
+places = { kind = "grid", x_mm = [-4.0, -4.0], y_mm = [4.0, 4.0], count = [1, 1] }
+depth_mm = 1.0
+speed_mm_per_s = 1.0
+hold_s = 0.1
+clearance_mm = 1.0
+"#;
+
+/// The same press.
+const PATH: &str = r#"
+summary = "One press"
+indenter = "sphere-25"
+zero = "touch"
+rate_hz = 20.0
+poses = [
+  { time_s = 0.0, position_mm = [-4.0, 4.0, 1.0] },
+  { time_s = 2.0, position_mm = [-4.0, 4.0, -1.0] },
+  { time_s = 2.1, position_mm = [-4.0, 4.0, -1.0] },
+]
+"#;
+
+const BALL: &str = "name = \"ball-8\"\nshape = { kind = \"sphere\", radius_mm = 4.0 }\n";
+
+struct Files {
+    folder: tempfile::TempDir,
+}
+
+impl Files {
+    /// A twin, trained on presses of the emulated bench.
+    fn with_twin() -> Self {
+        let files = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+        let reality = fs::read_to_string(root.join("realities/default.toml")).unwrap();
+        let coarse = reality
+            .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
+            .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
+        assert_ne!(coarse, reality);
+        let [reality, protocol, settings] = [
+            ("reality.toml", &*coarse),
+            ("protocol.toml", PROTOCOL),
+            ("settings.toml", SETTINGS),
+        ]
+        .map(|(name, text)| files.write(name, text));
+        let run = files.folder.path().join("run");
+        let run = run.to_str().unwrap();
+        let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];
+        done(&[&record[..], &["--settings", &settings, "--out", run]].concat());
+        done(&["align", "--run", run]);
+        done(&["train", "--run", run]);
+        files
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let path = self.folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+
+    fn model(&self) -> PathBuf {
+        self.folder.path().join("run/model")
+    }
+
+    fn predict(&self, arguments: &[&str]) -> Output {
+        let model = self.model();
+        twintac(&[&["predict", "--model", model.to_str().unwrap()], arguments].concat())
+    }
+
+    /// What is printed as JSON.
+    fn predicted(&self, arguments: &[&str]) -> Value {
+        let output = self.predict(&[arguments, &["--json"]].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(found["provenance"], "simulated");
+        assert_eq!(found["trained_on"], "emulated");
+        found
+    }
+}
+
+fn twintac(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_twintac"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn done(arguments: &[&str]) {
+    let output = twintac(arguments);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+}
+
+fn numbers(row: &Value) -> Vec<f64> {
+    row.as_array()
+        .unwrap()
+        .iter()
+        .map(|value| value.as_f64().unwrap())
+        .collect()
+}
+
+/// The deepest frame's force and readings.
+fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
+    let press = &predicted["presses"][0];
+    let (depth_mm, force_n) = (numbers(&press["depth_mm"]), numbers(&press["force_n"]));
+    let deepest = (0..depth_mm.len())
+        .max_by(|a, b| depth_mm[*a].total_cmp(&depth_mm[*b]))
+        .unwrap();
+    (force_n[deepest], numbers(&press["readings_kpa"][deepest]))
+}
+
+#[test]
+fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
+    let files = Files::with_twin();
+    let [path, protocol, ball] = [("path.toml", PATH), ("one.toml", ONE_PRESS), ("ball.toml", BALL)]
+        .map(|(name, text)| files.write(name, text));
+
+    // A press is the same by its protocol and by its path, but for their meshes.
+    let pressed = files.predicted(&["--protocol", &protocol]);
+    assert_eq!(
+        pressed,
+        files.predicted(&["--threads", "1", "--protocol", &protocol])
+    );
+    let (force_n, readings_kpa) = deepest(&pressed);
+    let (along_n, along_kpa) = deepest(&files.predicted(&["--path", &path]));
+    assert!(
+        force_n > 0.2 && (along_n / force_n - 1.0).abs() < 0.2,
+        "{along_n} {force_n}"
+    );
+    let largest = readings_kpa.iter().copied().fold(0.0, f64::max);
+    assert!(largest > 1.0, "{readings_kpa:?}");
+    for (along, pressed) in along_kpa.iter().zip(&readings_kpa) {
+        assert!(
+            (along - pressed).abs() < 0.2 * largest,
+            "{along_kpa:?} {readings_kpa:?}"
+        );
+    }
+
+    // Rows for people, and a plot.
+    let plot = files.folder.path().join("plot.svg");
+    let output = files.predict(&["--path", &path, "--plot", plot.to_str().unwrap()]);
+    let table = String::from_utf8(output.stdout).unwrap();
+    let mut rows = table.lines();
+    assert_eq!(
+        rows.next().unwrap(),
+        "provenance,press,indenter,time_s,x_mm,y_mm,depth_mm,force_n,\
+         t0_kpa,t1_kpa,t2_kpa,t3_kpa,t4_kpa,t5_kpa,t6_kpa,t7_kpa"
+    );
+    assert!(
+        rows.next()
+            .unwrap()
+            .starts_with("simulated,path,sphere-25,0.0000,-4.0000,4.0000,")
+    );
+    assert_eq!(rows.count(), 42);
+    assert!(fs::read_to_string(&plot).unwrap().contains("reading (kPa)"));
+
+    // A smaller ball that nobody has trained with takes less force.
+    let smaller = files.write("smaller.toml", &PATH.replace("sphere-25", "ball-8"));
+    let (smaller_n, _) = deepest(&files.predicted(&["--path", &smaller, "--indenter", &ball]));
+    let both = files.write(
+        "both.toml",
+        &ONE_PRESS.replace("\"sphere-25\"", "\"ball-8\", \"sphere-25\""),
+    );
+    let by_both = files.predicted(&["--protocol", &both, "--indenter", &ball]);
+    assert_eq!(by_both["presses"][0]["indenter"], "ball-8");
+    assert_eq!(
+        by_both["presses"][1]["readings_kpa"],
+        pressed["presses"][0]["readings_kpa"]
+    );
+    let (ball_n, _) = deepest(&by_both);
+    assert!(
+        smaller_n < 0.9 * force_n && (ball_n / smaller_n - 1.0).abs() < 0.3,
+        "{smaller_n} {ball_n}"
+    );
+
+    // What is wrong is said, and nothing else.
+    let refused = |arguments: &[&str], words: &[&str]| {
+        let output = files.predict(arguments);
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        assert!(output.stdout.is_empty());
+        assert_eq!(text.matches("error: ").count(), 1, "{text}");
+        for word in words {
+            assert!(text.contains(word), "no `{word}` in: {text}");
+        }
+    };
+    refused(
+        &["--path", &smaller],
+        &["no indenter `ball-8`", "the sensor has sphere-25"],
+    );
+    refused(&["--protocol", &both], &["ball-8"]);
+    refused(&["--path", "nowhere.toml"], &["nowhere.toml"]);
+    let beside = files.write("beside.toml", &PATH.replace("-4.0, 4.0, ", "-90.0, 4.0, "));
+    refused(
+        &["--path", &beside],
+        &["beside.toml", "x = -90.00 mm", "does not touch the gel"],
+    );
+    let broken = files.write("broken.toml", &BALL.replace("4.0", "-4.0"));
+    refused(
+        &["--path", &path, "--indenter", &broken],
+        &["broken.toml:2", "`shape.radius_mm`"],
+    );
+    let weights = files.model().join("weights.safetensors");
+    let mut bytes = fs::read(&weights).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&weights, bytes).unwrap();
+    refused(&["--path", &path], &["weights.safetensors", "SHA-256"]);
+}

@@ -1,0 +1,103 @@
+//! An indenter that a file of its own describes.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use twintac_shape::{Shape, Surfaces};
+
+use crate::load::load_surface;
+use crate::{Indenter, Sensor, SensorError};
+
+/// An indenter that no sensor's description has. Its file (TOML) is what would stand under `[[indenters]]` of one:
+///
+/// ```toml
+/// name = "ball-8"
+/// shape = { kind = "sphere", radius_mm = 4.0 }
+/// ```
+#[derive(Clone, Debug)]
+pub struct IndenterFile {
+    /// The indenter.
+    pub indenter: Indenter,
+    /// Its triangle surface, if it has one.
+    surfaces: Surfaces,
+}
+
+impl IndenterFile {
+    /// Reads the file; the path of a surface (STL) is relative to its folder.
+    ///
+    /// # Errors
+    /// The first field that is wrong, a surface that cannot be had, and a file that cannot be read.
+    pub fn read(path: &Path) -> Result<Self, SensorError> {
+        let document = twintac_config::read::<Indenter>(path)?;
+        let mut indenter = document.value.clone();
+        indenter.check(&document, "")?;
+        let mut surfaces = Surfaces::new();
+        if let Shape::Stl { path: surface } = &mut indenter.shape {
+            let file = path.parent().unwrap_or(Path::new("")).join(&*surface);
+            let load = |_: &str| std::fs::read(&file);
+            let loaded = load_surface(&document, "shape.path", surface, &load)?;
+            // The sensor may have another surface of this name.
+            *surface = file.display().to_string();
+            surfaces.insert(surface.clone(), Arc::new(loaded));
+        }
+        Ok(Self { indenter, surfaces })
+    }
+
+    /// The sensor with this indenter, which takes the place of one of its name.
+    #[must_use]
+    pub fn added_to(&self, sensor: &Sensor) -> Sensor {
+        let mut sensor = sensor.clone();
+        sensor
+            .indenters
+            .retain(|indenter| indenter.name != self.indenter.name);
+        sensor.indenters.push(self.indenter.clone());
+        sensor.surfaces.extend(self.surfaces.clone());
+        sensor
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SensorFile;
+
+    #[test]
+    fn an_indenter_is_added_or_takes_the_place_of_its_namesake() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("indenter.toml");
+        let phystac = SensorFile::phystac().unwrap().sensor;
+        for (name, n_more) in [("ball-8", 1), ("cube", 0)] {
+            let text = format!("name = \"{name}\"\nshape = {{ kind = \"sphere\", radius_mm = 4.0 }}\n");
+            std::fs::write(&path, text).unwrap();
+            let sensor = IndenterFile::read(&path).unwrap().added_to(&phystac);
+            assert_eq!(sensor.indenters.len(), phystac.indenters.len() + n_more);
+            let found = &sensor.indenter(name).unwrap().shape;
+            assert!(matches!(found, Shape::Sphere { radius_mm } if *radius_mm == 4.0));
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("indenter.toml");
+        for (text, words) in [
+            (
+                "name = \"ball\"\nshape = { kind = \"sphere\", radius_mm = -4.0 }\n",
+                "indenter.toml:2: `shape.radius_mm`",
+            ),
+            (
+                "name = \"two words\"\nshape = { kind = \"sphere\", radius_mm = 4.0 }\n",
+                "indenter.toml:1: `name`",
+            ),
+            (
+                "name = \"tool\"\nshape = { kind = \"stl\", path = \"tool.stl\" }\n",
+                "`shape.path` names `tool.stl`, which cannot be read",
+            ),
+            ("name = \"ball\"\n", "indenter.toml"),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let error = IndenterFile::read(&path).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! What a sensor would read: frame by frame, and along whole presses, which go through the same steps.
+
+mod at_place;
+mod planned;
+mod state;
+#[cfg(test)]
+mod tests;
+
+pub use at_place::TwinAtPlace;
+pub use planned::{Prediction, at_place, predict};
+pub use state::TwinState;

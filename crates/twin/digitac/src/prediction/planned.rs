@@ -1,0 +1,146 @@
+//! What barometers would read along presses that nobody has made yet.
+
+use glam::DVec3;
+use serde::Serialize;
+use twintac_depth_table::{DepthTable, DepthTableSource};
+use twintac_protocol::PressPlan;
+use twintac_recording::{Control, Press, Provenance, Recording};
+use twintac_shape::Pose;
+
+use crate::{BenchEstimate, DigitacError, Features, PlaceSettings, Places, Twin, TwinAtPlace, features};
+
+/// What a twin would read along a press. All vectors have the same length, `n_frames`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Prediction {
+    /// The press's name.
+    pub name: String,
+    /// The indenter's name.
+    pub indenter: String,
+    /// Time since the start of the press, s.
+    pub time_s: Vec<f64>,
+    /// Place of the indenter's origin in the gel's plane, mm; `[n_frames][2]`.
+    pub place_mm: Vec<[f64; 2]>,
+    /// Depth below first touch, mm, with the height at which the bench of the recordings touched; negative above the gel.
+    pub depth_mm: Vec<f64>,
+    /// Force of the indenter on the gel, N.
+    pub force_n: Vec<f64>,
+    /// What the barometers would read above what they read untouched, kPa; `[n_frames][n_taxels]`.
+    pub readings_kpa: Vec<Vec<f64>>,
+    /// Whether the frame was simulated: not deeper than the gel could be pressed, whose last pressures stand for what is deeper.
+    pub simulated: Vec<bool>,
+}
+
+/// Steps a twin along planned presses, each from rest, with so many frames a second. The gel at their places comes from `source`; the bench
+/// is as it was found.
+///
+/// # Errors
+/// An indenter that the source does not know; a place that it cannot press.
+pub fn predict(
+    twin: &Twin,
+    bench: &BenchEstimate,
+    source: &dyn DepthTableSource,
+    plans: &[PressPlan],
+    rate_hz: f64,
+) -> Result<Vec<Prediction>, DigitacError> {
+    let n_taxels = twin.taxels().len();
+    let made = |plan: &PressPlan| made(plan, &plan.trajectory(rate_hz), source, n_taxels);
+    let recording = recording(twin, plans.iter().map(made).collect::<Result<_, _>>()?);
+    let (places, tables) = simulate(&recording, bench, source)?;
+    let along = features(&recording, &places, &tables, bench)?;
+    let mut state = twin.state();
+    state.tare_untouched();
+    let predict = |(plan, along): (&PressPlan, Features)| {
+        state.rest(0);
+        let mut before_s = 0.0;
+        let seen = twin.physics().seen(&along).iter().zip(&along.time_s);
+        let readings_kpa = seen.map(|(seen, time_s)| {
+            let mut readings_kpa = vec![0.0; n_taxels];
+            state.step(time_s - before_s, seen, &mut readings_kpa);
+            before_s = *time_s;
+            readings_kpa
+        });
+        Prediction {
+            readings_kpa: readings_kpa.collect(),
+            name: plan.name.clone(),
+            indenter: plan.indenter.clone(),
+            place_mm: vec![[plan.x_mm, plan.y_mm]; along.n_frames()],
+            time_s: along.time_s,
+            depth_mm: along.depth_mm,
+            force_n: along.force_n,
+            simulated: along.simulated,
+        }
+    };
+    Ok(plans.iter().zip(along).map(predict).collect())
+}
+
+/// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
+/// it was found.
+///
+/// # Errors
+/// An indenter that the source does not know; a place that it cannot press.
+pub fn at_place(
+    twin: &Twin,
+    bench: &BenchEstimate,
+    source: &dyn DepthTableSource,
+    plan: &PressPlan,
+) -> Result<TwinAtPlace, DigitacError> {
+    let deepest = made(plan, &[(0.0, plan.depth_mm)], source, twin.taxels().len())?;
+    let (_, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
+    let table = tables.first().ok_or(DigitacError::DepthTableCount {
+        expected: 1,
+        found: 0,
+    })?;
+    TwinAtPlace::new(twin, table, bench, &plan.indenter)
+}
+
+fn simulate(
+    recording: &Recording,
+    bench: &BenchEstimate,
+    source: &dyn DepthTableSource,
+) -> Result<(Places, Vec<DepthTable>), DigitacError> {
+    let places = Places::of(recording, source, &PlaceSettings::default())?.at_bench(bench);
+    let tables = source.depth_tables(&places.requests);
+    Ok((places, tables.map_err(DigitacError::Simulation)?))
+}
+
+fn recording(twin: &Twin, presses: Vec<Press>) -> Recording {
+    Recording {
+        sensor: String::new(),
+        provenance: Provenance::Simulated,
+        taxels: twin.taxels().to_vec(),
+        presses,
+    }
+}
+
+/// A planned press as one that was made, without readings. `trajectory` is time, s, and depth below first touch, mm.
+fn made(
+    plan: &PressPlan,
+    trajectory: &[(f64, f64)],
+    source: &dyn DepthTableSource,
+    n_taxels: usize,
+) -> Result<Press, DigitacError> {
+    let above = Pose {
+        position_mm: DVec3::new(plan.x_mm, plan.y_mm, 0.0),
+        rotation: plan.rotation,
+    };
+    let touch = source
+        .touch(&plan.indenter, &above)
+        .map_err(DigitacError::Simulation)?;
+    let pose = |depth_mm: f64| Pose {
+        position_mm: touch.position_mm - depth_mm * DVec3::Z,
+        ..touch
+    };
+    let unread = vec![vec![0.0; n_taxels]; trajectory.len()];
+    Ok(Press {
+        name: plan.name.clone(),
+        mounting: plan.indenter.clone(),
+        indenter: plan.indenter.clone(),
+        control: Control::Pose,
+        time_s: trajectory.iter().map(|(time_s, _)| *time_s).collect(),
+        gel_from_indenter: trajectory.iter().map(|(_, depth_mm)| pose(*depth_mm)).collect(),
+        force_n: None,
+        taxels_kpa: unread.clone(),
+        taxels_raw: unread,
+        valid: vec![vec![false; n_taxels]; trajectory.len()],
+    })
+}

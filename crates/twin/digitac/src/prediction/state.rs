@@ -1,0 +1,142 @@
+//! A twin in use: what it remembers of the frames before, and what it reads next.
+
+use crate::features::{Remembered, along};
+use crate::network::ElasticRows;
+use crate::{Features, Twin};
+
+/// Sensors whose elastic readings are computed at once: their layers stay in the processor's cache.
+const MOST_ROWS: usize = 64;
+
+/// A twin of one sensor in use, or of many that are stepped together. It keeps what their gels remember, and their zeros. A copy goes on
+/// from the same moment.
+///
+/// Steps read the same numbers as [`Twin::predict`] along whole presses, to the last bit; so does each of many sensors that are stepped
+/// together, in whatever order. They allocate nothing. All work is done by the calling thread: to use more, give each thread sensors of
+/// its own.
+#[derive(Clone, Debug)]
+pub struct TwinState {
+    twin: Twin,
+    /// `[n_taxels]`
+    gains: Vec<f32>,
+    rows: ElasticRows,
+    remembered: Remembered,
+    /// The last readings, with no zero taken off, kPa; `[n_sensors * n_taxels]`.
+    untared_kpa: Vec<f64>,
+    /// What is read as zero, kPa; `[n_sensors * n_taxels]`.
+    zero_kpa: Vec<f64>,
+}
+
+impl Twin {
+    /// The twin of one sensor, whose gel has rested.
+    #[must_use]
+    pub fn state(&self) -> TwinState {
+        self.states(1)
+    }
+
+    /// Twins of so many sensors, whose gels have rested.
+    #[must_use]
+    pub fn states(&self, n_sensors: usize) -> TwinState {
+        let n_readings = n_sensors * self.taxels().len();
+        TwinState {
+            twin: self.clone(),
+            gains: self.parameters().elastic_gains(self.physics()),
+            rows: ElasticRows::new(self.parameters(), n_sensors.min(MOST_ROWS)),
+            remembered: Remembered::rested(self.gains(), n_sensors),
+            untared_kpa: vec![0.0; n_readings],
+            zero_kpa: vec![0.0; n_readings],
+        }
+    }
+
+    /// What the barometers would read above their unloaded baseline along simulated presses, kPa; `[n_presses][n_frames][n_taxels]`.
+    /// Readings are zero, in the mean, over [`Features::zero_frames`]. The gel remembers presses that follow each other: see
+    /// [`Features::since_previous_s`].
+    #[must_use]
+    pub fn predict(&self, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
+        let mut state = self.state();
+        along(presses, |press, frame, since_s| {
+            if since_s.is_none() {
+                state.rest(0);
+            }
+            let seen = &self.physics().seen(presses[press])[frame];
+            let mut readings_kpa = vec![0.0; seen.len()];
+            state.step(since_s.unwrap_or(0.0), seen, &mut readings_kpa);
+            readings_kpa
+        })
+    }
+}
+
+impl TwinState {
+    /// One more frame of every sensor: from what the simulated gel shows to what the barometers would read, kPa.
+    ///
+    /// - `since_previous_s`: time since the last frame, s, not negative. Sensors whose gel has rested until now take no notice of it.
+    /// - `seen`: hydrostatic pressure at each port, kPa; for [`Variant::Paper`](crate::Variant::Paper) the stress feature above each
+    ///   taxel, kPa/mm. `[n_sensors * n_taxels]`, sensor by sensor.
+    /// - `readings_kpa`: is written; above the zero that was last set, or above what the twin calls zero. `[n_sensors * n_taxels]`.
+    ///
+    /// # Panics
+    /// Slices of another length.
+    pub fn step(&mut self, since_previous_s: f64, seen: &[f64], readings_kpa: &mut [f64]) {
+        let n_readings = self.zero_kpa.len();
+        assert_eq!(
+            [seen.len(), readings_kpa.len()],
+            [n_readings; 2],
+            "pressures and readings of all taxels of all sensors"
+        );
+        let chunk = MOST_ROWS * self.gains.len().max(1);
+        // The odd ones first: what comes last is as many as there is room for.
+        let odd = n_readings % chunk;
+        let (seen_first, seen_rest) = seen.split_at(odd);
+        let (readings_first, readings_rest) = readings_kpa.split_at_mut(odd);
+        if odd > 0 {
+            self.read_elastic(seen_first, readings_first);
+        }
+        let chunks = seen_rest.chunks_exact(chunk);
+        for (seen, readings_kpa) in chunks.zip(readings_rest.chunks_exact_mut(chunk)) {
+            self.read_elastic(seen, readings_kpa);
+        }
+        let gains = self.twin.gains();
+        gains.step(&mut self.remembered, since_previous_s, readings_kpa);
+        self.untared_kpa.copy_from_slice(readings_kpa);
+        for (reading, zero) in readings_kpa.iter_mut().zip(&self.zero_kpa) {
+            *reading -= zero;
+        }
+    }
+
+    fn read_elastic(&mut self, seen: &[f64], readings_kpa: &mut [f64]) {
+        let (parameters, physics) = (self.twin.parameters(), self.twin.physics());
+        let elastic = self.rows.read(parameters, physics, &self.gains, seen);
+        let reading_kpa = physics.normalization.reading_kpa;
+        for (reading, elastic) in readings_kpa.iter_mut().zip(elastic) {
+            *reading = reading_kpa * f64::from(*elastic);
+        }
+    }
+
+    /// Takes what is read now as zero, as a tare of a real sensor does. Before the first frame it does nothing.
+    pub fn tare(&mut self) {
+        self.zero_kpa.copy_from_slice(&self.untared_kpa);
+    }
+
+    /// Takes what a sensor that nothing touches reads as zero.
+    pub fn tare_untouched(&mut self) {
+        let mut untouched = self.twin.state();
+        let mut zero_kpa = vec![0.0; self.gains.len()];
+        untouched.step(0.0, &vec![0.0; self.gains.len()], &mut zero_kpa);
+        for own in self.zero_kpa.chunks_exact_mut(self.gains.len().max(1)) {
+            own.copy_from_slice(&zero_kpa);
+        }
+    }
+
+    /// Lets the gel of one sensor, counted from 0, rest until its next frame. Its zero stays.
+    ///
+    /// # Panics
+    /// A sensor that is not there.
+    pub fn rest(&mut self, sensor: usize) {
+        self.remembered.rest(sensor);
+    }
+
+    /// The twin that is stepped.
+    #[must_use]
+    pub fn twin(&self) -> &Twin {
+        &self.twin
+    }
+}

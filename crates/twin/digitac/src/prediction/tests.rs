@@ -1,0 +1,201 @@
+//! Steps against whole presses, to the last bit.
+
+use glam::DVec3;
+use proptest::prelude::*;
+use twintac_depth_table::DepthTableSource;
+use twintac_shape::Pose;
+
+use crate::network::{Normalization, Parameters, Physics};
+use crate::synthetic::{Formula, Truth};
+use crate::{
+    BenchEstimate, Features, Gains, PlaceSettings, Places, PortEstimate, Twin, TwinAtPlace, Variant, features,
+};
+
+const N_TAXELS: usize = 3;
+
+/// A twin of random weights.
+fn twin(variant: Variant, seed: u64, n_taxels: usize) -> Twin {
+    let each = |values: [f64; 3]| values.into_iter().cycle().take(n_taxels).collect();
+    let physics = Physics {
+        variant,
+        gains: Gains {
+            gain: each([0.5, 0.8, 1.1]),
+            stiffening_per_kpa: each([0.004, -0.003, 0.0]),
+            memory: (0..n_taxels).map(|k| vec![0.1 + 0.05 * k as f64, 0.2]).collect(),
+            time_constants_s: vec![0.25, 4.0],
+        },
+        normalization: Normalization {
+            reading_kpa: 80.0,
+            pressure_rms_kpa: each([12.0, 7.0, 3.0]),
+            stress_mean_kpa_per_mm: each([1.0, 0.5, 0.2]),
+            stress_deviation_kpa_per_mm: each([2.0, 1.5, 0.7]),
+        },
+        correction_limit: 0.3,
+    };
+    let mut parameters = Parameters::new(&physics, &[9, 6], seed);
+    for (number, values) in parameters.arrays_mut().enumerate() {
+        for (at, value) in values.iter_mut().enumerate() {
+            *value += 0.3 * (1.7 * (at + 13 * number) as f32 + seed as f32).sin();
+        }
+    }
+    Twin::new(vec![String::new(); n_taxels], physics, parameters)
+}
+
+/// Frames at rest at first, then of random pressures.
+fn press() -> impl Strategy<Value = Features> {
+    let frame = (0.0..0.3_f64, prop::array::uniform3(-5.0..60.0_f64));
+    let frames = prop::collection::vec(frame, 1..40);
+    let since_s = prop::option::of(0.0..8.0_f64);
+    (0..4_usize, frames, since_s).prop_map(|(n_rest, frames, since_previous_s)| {
+        let rest = (0..n_rest).map(|_| (0.1, [0.0; N_TAXELS]));
+        let frames: Vec<_> = rest.chain(frames).collect();
+        let mut time_s = 0.0;
+        let seen: Vec<Vec<f64>> = frames.iter().map(|(_, row)| row.to_vec()).collect();
+        Features {
+            time_s: frames
+                .iter()
+                .map(|(step_s, _)| {
+                    time_s += step_s;
+                    time_s
+                })
+                .collect(),
+            depth_mm: vec![0.0; frames.len()],
+            force_n: vec![0.0; frames.len()],
+            pressure_kpa: seen.clone(),
+            stress_kpa_per_mm: seen,
+            simulated: vec![true; frames.len()],
+            since_previous_s,
+            zero_frames: 0..n_rest,
+        }
+    })
+}
+
+/// The readings as matrices of whole presses give them.
+fn by_matrices(twin: &Twin, presses: &[&Features]) -> Vec<Vec<Vec<f64>>> {
+    let (physics, parameters) = (twin.physics(), twin.parameters());
+    let elastic = |press: &&Features| {
+        let inputs = physics.inputs(press);
+        let elastic = parameters.elastic(physics, &inputs, &inputs).readings;
+        let in_kpa = |row: &[f32]| {
+            row.iter()
+                .map(|r| physics.normalization.reading_kpa * f64::from(*r))
+                .collect()
+        };
+        elastic.rows().map(in_kpa).collect()
+    };
+    twin.gains()
+        .remember(presses, presses.iter().map(elastic).collect())
+}
+
+proptest! {
+    #[test]
+    fn steps_read_what_whole_presses_read(presses in prop::collection::vec(press(), 1..4), seed in 0..1000_u64) {
+        let presses: Vec<&Features> = presses.iter().collect();
+        for variant in Variant::ALL {
+            let twin = twin(variant, seed, N_TAXELS);
+            let whole = twin.predict(&presses);
+            prop_assert_eq!(&whole, &by_matrices(&twin, &presses), "{}", variant);
+            let mut state = twin.state();
+            let mut readings_kpa = [0.0; N_TAXELS];
+            // The first rests, as it starts from rest: a tare there is the zero of the whole press.
+            let press = presses[0];
+            for (frame, expected) in whole[0].iter().enumerate() {
+                let since_s = if frame > 0 { press.time_s[frame] - press.time_s[frame - 1] } else { 1.0 };
+                state.step(since_s, &press.pressure_kpa[frame], &mut readings_kpa);
+                if frame + 1 == press.zero_frames.end {
+                    state.tare();
+                } else if frame >= press.zero_frames.end {
+                    prop_assert_eq!(&readings_kpa[..], &expected[..], "{} frame {}", variant, frame);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn sensors_that_are_stepped_together_read_what_each_reads_alone(
+        n_sensors in 1..150_usize,
+        steps in prop::collection::vec((0.0..0.3_f64, prop::option::of(0..1000_usize)), 1..12),
+        seed in 0..1000_u64,
+    ) {
+        for variant in Variant::ALL {
+            let twin = twin(variant, seed, N_TAXELS);
+            let (mut together, mut alone) = (twin.states(n_sensors), vec![twin.state(); n_sensors]);
+            let mut readings_kpa = vec![0.0; n_sensors * N_TAXELS];
+            for (number, (since_s, rests)) in steps.iter().enumerate() {
+                let wave = |at: usize| 30.0 * (0.37 * (at * (number + 1)) as f64 + seed as f64).sin();
+                let seen: Vec<f64> = (0..n_sensors * N_TAXELS).map(wave).collect();
+                if let Some(sensor) = rests.map(|number| number % n_sensors) {
+                    together.rest(sensor);
+                    alone[sensor].rest(0);
+                }
+                together.step(*since_s, &seen, &mut readings_kpa);
+                for (sensor, state) in alone.iter_mut().enumerate().rev() {
+                    let own = sensor * N_TAXELS..(sensor + 1) * N_TAXELS;
+                    let mut expected = [0.0; N_TAXELS];
+                    state.step(*since_s, &seen[own.clone()], &mut expected);
+                    prop_assert_eq!(&readings_kpa[own], &expected[..], "{} sensor {}", variant, sensor);
+                }
+                if number == 1 {
+                    together.tare();
+                    alone.iter_mut().for_each(|state| state.tare());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_untouched_sensor_reads_zero_after_either_tare() {
+    for variant in Variant::ALL {
+        let twin = twin(variant, 5, N_TAXELS);
+        let (mut now, mut untouched) = (twin.states(2), twin.states(2));
+        let mut readings_kpa = [1.0; 2 * N_TAXELS];
+        now.step(0.0, &[0.0; 2 * N_TAXELS], &mut readings_kpa);
+        now.tare();
+        untouched.tare_untouched();
+        for state in [&mut now, &mut untouched] {
+            state.step(0.1, &[0.0; 2 * N_TAXELS], &mut readings_kpa);
+            assert_eq!(readings_kpa, [0.0; 2 * N_TAXELS], "{variant}");
+        }
+    }
+}
+
+#[test]
+fn poses_at_a_place_read_what_the_whole_press_reads() {
+    let recording = Truth::new().recording(2);
+    let press = &recording.presses[0];
+    let mut bench = BenchEstimate::nominal();
+    bench.contact_offset_elsewhere_mm = 0.03;
+    bench.ports = vec![
+        PortEstimate {
+            shift_mm: [0.1, -0.2],
+            wider_mm: 0.1,
+        };
+        4
+    ];
+    let places = Places::of(&recording, &Formula, &PlaceSettings::default()).unwrap();
+    let mut tables = Formula.depth_tables(&places.requests).unwrap();
+    for frame in tables.iter_mut().flat_map(|table| &mut table.frames) {
+        frame
+            .port_slope_kpa_per_mm
+            .fill([frame.depth_mm, 0.5, -frame.depth_mm]);
+    }
+    let along = &features(&recording, &places, &tables, &bench).unwrap()[0];
+    for variant in [Variant::Paper, Variant::PressureMemoryMlp] {
+        let twin = twin(variant, 3, 4);
+        let whole = twin.predict(&[along]).swap_remove(0);
+        let table = &tables[places.of_press[0]];
+        let mut at_place = TwinAtPlace::new(&twin, table, &bench, &press.mounting).unwrap();
+        let mut readings_kpa = [0.0; 4];
+        for (frame, pose) in press.gel_from_indenter.iter().enumerate() {
+            let since_s = press.time_s[frame] - press.time_s[frame.saturating_sub(1)];
+            at_place.step_to(since_s, pose, &mut readings_kpa);
+            assert_eq!(readings_kpa[..], whole[frame][..], "{variant} frame {frame}");
+            assert_eq!(at_place.force_n(), along.force_n[frame]);
+        }
+        let elsewhere = Pose::from_position(DVec3::Z * press.gel_from_indenter[0].position_mm.z);
+        at_place.rest();
+        at_place.step_to(9.0, &elsewhere, &mut readings_kpa);
+        assert_eq!(readings_kpa[..], whole[0][..]);
+    }
+}
