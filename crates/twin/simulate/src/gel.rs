@@ -44,6 +44,7 @@ pub struct Gel {
     sensor: Arc<Sensor>,
     settings: SimulateSettings,
     material: Material,
+    upwards: DVec3,
 }
 
 /// Where, with what and how deep to press.
@@ -79,6 +80,7 @@ pub struct GelMesh {
     pub(crate) body: SoftBody,
     pub(crate) indenter: Box<dyn SignedDistance>,
     pub(crate) touch: Pose,
+    upwards: DVec3,
     pub(crate) ports: Vec<PortReadout>,
     slopes: Vec<PortSlopes>,
     clusters: Vec<StressCluster>,
@@ -93,7 +95,16 @@ impl Gel {
             sensor,
             settings,
             material,
+            upwards: DVec3::Z,
         }
+    }
+
+    /// The same gel under a robot whose way up has this unit vector in the gel's frame: on a sensor that does not lie level it is not z. Depths count
+    /// along it. Paths have directions of their own.
+    #[must_use]
+    pub fn with_upwards(mut self, upwards: DVec3) -> Self {
+        self.upwards = upwards;
+        self
     }
 
     /// The same gel of another material.
@@ -241,7 +252,7 @@ impl Gel {
             self.material.clone(),
             &self.settings,
             indenter,
-            touch,
+            (touch, self.upwards),
         )
     }
 
@@ -299,7 +310,7 @@ impl GelMesh {
         material: Material,
         settings: &SimulateSettings,
         indenter: Box<dyn SignedDistance>,
-        touch: Pose,
+        (touch, upwards): (Pose, DVec3),
     ) -> Result<Self, SimulateError> {
         let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
         let mesh = body.mesh();
@@ -324,6 +335,7 @@ impl GelMesh {
             body,
             indenter,
             touch,
+            upwards,
             ports,
             slopes,
             clusters,
@@ -373,7 +385,7 @@ impl GelMesh {
         let mut failure = None;
         let mut advance = |state: &mut State, keyframe: &Keyframe, time_step_s: f64| {
             let pose = Pose {
-                position_mm: self.touch.position_mm - DVec3::Z * keyframe.depth_mm,
+                position_mm: self.touch.position_mm - self.upwards * keyframe.depth_mm,
                 ..self.touch
             };
             let frame = self
@@ -387,7 +399,7 @@ impl GelMesh {
             };
             show(&fields);
             frames.push(self.read(&fields, &frame, keyframe));
-            Ok::<f64, SolveError>(-frame.indenter_force_n.z)
+            Ok::<f64, SolveError>(self.force_n(&frame))
         };
         let mut previous = keyframes.first().copied();
         for keyframe in keyframes {
@@ -418,12 +430,17 @@ impl GelMesh {
         }
     }
 
+    /// Force of the indenter on the gel along the robot's way down, N.
+    fn force_n(&self, frame: &Frame) -> f64 {
+        -frame.indenter_force_n.dot(self.upwards)
+    }
+
     fn read(&self, fields: &Fields<'_>, frame: &Frame, keyframe: &Keyframe) -> PressFrame {
         let positions = |node: usize| fields.mesh.nodes_mm[node] + fields.displacements_mm[node];
         let feature = |cluster: &StressCluster| cluster.read(&fields.von_mises_kpa, &positions);
         PressFrame {
             depth_mm: keyframe.depth_mm,
-            force_n: -frame.indenter_force_n.z,
+            force_n: self.force_n(frame),
             port_pressure_kpa: self
                 .ports
                 .iter()
