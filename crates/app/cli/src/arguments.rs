@@ -238,8 +238,9 @@ pub(crate) struct Record {
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) protocol: PathBuf,
-    /// Record on the emulated bench; FILE has its physics and imperfections (TOML) [default: realities/default.toml].
-    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    /// Record on the emulated bench. REALITY has its physics and imperfections: a TOML file, or one that is built in, `default`, `harder` or `thicker`
+    /// [default: default].
+    #[arg(long, value_name = "REALITY", num_args = 0..=1)]
     pub(crate) lab: Option<Option<PathBuf>>,
     /// How presses are carried out (TOML); without --lab also where the devices are [default: rigs/lab.toml].
     #[arg(long, value_name = "FILE", required_unless_present_any = ["lab", "dry_run"])]

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use twintac_lab::Reality;
+
 use crate::RunError;
 use crate::files::read_text;
 
@@ -20,11 +22,24 @@ pub(crate) const DEMO_PROTOCOL: BuiltIn = BuiltIn {
     text: include_str!("../built_in/demo.toml"),
 };
 
-/// The imperfections of the emulated bench.
-pub const REALITY: BuiltIn = BuiltIn {
+/// The imperfections of the emulated bench, from a file or without one.
+pub(crate) const REALITY: BuiltIn = BuiltIn {
     name: "realities/default.toml",
-    text: include_str!("../built_in/reality.toml"),
+    text: include_str!("../built_in/default.toml"),
 };
+
+/// The realities that are known by the names of their files.
+const REALITIES: [BuiltIn; 3] = [
+    REALITY,
+    BuiltIn {
+        name: "realities/harder.toml",
+        text: include_str!("../built_in/harder.toml"),
+    },
+    BuiltIn {
+        name: "realities/thicker.toml",
+        text: include_str!("../built_in/thicker.toml"),
+    },
+];
 
 /// How the emulated bench presses.
 pub const LAB_RIG: BuiltIn = BuiltIn {
@@ -45,6 +60,34 @@ impl BuiltIn {
     }
 }
 
+/// The imperfections of the emulated bench, by the name of a reality that comes with this crate, such as `harder`, or from a file; without
+/// either those of [`REALITY`].
+///
+/// # Errors
+/// A file that cannot be read or is wrong; a name that there is not.
+pub fn reality(named: Option<&Path>) -> Result<Reality, RunError> {
+    let stem = |built_in: &BuiltIn| Path::new(built_in.name).file_stem().map(Path::new);
+    let known = REALITIES
+        .into_iter()
+        .find(|built_in| named.is_none_or(|name| stem(built_in) == Some(name)));
+    let (name, text) = match (known, named) {
+        (Some(built_in), _) => (built_in.name.to_owned(), built_in.text.to_owned()),
+        (None, Some(file)) if file.extension().is_none() && !file.exists() => {
+            let names: Vec<String> = REALITIES
+                .iter()
+                .filter_map(|built_in| Some(stem(built_in)?.display().to_string()))
+                .collect();
+            return Err(RunError::Input(format!(
+                "there is no reality `{}`, neither as a file nor built in; built in are {}",
+                file.display(),
+                names.join(", ")
+            )));
+        }
+        (None, _) => REALITY.unless(named)?,
+    };
+    Ok(Reality::parse(&name, &text)?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,9 +96,25 @@ mod tests {
     #[test]
     fn what_is_built_in_is_what_people_edit() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-        for built_in in [DEMO_PROTOCOL, REALITY, LAB_RIG] {
+        for built_in in REALITIES.into_iter().chain([DEMO_PROTOCOL, LAB_RIG]) {
             let edited = std::fs::read_to_string(root.join(built_in.name)).unwrap();
             assert_eq!(built_in.text, edited, "{}", built_in.name);
         }
+    }
+    #[test]
+    fn a_reality_has_a_name_or_a_file() {
+        let plain = reality(None).unwrap();
+        assert_eq!(reality(Some(Path::new("default"))).unwrap(), plain);
+        let harder = reality(Some(Path::new("harder"))).unwrap();
+        assert!(harder.gel.friction > 0.0 && harder.mounting.tilt_rad != [0.0; 2]);
+        let thicker = reality(Some(Path::new("thicker"))).unwrap();
+        assert!((thicker.gel.height_ratio - 1.2).abs() < 1e-12);
+        assert!((thicker.gel.yeoh_kpa[0] / plain.gel.yeoh_kpa[0] - 1.2).abs() < 1e-12);
+        let error = reality(Some(Path::new("easier"))).unwrap_err().to_string();
+        assert!(
+            error.contains("easier") && error.contains("default, harder, thicker"),
+            "{error}"
+        );
+        assert!(reality(Some(Path::new("nowhere/easier.toml"))).is_err());
     }
 }

@@ -37,7 +37,7 @@ pub enum Without {
     /// The gel rests before each press.
     History,
     /// The tip is a ball.
-    TipForm,
+    SmoothFactor,
     /// Ports are where and as wide as described.
     Ports,
     /// Barometers read what the gel does at once.
@@ -48,7 +48,7 @@ impl Without {
     const ALL: [Self; 5] = [
         Self::PortLaw,
         Self::History,
-        Self::TipForm,
+        Self::SmoothFactor,
         Self::Ports,
         Self::Memory,
     ];
@@ -59,7 +59,7 @@ impl Without {
         match self {
             Self::PortLaw => "port law",
             Self::History => "history",
-            Self::TipForm => "form of the tip",
+            Self::SmoothFactor => "smooth factor",
             Self::Ports => "places and radius of the ports",
             Self::Memory => "memory",
         }
@@ -72,7 +72,7 @@ impl Without {
                 settings.train.port_law = false;
             }
             Self::History => settings.bench.history = false,
-            Self::TipForm => settings.bench.ports_mm.clear(),
+            Self::SmoothFactor => settings.bench.ports_mm.clear(),
             Self::Ports => {
                 settings.bench.port_shift_limit_mm = 0.0;
                 settings.bench.port_radius_limit_mm = 0.0;

@@ -21,6 +21,16 @@ pub enum LabError {
         /// Where and why.
         why: String,
     },
+    /// The gel's form is in a file, which the lab does not stretch.
+    #[error(
+        "sensor `{sensor}`: a gel from an STL file can't be cast {ratio} times as high; give the reality a height_ratio of 1"
+    )]
+    Height {
+        /// The sensor's name.
+        sensor: String,
+        /// Height over described height.
+        ratio: f64,
+    },
     /// The plan asks for an indenter that the sensor's description lacks.
     #[error("press `{press}`: there is no indenter `{indenter}` in the sensor's description")]
     NoIndenter {

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use glam::{DVec2, DVec3};
 use twintac_emulate::CHANNELS;
 use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
 use twintac_random::{RandomStream, normal, stream};
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_sensor::Sensor;
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Solid};
 use twintac_simulate::{Gel, PressPlace, SimulateSettings};
 use twintac_softbody::{Material, PronyTerm, SolverSettings};
 
@@ -16,24 +17,41 @@ use crate::chain::Chain;
 use crate::course::Course;
 use crate::frames::{Frames, Moment};
 use crate::keyframes::keyframes;
-use crate::port::Port;
+use crate::mounting::Mounting;
+use crate::port::{Port, bubble_kpa};
 use crate::{LabError, Reality};
 
 /// One cast of a sensor on one bench.
 pub struct Lab {
     pub(crate) drawing: Arc<Sensor>,
     gel: Gel,
+    mounting: Mounting,
     /// Of each taxel.
     ports: Vec<Port>,
     reality: Reality,
 }
 
+/// A gel that is not higher or lower than drawn by more than this, as a part, is as drawn.
+const SAME_HEIGHT: f64 = 1e-12;
+
+/// How often a robot's way down is followed to where it meets the gel: each time the tilt's part of the error is left.
+const FOLLOWED: usize = 4;
+
 impl Lab {
-    /// Casts a sensor: draws the gains, offsets and places of its taxels.
-    #[must_use]
-    pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Self {
+    /// Casts a sensor: draws the gains, offsets, bubbles and places of its taxels.
+    ///
+    /// # Errors
+    /// [`LabError::Height`]: a gel from a file that is to have another height.
+    pub fn new(drawing: Arc<Sensor>, reality: Reality) -> Result<Self, LabError> {
         let mut random = stream(reality.seed, "cast");
         let mut cast = (*drawing).clone();
+        let ratio = reality.gel.height_ratio;
+        if (ratio - 1.0).abs() > SAME_HEIGHT {
+            cast.gel.solid = heightened(&cast.gel.solid, ratio).ok_or_else(|| LabError::Height {
+                sensor: drawing.name.clone(),
+                ratio,
+            })?;
+        }
         for taxel in &mut cast.taxels {
             taxel.position_mm.x += normal(&mut random, reality.readout.position_deviation_mm);
             taxel.position_mm.y += normal(&mut random, reality.readout.position_deviation_mm);
@@ -50,6 +68,12 @@ impl Lab {
             port.offset_kpa_per_k =
                 readout.offset_kpa_per_k + normal(&mut random, readout.offset_deviation_kpa_per_k);
         }
+        let mut random = stream(reality.seed, "bubbles");
+        for (port, taxel) in ports.iter_mut().zip(&drawing.taxels) {
+            let volume_mm3 = readout.bubble_mm3 + normal(&mut random, readout.bubble_deviation_mm3);
+            let shear_modulus_kpa = 2.0 * reality.gel.yeoh_kpa[0];
+            port.bubble_kpa = bubble_kpa(volume_mm3.max(0.0), taxel.port_radius_mm, shear_modulus_kpa);
+        }
         let settings = SimulateSettings {
             edges_per_height: reality.gel.edges_per_height,
             edges_per_contact_radius: reality.gel.edges_per_contact_radius,
@@ -59,17 +83,21 @@ impl Lab {
                 tolerance: 1e-4,
                 max_iterations: 100,
                 min_substep: 1.0 / 16.0,
+                friction: reality.gel.friction,
                 ..SolverSettings::default()
             },
             ..SimulateSettings::fine()
         };
         let gel = Gel::new(Arc::new(cast), settings).with_material(material(&reality));
-        Self {
+        let described_mm = drawing.gel.solid.bounds_mm(&drawing.surfaces).1.z;
+        let mounting = Mounting::new(described_mm, gel.height_mm(), reality.mounting.tilt_rad);
+        Ok(Self {
             drawing,
-            gel,
+            gel: gel.with_upwards(mounting.upwards()),
+            mounting,
             ports,
             reality,
-        }
+        })
     }
 
     /// Performs one press and records it. The sensor is as warm as when it was switched on.
@@ -98,17 +126,13 @@ impl Lab {
         let course = Course::new(&history, &keyframes);
         let mut chain = self.chain();
         let mut frames = Frames::default();
+        let touched_mm = self.on_the_bench(&history.gel_from_indenter_at_touch).position_mm;
         for &(scheduled_s, depth_mm) in &schedule {
             let (time_s, raw_kpa) = chain.read(scheduled_s, &mut random, |taxel, time_s| {
                 course.pressure_kpa(taxel, time_s)
             });
             let commanded = Pose {
-                position_mm: history
-                    .gel_from_indenter_at_touch
-                    .position_mm
-                    .with_x(plan.x_mm)
-                    .with_y(plan.y_mm)
-                    - glam::DVec3::Z * depth_mm,
+                position_mm: touched_mm.with_x(plan.x_mm).with_y(plan.y_mm) - DVec3::Z * depth_mm,
                 rotation: plan.rotation,
             };
             frames.push(Moment {
@@ -186,15 +210,48 @@ impl Lab {
                 indenter: plan.indenter.clone(),
             })?;
         let robot = &self.reality.robot;
+        let x_mm = plan.x_mm + normal(random, robot.place_deviation_mm);
+        let y_mm = plan.y_mm + normal(random, robot.place_deviation_mm);
+        let rotation = self.mounting.turned(plan.rotation);
+        let on_the_way = |height_mm: f64| self.mounting.on_the_way(DVec2::new(x_mm, y_mm), height_mm);
+        let mut at_mm = on_the_way(self.gel.height_mm());
+        if self.mounting.upwards() != DVec3::Z {
+            for _ in 0..FOLLOWED {
+                let above = Pose {
+                    position_mm: at_mm,
+                    rotation,
+                };
+                let touch = self.gel.touch(&indenter.shape, &above);
+                let touch = touch.map_err(|source| LabError::Simulate {
+                    press: plan.name.clone(),
+                    source,
+                })?;
+                at_mm = on_the_way(touch.position_mm.z);
+            }
+        }
         Ok(PressPlace {
             enough_force_n: None,
             indenter: plan.indenter.clone(),
             shape: indenter.shape.clone(),
-            x_mm: plan.x_mm + normal(random, robot.place_deviation_mm),
-            y_mm: plan.y_mm + normal(random, robot.place_deviation_mm),
-            rotation: plan.rotation,
+            x_mm: at_mm.x,
+            y_mm: at_mm.y,
+            rotation,
             depth_mm: plan.depth_mm,
         })
+    }
+
+    /// An indenter's pose in the bench's frame, from its pose in the gel's.
+    pub(crate) fn on_the_bench(&self, gel_from_indenter: &Pose) -> Pose {
+        Pose {
+            position_mm: self.mounting.on_the_bench(gel_from_indenter.position_mm),
+            rotation: self.mounting.as_recorded(gel_from_indenter.rotation),
+        }
+    }
+
+    /// Whether a gel comes back otherwise than it is pressed.
+    pub(crate) fn has_friction(&self, indenter: &str) -> bool {
+        let described = self.drawing.indenter(indenter).and_then(|known| known.friction);
+        described.unwrap_or(self.reality.gel.friction) > 0.0
     }
 
     /// The read-out of a press that begins.
@@ -205,6 +262,21 @@ impl Lab {
             self.drawing.readout.resolution_kpa,
         )
     }
+}
+
+/// A gel with its heights in a ratio; `None` of one that a file has the form of.
+fn heightened(solid: &Solid, ratio: f64) -> Option<Solid> {
+    let mut solid = solid.clone();
+    match &mut solid {
+        Solid::Block { size_mm, .. } => size_mm[2] *= ratio,
+        Solid::Dome(dome) => {
+            dome.crown_mm *= ratio;
+            let drops = dome.drop_x_mm.iter_mut().chain(&mut dome.drop_y_mm);
+            drops.for_each(|drop_mm| *drop_mm *= ratio);
+        }
+        Solid::Stl { .. } => return None,
+    }
+    Some(solid)
 }
 
 fn material(reality: &Reality) -> Material {

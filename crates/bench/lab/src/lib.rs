@@ -16,10 +16,14 @@ mod keyframes;
 mod lab;
 mod live;
 mod load;
+mod mounting;
 mod port;
 mod reality;
+mod ways;
 
 pub use error::LabError;
 pub use lab::Lab;
 pub use live::{LiveGel, LiveTable, Selector};
-pub use reality::{ClimateReality, GelReality, ReadoutReality, Reality, Relaxation, RobotReality};
+pub use reality::{
+    ClimateReality, GelReality, MountingReality, ReadoutReality, Reality, Relaxation, RobotReality,
+};

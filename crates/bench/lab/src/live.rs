@@ -1,6 +1,7 @@
 //! The emulated gel as the bench's devices feel it while a robot moves.
 //!
-//! Each place of a plan is computed before the robot moves, as a table over depth of the gel's instantaneous answer. What relaxes comes on top as
+//! Each place of a plan is computed before the robot moves, as a table over depth of the gel's instantaneous answer; with friction one inwards and
+//! one back. What relaxes comes on top as
 //! a fading memory of what the table said, `σ(t) = (1 - Σ wᵢ) σₑ(t) + Σ wᵢ ∫ exp(-(t - s)/τᵢ) dσₑ(s)`: quasi-linear viscoelasticity (Fung,
 //! Biomechanics, 1981, section 7.6), which a robot may drive in whatever way it comes to, for as long as the indenter pushes.
 
@@ -9,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use twintac_depth_table::{MonotoneCubic, PressFrame};
+use twintac_depth_table::PressFrame;
 use twintac_emulate::{CHANNELS, Physics, Sensed};
 use twintac_protocol::PressPlan;
 use twintac_random::{RandomStream, normal, stream};
@@ -17,6 +18,7 @@ use twintac_rig::{TcpPose, Wrench};
 use twintac_shape::Pose;
 
 use crate::port::Port;
+use crate::ways::{Ways, way_back};
 use crate::{ClimateReality, Lab, LabError, Relaxation};
 
 /// How much deeper than planned the tables go, mm.
@@ -61,19 +63,25 @@ pub struct LiveTable {
     force_n: Vec<f64>,
     /// Pressure, kPa, at each, of every channel; empty of a channel without a taxel.
     pressures_kpa: [Vec<f64>; CHANNELS],
+    /// The same on the way back, from the deepest on; empty without friction.
+    depths_back_mm: Vec<f64>,
+    force_back_n: Vec<f64>,
+    pressures_back_kpa: [Vec<f64>; CHANNELS],
 }
 
 /// A table to be asked.
 struct Curves {
     touch_mm: f64,
     deeper_mm: f64,
-    of: [Option<MonotoneCubic>; VALUES],
+    of: [Option<Ways>; VALUES],
 }
 
 /// What has been felt so far.
 struct Memory {
     time_s: f64,
     elastic: [f64; VALUES],
+    /// The deepest of this touch, mm: the way back begins there.
+    turn_mm: f64,
     /// Of each term of the relaxation.
     fading: Vec<[f64; VALUES]>,
     walk_kpa: [f64; CHANNELS],
@@ -109,19 +117,31 @@ impl Lab {
                 why: why.clone(),
             });
         }
-        let column = |value: &dyn Fn(&PressFrame) -> f64| table.frames.iter().map(value).collect();
-        let mut pressures_kpa = [const { Vec::new() }; CHANNELS];
-        for (taxel, channel) in self.taxel_channels() {
-            pressures_kpa[channel] = column(&|frame| frame.port_pressure_kpa[taxel]);
-        }
+        let back = if self.has_friction(&plan.indenter) {
+            way_back(&self.instantaneous(), &place, &table.frames, &plan.name)?
+        } else {
+            Vec::new()
+        };
         Ok(LiveTable {
             name: plan.name.clone(),
-            touch_mm: table.gel_from_indenter_at_touch.position_mm.z,
+            touch_mm: self.on_the_bench(&table.gel_from_indenter_at_touch).position_mm.z,
             deeper_mm,
-            depths_mm: column(&|frame| frame.depth_mm),
-            force_n: column(&|frame| frame.force_n),
-            pressures_kpa,
+            depths_mm: column(&table.frames, &|frame| frame.depth_mm),
+            force_n: column(&table.frames, &|frame| frame.force_n),
+            pressures_kpa: self.pressures_kpa(&table.frames),
+            depths_back_mm: column(&back, &|frame| frame.depth_mm),
+            force_back_n: column(&back, &|frame| frame.force_n),
+            pressures_back_kpa: self.pressures_kpa(&back),
         })
+    }
+
+    /// Pressures of every channel; of one without a taxel, none.
+    fn pressures_kpa(&self, frames: &[PressFrame]) -> [Vec<f64>; CHANNELS] {
+        let mut pressures_kpa = [const { Vec::new() }; CHANNELS];
+        for (taxel, channel) in self.taxel_channels() {
+            pressures_kpa[channel] = column(frames, &|frame| frame.port_pressure_kpa[taxel]);
+        }
+        pressures_kpa
     }
 
     /// The gel, as it stands in the robot's base frame, under an indenter that sits in the tool's frame.
@@ -146,6 +166,7 @@ impl Lab {
             memory: Memory {
                 time_s: 0.0,
                 elastic: [0.0; VALUES],
+                turn_mm: 0.0,
                 fading: vec![[0.0; VALUES]; reality.gel.relaxation.len()],
                 walk_kpa: [0.0; CHANNELS],
             },
@@ -162,9 +183,13 @@ impl Lab {
 impl LiveTable {
     fn curves(&self) -> Curves {
         let columns = std::iter::once(&self.force_n).chain(&self.pressures_kpa);
+        let columns_back = std::iter::once(&self.force_back_n).chain(&self.pressures_back_kpa);
         let mut of = [const { None }; VALUES];
-        for (curve, column) in of.iter_mut().zip(columns) {
-            *curve = MonotoneCubic::new(self.depths_mm.clone(), column.clone());
+        for (ways, (column, column_back)) in of.iter_mut().zip(columns.zip(columns_back)) {
+            *ways = Ways::new(
+                points(&self.depths_mm, column),
+                &points(&self.depths_back_mm, column_back),
+            );
         }
         Curves {
             touch_mm: self.touch_mm,
@@ -172,6 +197,18 @@ impl LiveTable {
             of,
         }
     }
+}
+
+fn column(frames: &[PressFrame], value: &dyn Fn(&PressFrame) -> f64) -> Vec<f64> {
+    frames.iter().map(value).collect()
+}
+
+fn points(depths_mm: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
+    depths_mm
+        .iter()
+        .zip(values)
+        .map(|(depth_mm, value)| [*depth_mm, *value])
+        .collect()
 }
 
 impl Selector {
@@ -190,10 +227,10 @@ impl Physics for LiveGel {
     fn at(&mut self, tool: &TcpPose, time_s: f64) -> Sensed {
         let tip_mm = tool.position_mm + tool.base_from_tool() * self.tool_from_indenter.position_mm;
         let tip_mm = self.base_from_gel.inverse_transform_point(tip_mm);
-        let elastic = self
-            .tables
-            .get(self.selected.load(Ordering::Relaxed))
-            .map_or([0.0; VALUES], |table| table.at(tip_mm.z));
+        let elastic = match self.tables.get(self.selected.load(Ordering::Relaxed)) {
+            Some(table) => table.at(tip_mm.z, &mut self.memory.turn_mm),
+            None => [0.0; VALUES],
+        };
         let step_s = time_s - self.memory.time_s;
         let felt = self.memory.advance(elastic, time_s, &self.relaxation);
         let force_n = self.base_from_gel.rotation * (DVec3::NEG_Z * felt[0]);
@@ -217,13 +254,21 @@ impl Physics for LiveGel {
 }
 
 impl Curves {
-    /// The values with the indenter's origin at a height, mm, in the gel's frame.
-    fn at(&self, height_mm: f64) -> [f64; VALUES] {
+    /// The values with the indenter's origin at a height, mm, in the bench's frame. `turn_mm` is the deepest of this touch so far, mm.
+    fn at(&self, height_mm: f64, turn_mm: &mut f64) -> [f64; VALUES] {
         let depth_mm = self.touch_mm - height_mm + self.deeper_mm;
         if depth_mm <= 0.0 {
+            *turn_mm = 0.0;
             return [0.0; VALUES];
         }
-        std::array::from_fn(|value| self.of[value].as_ref().map_or(0.0, |curve| curve.at(depth_mm)))
+        *turn_mm = depth_mm.max(*turn_mm);
+        let share = self.of[0].as_ref().map_or(0.0, |force_n| {
+            force_n.inwards(*turn_mm) / force_n.inwards(force_n.turn())
+        });
+        std::array::from_fn(|value| {
+            let ways = self.of[value].as_ref();
+            ways.map_or(0.0, |ways| ways.back(depth_mm, *turn_mm, share))
+        })
     }
 }
 
@@ -262,6 +307,7 @@ mod tests {
         let mut memory = Memory {
             time_s: 0.0,
             elastic: [0.0; VALUES],
+            turn_mm: 0.0,
             fading: vec![[0.0; VALUES]],
             walk_kpa: [0.0; CHANNELS],
         };
@@ -280,6 +326,7 @@ mod tests {
         let mut memory = Memory {
             time_s: 0.0,
             elastic: [0.0; VALUES],
+            turn_mm: 0.0,
             fading: vec![[0.0; VALUES]; 2],
             walk_kpa: [0.0; CHANNELS],
         };

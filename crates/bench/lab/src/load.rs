@@ -8,6 +8,7 @@ use twintac_recording::{Control, Press};
 use twintac_simulate::PressPlace;
 
 use crate::frames::{Frames, Moment};
+use crate::ways::{Ways, way_back};
 use crate::{Lab, LabError};
 
 /// The depth that is tried first for a weight, mm.
@@ -38,17 +39,19 @@ impl Lab {
             hold_s: plan.hold_s,
         };
         let place = self.true_place(&as_press, &mut random)?;
-        let table = self.depth_table_to(plan, place)?;
-        let over_force = |taxel: usize| {
-            let frames = table.frames.iter();
-            let mut force_n: Vec<f64> = frames.clone().map(|frame| frame.force_n).collect();
-            force_n[0] = 0.0;
-            MonotoneCubic::new(
-                force_n,
-                frames.map(|frame| frame.port_pressure_kpa[taxel]).collect(),
-            )
+        let (place, table) = self.depth_table_to(plan, place)?;
+        let back = if self.has_friction(&plan.indenter) {
+            way_back(&self.instantaneous(), &place, &table.frames, &plan.name)?
+        } else {
+            Vec::new()
         };
-        let curves: Vec<Option<MonotoneCubic>> = (0..self.drawing.taxels.len()).map(over_force).collect();
+        let over_force = |taxel: usize| {
+            let at = |frame: &PressFrame| [frame.force_n, frame.port_pressure_kpa[taxel]];
+            let mut inwards: Vec<[f64; 2]> = table.frames.iter().map(at).collect();
+            inwards[0][0] = 0.0;
+            Ways::new(inwards, &back.iter().map(at).collect::<Vec<_>>())
+        };
+        let curves: Vec<Option<Ways>> = (0..self.drawing.taxels.len()).map(over_force).collect();
         let course = plan.course(self.drawing.readout.rate_hz);
         let force = MonotoneCubic::new(
             course.iter().map(|(time_s, _)| *time_s).collect(),
@@ -56,17 +59,28 @@ impl Lab {
         );
         let force_n = |time_s: f64| force.as_ref().map_or(0.0, |force| force.at(time_s));
 
+        // From here on the weight is on the gel, or comes off.
+        let heaviest_s = course
+            .iter()
+            .find(|(_, weight_n)| *weight_n >= plan.force_n)
+            .map_or(f64::INFINITY, |(time_s, _)| *time_s);
+
         let mut chain = self.chain();
         let mut frames = Frames::default();
         for &(scheduled_s, weight_n) in &course {
             let (time_s, raw_kpa) = chain.read(scheduled_s, &mut random, |taxel, time_s| {
-                curves[taxel]
-                    .as_ref()
-                    .map_or(0.0, |curve| curve.at(force_n(time_s)))
+                curves[taxel].as_ref().map_or(0.0, |curve| {
+                    let (force_n, weight_n) = (force_n(time_s), plan.force_n);
+                    if time_s < heaviest_s {
+                        curve.inwards(force_n)
+                    } else {
+                        curve.back(force_n, weight_n, weight_n / curve.turn())
+                    }
+                })
             });
             frames.push(Moment {
                 time_s,
-                commanded: table.gel_from_indenter_at_touch,
+                commanded: self.on_the_bench(&table.gel_from_indenter_at_touch),
                 is_touching: weight_n > 0.0,
                 force_n: weight_n,
                 raw_kpa,
@@ -76,7 +90,11 @@ impl Lab {
     }
 
     /// A table that goes as deep as the weight needs, and not much deeper: its mesh is as fine as the contact is small.
-    fn depth_table_to(&self, plan: &LoadPlan, mut place: PressPlace) -> Result<DepthTable, LabError> {
+    fn depth_table_to(
+        &self,
+        plan: &LoadPlan,
+        mut place: PressPlace,
+    ) -> Result<(PressPlace, DepthTable), LabError> {
         let gel = self.instantaneous();
         place.enough_force_n = Some(MARGIN * plan.force_n);
         loop {
@@ -90,7 +108,7 @@ impl Lab {
                 .map_or(0.0, |frame: &PressFrame| frame.force_n)
                 >= plan.force_n
             {
-                return Ok(table);
+                return Ok((place, table));
             }
             let press = plan.name.clone();
             if let Some(why) = table.failure {

@@ -17,6 +17,9 @@ pub struct Reality {
     pub readout: ReadoutReality,
     /// The robot and the force sensor.
     pub robot: RobotReality,
+    /// How the sensor lies under the robot. Default: level.
+    #[serde(default)]
+    pub mounting: MountingReality,
     /// How warm the sensor is. Default: always 25 °C.
     #[serde(default)]
     pub climate: ClimateReality,
@@ -36,6 +39,12 @@ pub struct GelReality {
     pub bulk_modulus_kpa: f64,
     /// Relaxation: share of the instantaneous stiffness and time constant of each term.
     pub relaxation: Vec<Relaxation>,
+    /// Height over the described height. Default 1. A robot that is set up by touching the gel does not notice.
+    #[serde(default = "one")]
+    pub height_ratio: f64,
+    /// Coulomb's coefficient of friction between indenters and gel. Default 0. An indenter whose description states one keeps it.
+    #[serde(default)]
+    pub friction: f64,
     /// Largest change of depth between two computed moments, mm.
     pub depth_step_mm: f64,
 }
@@ -60,6 +69,12 @@ pub struct ReadoutReality {
     pub gain_mean: f64,
     /// Standard deviation of a taxel's gain, as a part of the mean.
     pub gain_deviation: f64,
+    /// Mean volume of the air that is trapped in a port, mm³. Default 0.
+    #[serde(default)]
+    pub bubble_mm3: f64,
+    /// Standard deviation of that between taxels, mm³; no bubble is smaller than none. Default 0.
+    #[serde(default)]
+    pub bubble_deviation_mm3: f64,
     /// Standard deviation of a taxel's offset, kPa.
     pub offset_deviation_kpa: f64,
     /// Standard deviation of a taxel's place along x and y, mm.
@@ -98,6 +113,14 @@ pub struct RobotReality {
     pub force_lag_s: f64,
 }
 
+/// How the sensor lies under the robot, which takes it to lie level. It is turned about the middle of its top, where the robot was set up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MountingReality {
+    /// How far it is turned about the bench's x and y axes, rad.
+    pub tilt_rad: [f64; 2],
+}
+
 /// How warm the sensor is: from when it is switched on it warms up, by what its own chips and a robot above it give off.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -128,6 +151,9 @@ impl ClimateReality {
     }
 }
 
+/// The largest tilt about an axis, rad: farther, nobody believes a sensor to lie level.
+const LARGEST_TILT_RAD: f64 = 0.2;
+
 fn one() -> f64 {
     1.0
 }
@@ -148,16 +174,20 @@ impl Reality {
             ("gel.yeoh_kpa[0]", gel.yeoh_kpa[0]),
             ("gel.bulk_modulus_kpa", gel.bulk_modulus_kpa),
             ("gel.depth_step_mm", gel.depth_step_mm),
+            ("gel.height_ratio", gel.height_ratio),
             ("readout.gain_mean", readout.gain_mean),
             ("climate.warming_time_s", climate.warming_time_s),
         ];
         for (field, value) in positive {
-            if value <= 0.0 {
-                return Err(document.error(field, format!("is {value}"), "give a value above zero"));
+            if value <= 0.0 || !value.is_finite() {
+                return Err(document.error(field, format!("is {value}"), "give a number above zero"));
             }
         }
         let not_negative = [
+            ("gel.friction", gel.friction),
             ("readout.gain_deviation", readout.gain_deviation),
+            ("readout.bubble_mm3", readout.bubble_mm3),
+            ("readout.bubble_deviation_mm3", readout.bubble_deviation_mm3),
             ("readout.offset_deviation_kpa", readout.offset_deviation_kpa),
             ("readout.position_deviation_mm", readout.position_deviation_mm),
             ("readout.noise_kpa", readout.noise_kpa),
@@ -175,8 +205,15 @@ impl Reality {
             ("robot.force_lag_s", robot.force_lag_s),
         ];
         for (field, value) in not_negative {
-            if value < 0.0 {
+            if value < 0.0 || !value.is_finite() {
                 return Err(document.error(field, format!("is {value}"), "give zero or more"));
+            }
+        }
+        for (axis, tilt_rad) in self.mounting.tilt_rad.iter().enumerate() {
+            if !(-LARGEST_TILT_RAD..=LARGEST_TILT_RAD).contains(tilt_rad) {
+                let hint = format!("keep it between -{LARGEST_TILT_RAD} and {LARGEST_TILT_RAD} rad");
+                let field = format!("mounting.tilt_rad[{axis}]");
+                return Err(document.error(&field, format!("is {tilt_rad}"), &hint));
             }
         }
         // What the barometers' registers can say.
@@ -214,9 +251,59 @@ mod tests {
 
     const SHIPPED: &str = include_str!("../../../../realities/default.toml");
 
+    const HARDER: &str = include_str!("../../../../realities/harder.toml");
+    const THICKER: &str = include_str!("../../../../realities/thicker.toml");
+
     #[test]
-    fn the_shipped_reality_is_valid() {
-        Reality::parse("default.toml", SHIPPED).unwrap();
+    fn the_shipped_realities_are_valid() {
+        for text in [SHIPPED, HARDER, THICKER] {
+            Reality::parse("shipped.toml", text).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_file_that_names_no_further_imperfection_has_none() {
+        let reality = Reality::parse("default.toml", SHIPPED).unwrap();
+        assert_eq!(reality.mounting, MountingReality::default());
+        assert_eq!((reality.gel.height_ratio, reality.gel.friction), (1.0, 0.0));
+        assert_eq!(
+            (reality.readout.bubble_mm3, reality.readout.bubble_deviation_mm3),
+            (0.0, 0.0)
+        );
+    }
+
+    #[test]
+    fn the_thicker_gel_is_the_default_one_but_for_its_height_and_stiffness() {
+        let mut thicker = Reality::parse("thicker.toml", THICKER).unwrap();
+        let default = Reality::parse("default.toml", SHIPPED).unwrap();
+        assert_eq!(thicker.gel.height_ratio, 1.2);
+        for (thicker, default) in thicker.gel.yeoh_kpa.iter().zip(default.gel.yeoh_kpa) {
+            assert!((thicker - 1.2 * default).abs() < 1e-12);
+        }
+        thicker.gel = default.gel.clone();
+        thicker.summary.clone_from(&default.summary);
+        assert_eq!(thicker, default);
+    }
+
+    #[test]
+    fn an_impossible_imperfection_is_refused_at_its_field() {
+        for (right, wrong, field) in [
+            ("friction = 0.25", "friction = -0.25", "gel.friction"),
+            ("friction = 0.25", "height_ratio = 0.0", "gel.height_ratio"),
+            ("friction = 0.25", "height_ratio = inf", "gel.height_ratio"),
+            ("bubble_mm3 = 2.0", "bubble_mm3 = nan", "readout.bubble_mm3"),
+            (
+                "bubble_deviation_mm3 = 0.6",
+                "bubble_deviation_mm3 = -1",
+                "readout.bubble_deviation_mm3",
+            ),
+            ("tilt_rad = [0.02,", "tilt_rad = [1.1,", "mounting.tilt_rad[0]"),
+            ("-0.015]", "nan]", "mounting.tilt_rad[1]"),
+        ] {
+            assert!(HARDER.contains(right), "{right}");
+            let error = Reality::parse("harder.toml", &HARDER.replace(right, wrong)).unwrap_err();
+            assert_eq!(error.field, field);
+        }
     }
 
     #[test]

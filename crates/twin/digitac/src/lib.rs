@@ -32,8 +32,8 @@ mod training;
 
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
-    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate, TipForm,
-    features, fit_bench, refine_bench,
+    BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate,
+    SmoothFactor, features, fit_bench, refine_bench,
 };
 pub use cross_validation::{Bench, Judgement, judge};
 pub use error::DigitacError;

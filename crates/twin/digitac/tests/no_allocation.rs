@@ -107,7 +107,7 @@ fn steps_at_a_place_allocate_nothing() {
         "contact_offset_elsewhere_mm": 0.02,
         "stiffness": null,
         "ports": vec![json!({ "shift_mm": [0.1, 0.2], "wider_mm": 0.1 }); n_taxels],
-        "tip_form": {
+        "smooth_factor": {
             "ports_mm": vec![[1.0, 2.0]; n_taxels],
             "reach_mm": 5.0,
             "depth_mm": 1.0,

@@ -46,6 +46,7 @@ pub struct Gel {
     material: Material,
     /// Whether paths read the stress feature.
     pub(crate) stress_along_paths: bool,
+    upwards: DVec3,
 }
 
 /// Where, with what and how deep to press.
@@ -81,6 +82,7 @@ pub struct GelMesh {
     pub(crate) body: SoftBody,
     pub(crate) indenter: Box<dyn SignedDistance>,
     pub(crate) touch: Pose,
+    upwards: DVec3,
     pub(crate) ports: Vec<PortReadout>,
     slopes: Vec<PortSlopes>,
     clusters: Vec<StressCluster>,
@@ -96,6 +98,7 @@ impl Gel {
             settings,
             material,
             stress_along_paths: false,
+            upwards: DVec3::Z,
         }
     }
 
@@ -103,6 +106,14 @@ impl Gel {
     #[must_use]
     pub fn with_stress_along_paths(mut self) -> Self {
         self.stress_along_paths = true;
+        self
+    }
+
+    /// The same gel under a robot whose way up has this unit vector in the gel's frame: on a sensor that does not lie level it is not z. Depths count
+    /// along it. Paths have directions of their own.
+    #[must_use]
+    pub fn with_upwards(mut self, upwards: DVec3) -> Self {
+        self.upwards = upwards;
         self
     }
 
@@ -258,7 +269,7 @@ impl Gel {
             self.material.clone(),
             &self.settings,
             indenter,
-            touch,
+            (touch, self.upwards),
         )
     }
 
@@ -316,7 +327,7 @@ impl GelMesh {
         material: Material,
         settings: &SimulateSettings,
         indenter: Box<dyn SignedDistance>,
-        touch: Pose,
+        (touch, upwards): (Pose, DVec3),
     ) -> Result<Self, SimulateError> {
         let mut body = SoftBody::new(mesh, material, settings.solver.clone())?;
         let mesh = body.mesh();
@@ -341,6 +352,7 @@ impl GelMesh {
             body,
             indenter,
             touch,
+            upwards,
             ports,
             slopes,
             clusters,
@@ -390,7 +402,7 @@ impl GelMesh {
         let mut failure = None;
         let mut advance = |state: &mut State, keyframe: &Keyframe, time_step_s: f64| {
             let pose = Pose {
-                position_mm: self.touch.position_mm - DVec3::Z * keyframe.depth_mm,
+                position_mm: self.touch.position_mm - self.upwards * keyframe.depth_mm,
                 ..self.touch
             };
             let frame = self
@@ -399,7 +411,7 @@ impl GelMesh {
             let fields = self.fields(state);
             show(&fields);
             frames.push(self.read(&fields, &frame, keyframe));
-            Ok::<f64, SolveError>(-frame.indenter_force_n.z)
+            Ok::<f64, SolveError>(self.force_n(&frame))
         };
         let mut previous = keyframes.first().copied();
         for keyframe in keyframes {
@@ -430,6 +442,11 @@ impl GelMesh {
         }
     }
 
+    /// Force of the indenter on the gel along the robot's way down, N.
+    fn force_n(&self, frame: &Frame) -> f64 {
+        -frame.indenter_force_n.dot(self.upwards)
+    }
+
     /// The gel as a state of it is.
     pub(crate) fn fields<'a>(&'a self, state: &'a State) -> Fields<'a> {
         Fields {
@@ -456,7 +473,7 @@ impl GelMesh {
     fn read(&self, fields: &Fields<'_>, frame: &Frame, keyframe: &Keyframe) -> PressFrame {
         PressFrame {
             depth_mm: keyframe.depth_mm,
-            force_n: -frame.indenter_force_n.z,
+            force_n: self.force_n(frame),
             port_pressure_kpa: self
                 .ports
                 .iter()

@@ -12,7 +12,7 @@ use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_li
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_run::bench::{OpenBench, preview, read_faults};
-use twintac_run::built_in::{LAB_RIG, REALITY};
+use twintac_run::built_in::{LAB_RIG, reality};
 use twintac_run::{Caller, Planned, Progress, Run, RunSettings, SensorFile};
 
 use super::files::sensor_or_phystac;
@@ -45,7 +45,7 @@ struct Summary {
 pub(super) fn run(arguments: &Record) -> Result<()> {
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
     let planned = Planned::read(&arguments.protocol, &sensor.sensor, arguments.start.seed)?;
-    let reality = arguments.lab.as_ref().map(|file| read_reality(file.as_deref()));
+    let reality = arguments.lab.as_ref().map(|named| reality(named.as_deref()));
     let reality = reality.transpose()?;
     if let (Some(reality), true) = (&reality, arguments.at_once) {
         let n_presses = planned.presses.len() + planned.loads.len();
@@ -213,9 +213,4 @@ fn tell(summary: &RunSummary, presses: usize, run: &Run, provenance: Provenance,
 fn press_settings(file: Option<&Path>) -> Result<PressSettings> {
     let (name, text) = LAB_RIG.unless(file)?;
     Ok(PressSettings::parse(&name, &text)?)
-}
-
-fn read_reality(file: Option<&Path>) -> Result<Reality> {
-    let (name, text) = REALITY.unless(file)?;
-    Ok(Reality::parse(&name, &text)?)
 }

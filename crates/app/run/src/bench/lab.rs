@@ -52,7 +52,7 @@ impl OpenBench {
         faults: Vec<ScheduledFault>,
     ) -> Result<Self, RunError> {
         let sensor = &run.sensor.sensor;
-        let lab = Lab::new(Arc::clone(sensor), reality.clone());
+        let lab = Lab::new(Arc::clone(sensor), reality.clone())?;
         let tables = run.live_tables(&lab, reality, plans)?;
         let placement = &settings.placement;
         let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);

@@ -52,7 +52,7 @@ impl Run {
             .settings("loads", &loads)?
             .file(&self.folder.join("sensor.toml"))?;
         self.run_stage("recordings", inputs, |folder| {
-            let lab = Lab::new(Arc::clone(&self.sensor.sensor), reality.clone());
+            let lab = Lab::new(Arc::clone(&self.sensor.sensor), reality.clone())?;
             let keep = folder.join("presses");
             let mut presses = kept(
                 self.progress(),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, TipForm};
+use super::{Estimate, SmoothFactor};
 use crate::features::{Gains, TIME_CONSTANTS_S};
 
 /// Values of a bench that no data sheet gives, fitted to training presses.
@@ -23,9 +23,9 @@ pub struct BenchEstimate {
     /// Where ports are and how wide, against the description; `[n_taxels]`, or empty if they were taken as described.
     #[serde(default)]
     pub ports: Vec<PortEstimate>,
-    /// What the tip does otherwise than a ball of its radius; `None` if the described indenter was taken as it is.
+    /// What tip and gel do otherwise than simulated; `None` if they were taken as they are.
     #[serde(default)]
-    pub tip_form: Option<TipForm>,
+    pub smooth_factor: Option<SmoothFactor>,
     /// Whether the gel remembers the presses before.
     #[serde(default)]
     pub has_history: bool,
@@ -47,7 +47,7 @@ impl BenchEstimate {
             contact_offset_elsewhere_mm: 0.0,
             stiffness: None,
             ports: Vec::new(),
-            tip_form: None,
+            smooth_factor: None,
             has_history: false,
             gains: None,
             deviation_percent: 0.0,
@@ -112,11 +112,11 @@ pub struct BenchSettings {
     pub port_law: bool,
     /// Whether the gel remembers the presses before.
     pub history: bool,
-    /// Places of the ports in the gel's plane, mm: the form of an unknown tip is fitted as a function of the distance from them. `[n_taxels]`;
-    /// empty fits none.
+    /// Places of the ports in the gel's plane, mm: what tip and gel do otherwise than simulated is fitted as a smooth factor of the distance from them and of
+    /// depth. `[n_taxels]`; empty fits none.
     pub ports_mm: Vec<[f64; 2]>,
-    /// Pull of that function to none.
-    pub tip_form_pull: f64,
+    /// Pull of that factor to one.
+    pub smooth_factor_pull: f64,
     /// Taxels that the fit leaves out, by index.
     pub left_out: BTreeSet<usize>,
     /// How many blocks of places are left out in turn for the uncertainties.
@@ -136,7 +136,7 @@ impl Default for BenchSettings {
             port_law: true,
             history: true,
             ports_mm: Vec::new(),
-            tip_form_pull: 1e-5,
+            smooth_factor_pull: 1e-5,
             left_out: BTreeSet::new(),
             n_blocks: 6,
         }

@@ -7,7 +7,7 @@ mod port_correction;
 mod problem;
 mod search;
 mod simulated;
-mod tip_form;
+mod smooth_factor;
 
 pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;
@@ -19,4 +19,4 @@ pub use search::{fit_bench, refine_bench};
 pub(crate) use search::{fit_radius, in_order};
 pub use simulated::features;
 pub(crate) use simulated::{curves, features_along};
-pub use tip_form::TipForm;
+pub use smooth_factor::SmoothFactor;

@@ -2,30 +2,30 @@
 
 use std::collections::BTreeMap;
 
-use super::tip_form::DistanceSplines;
-use super::{BenchEstimate, PortEstimate, TipForm};
+use super::smooth_factor::DistanceSplines;
+use super::{BenchEstimate, PortEstimate, SmoothFactor};
 
 /// By how much pressures at the ports differ from those that are simulated, while the tip is at one place.
 #[derive(Clone, Debug)]
 pub struct PortCorrection {
     /// `[n_taxels]`, or empty if ports were taken as described.
     ports: Vec<PortEstimate>,
-    /// The form of the tip, with the splines of each port's distance.
-    form: Option<(TipForm, Vec<DistanceSplines>)>,
+    /// The smooth factor, with the splines of each port's distance.
+    factor: Option<(SmoothFactor, Vec<DistanceSplines>)>,
 }
 
 impl BenchEstimate {
     /// The correction of port pressures while the tip is at a place of the gel's plane, mm.
     #[must_use]
     pub fn correction_at(&self, place_mm: [f64; 2]) -> PortCorrection {
-        let with_splines = |form: &TipForm| {
-            let taxels = 0..form.ports_mm.len();
-            let splines = taxels.map(|taxel| form.splines(taxel, place_mm)).collect();
-            (form.clone(), splines)
+        let with_splines = |factor: &SmoothFactor| {
+            let taxels = 0..factor.ports_mm.len();
+            let splines = taxels.map(|taxel| factor.splines(taxel, place_mm)).collect();
+            (factor.clone(), splines)
         };
         PortCorrection {
             ports: self.ports.clone(),
-            form: self.tip_form.as_ref().map(with_splines),
+            factor: self.smooth_factor.as_ref().map(with_splines),
         }
     }
 
@@ -35,7 +35,11 @@ impl BenchEstimate {
     pub fn with_described_tip(&self) -> Self {
         Self {
             tip_radius_mm: None,
-            tip_form: None,
+            // Of a known tip, it is the gel's.
+            smooth_factor: self
+                .smooth_factor
+                .clone()
+                .filter(|_| self.tip_radius_mm.is_none()),
             contact_offset_mm: BTreeMap::new(),
             ..self.clone()
         }
@@ -55,9 +59,9 @@ impl PortCorrection {
         for (value, (port, slope)) in pressure_kpa.iter_mut().zip(ports) {
             *value += port.change_kpa(slope);
         }
-        if let Some((form, splines)) = &self.form {
+        if let Some((factor, splines)) = &self.factor {
             for (value, splines) in pressure_kpa.iter_mut().zip(splines) {
-                *value *= form.factor(splines, depth_mm);
+                *value *= factor.factor(splines, depth_mm);
             }
         }
     }

@@ -6,8 +6,8 @@ use std::ops::Range;
 use twintac_depth_table::DepthCurves;
 use twintac_recording::{Control, Press};
 
-use super::tip_form::N_TERMS;
-use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, TipForm, deepest_pose};
+use super::smooth_factor::N_TERMS;
+use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, SmoothFactor, deepest_pose};
 use crate::DigitacError;
 use crate::numerics::{Unknown, median};
 use crate::physical_fit::{Elastic, Pressures, Slope};
@@ -22,7 +22,7 @@ const STEP: f64 = 1e-3;
 const SHIFT_PULL: f64 = 1e-3;
 /// Pull of the ports' radius to its description, for each square millimetre.
 const RADIUS_PULL: f64 = 1e-3;
-/// Largest coefficient of the tip's form.
+/// Largest coefficient of the smooth factor.
 const FORM_LIMIT: f64 = 3.0;
 /// Presses must be spread over at least this along an axis for the ports' places along it to be fitted, mm.
 const SPREAD_MM: f64 = 2.0;
@@ -51,7 +51,7 @@ struct Guess<'a> {
     ln_radius: f64,
     ln_stiffness: f64,
     ports: Vec<PortEstimate>,
-    form: Option<TipForm>,
+    form: Option<SmoothFactor>,
 }
 
 pub(crate) struct BenchProblem<'a> {
@@ -66,7 +66,7 @@ pub(crate) struct BenchProblem<'a> {
     /// Axes along which ports may be shifted.
     axes: Vec<usize>,
     /// The form of an unknown tip, without its coefficients.
-    form: Option<TipForm>,
+    form: Option<SmoothFactor>,
     n_taxels: usize,
     settings: &'a BenchSettings,
 }
@@ -161,7 +161,7 @@ impl<'a> BenchProblem<'a> {
                 port.shift_mm[axis] = next(true).unwrap_or(0.0);
             }
         }
-        let form = self.form.clone().map(|form| TipForm {
+        let form = self.form.clone().map(|form| SmoothFactor {
             coefficients: (0..N_TERMS).map(|_| next(true).unwrap_or(0.0)).collect(),
             ..form
         });
@@ -205,7 +205,7 @@ impl<'a> BenchProblem<'a> {
             } else {
                 guess.ports.clone()
             },
-            tip_form: guess.form.clone(),
+            smooth_factor: guess.form.clone(),
             doubts: self.doubts(values),
             ..BenchEstimate::nominal()
         }
@@ -248,7 +248,7 @@ impl<'a> BenchProblem<'a> {
             );
         }
         if self.form.is_some() {
-            names.extend((0..N_TERMS).map(|term| format!("term {term} of the tip's form")));
+            names.extend((0..N_TERMS).map(|term| format!("term {term} of the smooth factor")));
         }
         names
     }
@@ -344,7 +344,7 @@ struct Read {
     by_depth: Vec<Vec<f64>>,
     /// By place along x, along y, and radius; `[n_taxels][3][n_frames]`
     by_port: Vec<[Vec<f64>; 3]>,
-    /// Terms of the tip's form; `[n_taxels][N_TERMS][n_frames]`, or none.
+    /// Terms of the smooth factor; `[n_taxels][N_TERMS][n_frames]`, or none.
     terms: Vec<Vec<Vec<f64>>>,
 }
 
@@ -386,7 +386,7 @@ impl Elastic for BenchProblem<'_> {
         let n_shifts = self.n_taxels * self.axes.len();
         unknowns.extend((0..n_shifts).map(|_| within(self.settings.port_shift_limit_mm, SHIFT_PULL)));
         if self.form.is_some() {
-            unknowns.extend((0..N_TERMS).map(|_| within(FORM_LIMIT, self.settings.tip_form_pull)));
+            unknowns.extend((0..N_TERMS).map(|_| within(FORM_LIMIT, self.settings.smooth_factor_pull)));
         }
         unknowns
     }
@@ -487,9 +487,9 @@ impl Elastic for BenchProblem<'_> {
     }
 }
 
-/// Room for the form of a tip whose radius is not described.
-fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<TipForm> {
-    if settings.tip_radii_mm.len() < 2 || settings.ports_mm.is_empty() {
+/// Room for what is not simulated of tip and gel.
+fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<SmoothFactor> {
+    if settings.ports_mm.is_empty() {
         return None;
     }
     let poses = presses.iter().flat_map(|along| {
@@ -508,7 +508,7 @@ fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<TipForm> {
             far_mm = far_mm.max((port[0] - pose.position_mm.x).hypot(port[1] - pose.position_mm.y));
         }
     }
-    Some(TipForm {
+    Some(SmoothFactor {
         ports_mm: settings.ports_mm.clone(),
         reach_mm: 0.5 * far_mm,
         depth_mm,

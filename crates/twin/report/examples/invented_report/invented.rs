@@ -239,7 +239,7 @@ fn results(sensor: Sensor, presses: Vec<PressEvaluation>) -> Results {
             tip_radius_mm: Some(estimate(2.85, 0.12)),
             contact_offset_mm: BTreeMap::from([("sphere_a".to_owned(), estimate(0.041, 0.009))]),
             ports: Vec::new(),
-            tip_form: None,
+            smooth_factor: None,
             has_history: false,
             gains: Some(Gains {
                 gain: (0..n_taxels)

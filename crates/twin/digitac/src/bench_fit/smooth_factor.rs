@@ -1,4 +1,4 @@
-//! What an undocumented tip does otherwise than the ball that is simulated for it.
+//! What tip and gel do otherwise than simulated: a tip that is no ball, a gel that stiffens, friction.
 //!
 //! A factor on every port pressure: a smooth function of the port's distance and of the depth, the same for all ports. It is one where
 //! presses do not say otherwise.
@@ -20,9 +20,9 @@ pub(crate) const N_TERMS: usize = N_SPLINES * N_POWERS;
 /// Depths below this part of the largest count as this one.
 const SHALLOWEST: f64 = 0.05;
 
-/// The factor on port pressures.
+/// The smooth factor on port pressures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TipForm {
+pub struct SmoothFactor {
     /// Places of the ports in the gel's plane, mm; `[n_taxels]`.
     pub(crate) ports_mm: Vec<[f64; 2]>,
     /// Distance from which on the factor does not change, mm.
@@ -33,7 +33,7 @@ pub struct TipForm {
     pub(crate) coefficients: Vec<f64>,
 }
 
-impl TipForm {
+impl SmoothFactor {
     /// The splines of a port's distance from a place.
     pub(crate) fn splines(&self, taxel: usize, place_mm: [f64; 2]) -> [f64; N_SPLINES] {
         let port = self.ports_mm[taxel];
