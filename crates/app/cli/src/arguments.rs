@@ -325,6 +325,10 @@ pub(crate) struct Evaluate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+    /// Fit gains and one contact height to the first N presses that are felt well, which are not scored: for another sensor of the same
+    /// description [default: contact heights of new files alone].
+    #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) adapt: Option<u64>,
     /// Print the figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use digitac::{
-    Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale, evaluate, pair,
-    recalibrate, repeatability,
+    Adaptation, Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale, Twin,
+    adapt, evaluate, pair, recalibrate, repeatability,
 };
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
@@ -36,7 +36,7 @@ pub struct UnseenEvaluation {
     pub variant: String,
     /// Presses that were scored.
     pub presses: usize,
-    /// Errors after each new file's contact height was fitted to its first presses, which are not scored.
+    /// Errors after each new file's contact height, or the adaptation, was fitted to its first presses, which are not scored.
     #[serde(flatten)]
     pub twin: TwinFigures,
     /// Errors on the same presses with contact heights as at training: what the twin says without having touched the gel once.
@@ -45,18 +45,22 @@ pub struct UnseenEvaluation {
     pub baselines: BaselineFigures,
     /// How well the presses themselves repeat.
     pub repeatability: Option<Figures>,
-    /// Contact heights of files that the model had not seen.
+    /// Contact heights of files that the model had not seen; none if it was adapted.
     pub contact: Vec<Recalibration>,
+    /// What was adapted to the sensor of the recordings, if that was asked for.
+    pub adaptation: Option<Adaptation>,
 }
 
 /// Judges a model on other recordings of its sensor: simulates their places, fits each new file's contact height to its first presses,
-/// and scores the rest.
+/// and scores the rest. With `adapt_with` presses, gains and one contact height are fitted to the first ones instead: for another sensor of
+/// the same description.
 ///
 /// # Errors
-/// A model that cannot be read, or that reads other taxels; presses that taught the model; a place that cannot be pressed.
+/// A model that cannot be read, or that reads other taxels; too few presses to adapt with; presses that taught the model; a place that cannot be pressed.
 pub fn evaluate_elsewhere(
     model_folder: &Path,
     recording: &Recording,
+    adapt_with: Option<usize>,
     progress: &dyn Progress,
 ) -> Result<UnseenEvaluation, RunError> {
     let model = Model::load(model_folder)?;
@@ -77,18 +81,30 @@ pub fn evaluate_elsewhere(
         tables: &tables,
         left_out: &left_out,
     };
-    let contact = pressed.contact_heights(&model)?;
-    let mut bench = record.bench.clone();
-    let heights = contact
-        .iter()
-        .map(|found| (found.file.clone(), found.contact_offset_mm));
-    bench.contact_offset_mm.extend(heights);
-    let spent: BTreeSet<usize> = contact
-        .iter()
-        .flat_map(|found| found.used.iter().copied())
+    let adaptation = match adapt_with {
+        Some(n_presses) => Some(pressed.adaptation(&model, n_presses)?),
+        None => None,
+    };
+    let mut contact = Vec::new();
+    let (twin, bench) = if let Some(adaptation) = &adaptation {
+        adaptation.apply(&model.twin, &record.bench)
+    } else {
+        contact = pressed.contact_heights(&model)?;
+        let mut bench = record.bench.clone();
+        let heights = contact.iter();
+        bench
+            .contact_offset_mm
+            .extend(heights.map(|found| (found.file.clone(), found.contact_offset_mm)));
+        (model.twin.clone(), bench)
+    };
+    let used = contact.iter().map(|found| &found.used);
+    let spent: BTreeSet<usize> = used
+        .chain(adaptation.iter().map(|found| &found.used))
+        .flatten()
+        .copied()
         .collect();
-    let (evaluation, repeats) = pressed.judge(&model, &bench, &spent)?;
-    let (uncalibrated, _) = pressed.judge(&model, &record.bench, &spent)?;
+    let (evaluation, repeats) = pressed.judge(&twin, &bench, &spent)?;
+    let (uncalibrated, _) = pressed.judge(&model.twin, &record.bench, &spent)?;
     Ok(UnseenEvaluation {
         provenance: recording.provenance,
         definition: evaluation.twin.definition.clone(),
@@ -100,6 +116,7 @@ pub fn evaluate_elsewhere(
         baselines: baselines(&evaluation),
         repeatability: metrics::repeatability(repeats.as_ref()),
         contact,
+        adaptation,
     })
 }
 
@@ -168,10 +185,30 @@ impl Pressed<'_> {
         Ok(contact)
     }
 
+    /// What the first presses say of gains and contact height.
+    fn adaptation(&self, model: &Model, n_presses: usize) -> Result<Adaptation, RunError> {
+        let found = adapt(
+            self.recording,
+            (self.places, self.tables),
+            &model.record.bench,
+            &model.twin,
+            n_presses,
+            CONTACT_LIMIT_MM,
+            self.left_out,
+        )?;
+        found.ok_or_else(|| {
+            RunError::Input(format!(
+                "{n_presses} presses to adapt with and some to judge are needed; the recordings have {} presses, those with a prescribed \
+                 force do not count",
+                self.recording.presses.len()
+            ))
+        })
+    }
+
     /// The errors of presses that are not spent, on a bench.
     fn judge(
         &self,
-        model: &Model,
+        twin: &Twin,
         bench: &digitac::BenchEstimate,
         spent: &BTreeSet<usize>,
     ) -> Result<(Evaluation, Option<Repeatability>), RunError> {
@@ -182,7 +219,7 @@ impl Pressed<'_> {
             .filter(|index| !spent.contains(index))
             .collect();
         Ok((
-            evaluate(&model.twin, &presses, &scored, &scale, None),
+            evaluate(twin, &presses, &scored, &scale, None),
             repeatability(&presses, &scale),
         ))
     }

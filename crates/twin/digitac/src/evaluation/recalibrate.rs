@@ -9,12 +9,12 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::DepthTable;
-use twintac_recording::{Control, Recording};
+use twintac_recording::{Control, Press, Recording};
 
 use crate::bench_fit::{BenchEstimate, Estimate, Places, curves, features_along};
 use crate::features::Sample;
 use crate::numerics::minimize;
-use crate::{DigitacError, Twin};
+use crate::{DigitacError, Features, Twin};
 
 /// Presses of a file that its contact height is fitted to.
 const N_PRESSES: usize = 3;
@@ -50,38 +50,20 @@ pub fn recalibrate(
     limit_mm: f64,
     left_out: &BTreeSet<usize>,
 ) -> Result<Option<Recalibration>, DigitacError> {
-    let of_file = recording
-        .presses
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| p.mounting == file && p.control == Control::Pose);
-    let of_file: Vec<usize> = of_file.map(|(index, _)| index).collect();
-    if of_file.len() <= N_PRESSES {
-        return Ok(None);
-    }
     let curves = curves(places, tables, recording.taxels.len())?;
     let along = |index: usize, bench: &BenchEstimate| {
         let (press, place) = (&recording.presses[index], places.of_press[index]);
         let touch_z_mm = places.requests[place].gel_from_indenter_at_touch.position_mm.z;
         features_along(&curves[place], press, touch_z_mm, bench)
     };
-    let felt_kpa = of_file
-        .iter()
-        .map(|&index| {
-            let predicted = twin.predict(&[&along(index, bench)?]).swap_remove(0);
-            let kept = predicted.iter().flat_map(|row| {
-                let taxels = row.iter().enumerate();
-                taxels.filter(|(taxel, _)| !left_out.contains(taxel))
-            });
-            Ok(kept.map(|(_, reading)| *reading).fold(0.0, f64::max))
-        })
-        .collect::<Result<Vec<f64>, DigitacError>>()?;
-    let most_kpa = felt_kpa.iter().copied().fold(0.0, f64::max);
-    let felt = of_file
-        .iter()
-        .zip(&felt_kpa)
-        .filter(|(_, felt)| **felt >= FELT * most_kpa);
-    let used: Vec<usize> = felt.map(|(&index, _)| index).take(N_PRESSES).collect();
+    let is_of_file = |press: &Press| press.mounting == file && press.control == Control::Pose;
+    let of_file: Vec<usize> = (0..recording.presses.len())
+        .filter(|&index| is_of_file(&recording.presses[index]))
+        .collect();
+    if of_file.len() <= N_PRESSES {
+        return Ok(None);
+    }
+    let used = felt(&of_file, &|index| along(index, bench), twin, left_out, N_PRESSES)?;
     let deviation_kpa = |presses: &[usize], offset_mm: f64| -> Result<f64, DigitacError> {
         let mut bench = bench.clone();
         let height = Estimate {
@@ -141,4 +123,31 @@ pub fn recalibrate(
         used,
         doubts,
     }))
+}
+
+/// The first presses that a twin would feel at least half as much as the most; poses alone decide.
+pub(super) fn felt(
+    presses: &[usize],
+    along: &dyn Fn(usize) -> Result<Features, DigitacError>,
+    twin: &Twin,
+    left_out: &BTreeSet<usize>,
+    count: usize,
+) -> Result<Vec<usize>, DigitacError> {
+    let felt_kpa = presses
+        .iter()
+        .map(|&index| {
+            let predicted = twin.predict(&[&along(index)?]).swap_remove(0);
+            let kept = predicted.iter().flat_map(|row| {
+                let taxels = row.iter().enumerate();
+                taxels.filter(|(taxel, _)| !left_out.contains(taxel))
+            });
+            Ok(kept.map(|(_, reading)| *reading).fold(0.0, f64::max))
+        })
+        .collect::<Result<Vec<f64>, DigitacError>>()?;
+    let most_kpa = felt_kpa.iter().copied().fold(0.0, f64::max);
+    let enough = presses
+        .iter()
+        .zip(&felt_kpa)
+        .filter(|(_, felt)| **felt >= FELT * most_kpa);
+    Ok(enough.map(|(&index, _)| index).take(count).collect())
 }

@@ -44,6 +44,23 @@ impl Twin {
         Self::new(self.taxels().to_vec(), physics, parameters)
     }
 
+    /// The same twin, each of whose taxels reads so many times as much; `[n_taxels]`. The port law goes with the port, not with the reading. No
+    /// factor acts on the paper's variant, which has no gains.
+    #[must_use]
+    pub(crate) fn with_gain_factors(&self, factors: &[f64]) -> Self {
+        let (mut physics, mut parameters) = (self.physics().clone(), self.parameters().clone());
+        let own = physics
+            .gains
+            .stiffening_per_kpa
+            .iter_mut()
+            .zip(&mut parameters.gain_change);
+        for ((stiffening, change), factor) in own.zip(factors) {
+            *stiffening /= factor;
+            *change += factor.ln() as f32;
+        }
+        Self::new(self.taxels().to_vec(), physics, parameters)
+    }
+
     /// Names of the taxels, in the order of every row.
     #[must_use]
     pub fn taxels(&self) -> &[String] {

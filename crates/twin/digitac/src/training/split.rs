@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use rand::Rng;
+use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
 use twintac_recording::{Press, Recording};
@@ -25,6 +26,8 @@ pub struct SplitSettings {
     pub test_one_in: usize,
     /// One of so many of the remaining places is held out for validation.
     pub validation_one_in: usize,
+    /// So many places teach at most, drawn at random; presses at the others are not used. Default: all that are not held out for testing.
+    pub teaching_places: Option<usize>,
     /// Mountings that are held out for testing as a whole; if there are any, no places are.
     #[serde(alias = "test_files")]
     pub test_mountings: BTreeSet<String>,
@@ -38,13 +41,14 @@ impl Default for SplitSettings {
             block_mm: 0.1,
             test_one_in: 4,
             validation_one_in: 5,
+            teaching_places: None,
             test_mountings: BTreeSet::new(),
             seed: 1,
         }
     }
 }
 
-/// Indices of presses, each in order; together they are all presses.
+/// Indices of presses, each in order; together they are all presses, unless few places are to teach.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Split {
     /// Presses that the twin is fitted to.
@@ -115,17 +119,19 @@ impl Split {
         if is_drawn {
             split.test = draw(&mut inner, settings.test_one_in, settings.seed, "test");
         }
+        let mut outer: Vec<Vec<usize>> = outer.into_iter().map(|(_, presses)| presses).collect();
+        if let Some(n_teaching) = settings.teaching_places {
+            inner.append(&mut outer);
+            inner.shuffle(&mut seed::stream(settings.seed, "split/teaching"));
+            inner.truncate(n_teaching);
+        }
         split.validation = draw(
             &mut inner,
             settings.validation_one_in,
             settings.seed,
             "validation",
         );
-        split.train = inner
-            .into_iter()
-            .chain(outer.into_iter().map(|(_, presses)| presses))
-            .flatten()
-            .collect();
+        split.train = inner.into_iter().chain(outer).flatten().collect();
         for part in [&mut split.train, &mut split.validation, &mut split.test] {
             part.sort_unstable();
         }
@@ -246,6 +252,23 @@ mod tests {
         )
         .unwrap();
         assert_eq!(split.test, (12..24).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_few_places_can_teach() {
+        let settings = SplitSettings {
+            teaching_places: Some(6),
+            ..SplitSettings::default()
+        };
+        let (all, few) = (SplitSettings::default(), settings);
+        let recording = line(24, 1);
+        let (all, few) = (
+            Split::new(&recording, &all).unwrap(),
+            Split::new(&recording, &few).unwrap(),
+        );
+        assert_eq!(all.test, few.test);
+        assert_eq!(few.train.len() + few.validation.len(), 6);
+        assert!(!few.validation.is_empty());
     }
 
     #[test]
