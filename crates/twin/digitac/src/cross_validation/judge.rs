@@ -10,7 +10,7 @@ use super::new_taxel;
 use crate::bench_fit::{fit_radius, radius_weights};
 use crate::{
     Baselines, BenchEstimate, BenchSettings, DigitacError, Errors, Fold, PairSettings, Places, Scale, Score,
-    TrainSettings, Variant, choose, evaluate, pair, recalibrate, refine_bench, train,
+    TrainSettings, Twin, Variant, choose, evaluate, pair, recalibrate, refine_bench, train,
 };
 
 /// A recording, the gel at its places, and how twins of it are made.
@@ -109,44 +109,13 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     })?;
     let variant = chosen.twin.variant();
 
-    let known: BTreeSet<&String> = teachers
-        .iter()
-        .map(|&press| &recording.presses[press].mounting)
-        .collect();
-    let mut test: BTreeSet<usize> = split.test.iter().copied().collect();
-    let new_files: BTreeSet<&String> = test
-        .iter()
-        .map(|&press| &recording.presses[press].mounting)
-        .collect();
-    for file in new_files.difference(&known) {
-        let limit_mm = settings.contact_offset_limit_mm;
-        let pressed = (places, &tables[..]);
-        let contact = recalibrate(
-            recording,
-            pressed,
-            &fitted,
-            &chosen.twin,
-            file,
-            limit_mm,
-            left_out,
-        )?;
-        if let Some(contact) = contact {
-            test = test
-                .into_iter()
-                .filter(|press| !contact.used.contains(press))
-                .collect();
-            fitted
-                .contact_offset_mm
-                .insert(contact.file, contact.contact_offset_mm);
-        }
-    }
+    let test = bench.touch_new_files(fold, &teachers, &tables, &chosen.twin, &mut fitted)?;
     let pairs = pair(recording, places, &tables, &fitted, bench.pair)?;
     if let Some(taxel) = fold.taxel {
         for candidate in &mut trained {
             candidate.twin = new_taxel::with_gain(&candidate.twin, taxel, &pairs, &teachers, left_out)?;
         }
     }
-    let test: Vec<usize> = test.into_iter().collect();
     let judged = trained
         .iter()
         .map(|candidate| evaluate(&candidate.twin, &pairs, &test, &scale, kernel.as_ref()));
@@ -179,6 +148,39 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
 }
 
 impl Bench<'_> {
+    /// Adds the contact heights of files of which nothing teaches; gives the presses that are left to judge.
+    fn touch_new_files(
+        &self,
+        fold: &Fold,
+        teachers: &[usize],
+        tables: &[DepthTable],
+        twin: &Twin,
+        fitted: &mut BenchEstimate,
+    ) -> Result<Vec<usize>, DigitacError> {
+        let file = |&press: &usize| &self.recording.presses[press].mounting;
+        let known: BTreeSet<&String> = teachers.iter().map(file).collect();
+        let files: BTreeSet<&String> = fold.split.test.iter().map(file).collect();
+        let mut test = fold.split.test.clone();
+        for file in files.difference(&known) {
+            let contact = recalibrate(
+                self.recording,
+                (self.places, tables),
+                fitted,
+                twin,
+                file,
+                self.bench.contact_offset_limit_mm,
+                &self.bench.left_out,
+            )?;
+            if let Some(contact) = contact {
+                test.retain(|press| !contact.used.contains(press));
+                fitted
+                    .contact_offset_mm
+                    .insert(contact.file, contact.contact_offset_mm);
+            }
+        }
+        Ok(test)
+    }
+
     /// The table of each place for the tip radius that was found.
     fn tables_at(&self, found: &BenchEstimate) -> Vec<DepthTable> {
         let (Some(radius), true) = (found.tip_radius_mm, self.tables.len() > 1) else {
