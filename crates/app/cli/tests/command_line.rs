@@ -43,6 +43,7 @@ fn help_on_each_command() {
         "align",
         "train",
         "evaluate",
+        "cross-validate",
         "predict",
         "report",
     ] {
