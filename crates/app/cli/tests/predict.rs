@@ -103,6 +103,43 @@ impl Files {
         twintac(&[&["predict", "--model", model.to_str().unwrap()], arguments].concat())
     }
 
+    /// A model is not judged on the presses that taught it.
+    fn refuse_what_taught(&self) {
+        let (model, run) = (self.model(), self.folder.path().join("run"));
+        let presses = run.join("recordings/presses.parquet");
+        let output = twintac(&[
+            "evaluate",
+            "--model",
+            model.to_str().unwrap(),
+            "--recordings",
+            presses.to_str().unwrap(),
+        ]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("10 of 10 presses taught this model"), "{said}");
+    }
+
+    /// Its run is judged for other seeds, each with presses of its own.
+    fn judge_again(&self) {
+        let run = self.folder.path().join("run");
+        let output = twintac(&[
+            "cross-validate",
+            "--run",
+            run.to_str().unwrap(),
+            "--seeds",
+            "2",
+            "--json",
+        ]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(found["provenance"], "emulated");
+        let row = &found["rows"][0];
+        assert_eq!(row["seeds"].as_array().unwrap().len(), 2);
+        assert!(row["twin"]["mean_percent"].as_f64().unwrap() > 0.0);
+        assert!(run.join("cross_validation/errors.png").exists());
+    }
+
     /// What is printed as JSON.
     fn predicted(&self, arguments: &[&str]) -> Value {
         let output = self.predict(&[arguments, &["--json"]].concat());
@@ -149,6 +186,8 @@ fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
 #[test]
 fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let files = Files::with_twin();
+    files.refuse_what_taught();
+    files.judge_again();
     let [path, protocol, ball] = [("path.toml", PATH), ("one.toml", ONE_PRESS), ("ball.toml", BALL)]
         .map(|(name, text)| files.write(name, text));
 
