@@ -309,3 +309,102 @@ fn a_twin_can_be_shared_between_threads() {
     shared::<Twin>();
     shared::<Model>();
 }
+
+#[test]
+fn another_sensor_is_met_with_its_gains_and_its_height() {
+    let mut truth = Truth::new();
+    truth.gains.gain = vec![0.8; 4];
+    let made = make(&truth, 21);
+    let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 1))
+        .remove(0)
+        .twin;
+    let factors = [1.2, 0.9, 1.1, 0.8];
+    let gains = truth.gains.gain.iter_mut().zip(factors);
+    gains.for_each(|(gain, factor)| *gain *= factor);
+    let center_mm = made.bench.contact_offset_elsewhere_mm;
+    let moved_mm = truth.offsets_mm.iter().sum::<f64>() / 2.0 + 0.06;
+    truth.offsets_mm = vec![moved_mm];
+    let other = truth.recording(21);
+    let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
+    let places = places.at_bench(&made.bench);
+    let tables = Formula.depth_tables(&places.requests).unwrap();
+    let adapted = |n_presses: usize| {
+        let pressed = (&places, &tables[..]);
+        adapt(
+            &other,
+            pressed,
+            &made.bench,
+            &twin,
+            n_presses,
+            0.3,
+            &BTreeSet::new(),
+        )
+        .unwrap()
+    };
+    let found = adapted(16).unwrap();
+    assert_eq!(found.used.len(), 16);
+    assert!(
+        (found.contact_offset_mm - center_mm - 0.06).abs() < 0.015,
+        "{found:?}"
+    );
+    for (found, factor) in found.gain_factors.iter().zip(factors) {
+        assert!((found / factor - 1.0).abs() < 0.03, "{found}, truly {factor}");
+    }
+    let (adapted_twin, bench) = found.apply(&twin, &made.bench);
+    let pairs = pair(&other, &places, &tables, &bench, &PairSettings::default()).unwrap();
+    let rest: Vec<usize> = (0..21).filter(|press| !found.used.contains(press)).collect();
+    let error = |twin: &Twin| {
+        let errors = evaluate(twin, &pairs, &rest, &made.scale, None).twin.overall;
+        errors.nearest_in_contact.percent
+    };
+    assert!(error(&adapted_twin) < 1.0 && error(&twin) > 5.0);
+    assert!(adapted(0).is_none() && adapted(21).is_none());
+}
+
+#[test]
+fn what_is_held_out_is_judged_by_what_teaches() {
+    let mut truth = Truth::new();
+    truth.gains.memory = vec![vec![0.2, 0.1]; 4];
+    let recording = truth.recording(21);
+    let places = Places::of(&recording, &Formula, &PlaceSettings::default()).unwrap();
+    let bench_settings = BenchSettings::default();
+    let tables: Vec<_> = bench_settings
+        .tip_radii_mm
+        .iter()
+        .map(|radius_mm| {
+            let requests = places.clone().with_tip_radius(Some(*radius_mm)).requests;
+            Formula.depth_tables(&requests).unwrap()
+        })
+        .collect();
+    let ports_mm = crate::synthetic::TAXELS_X_MM.map(|x| [x, 0.0]);
+    let bench = Bench {
+        recording: &recording,
+        places: &places,
+        tables: &tables,
+        bench: &bench_settings,
+        pair: &PairSettings::default(),
+        train: &settings(&[Variant::PressureMemory], 1),
+        ports_mm: &ports_mm,
+    };
+    for (by, n_folds, limit) in [
+        (HeldOut::Place, 1, 1.0),
+        (HeldOut::File, 2, 2.0),
+        (HeldOut::Taxel, 4, 3.0),
+    ] {
+        let folds = Fold::all(&recording, by, &SplitSettings::default(), &BTreeSet::new()).unwrap();
+        assert_eq!(folds.len(), n_folds);
+        for fold in &folds {
+            let found = judge(&bench, fold).unwrap();
+            let percent = found.twin.nearest_in_contact.percent;
+            assert!(
+                percent > 0.0 && percent < limit,
+                "by {by}, {}: {percent} %",
+                fold.held_out
+            );
+            assert_eq!(found.kernel.is_none(), by == HeldOut::Taxel);
+            // Of a file of which nothing teaches, three presses give the height.
+            let spent = if by == HeldOut::File { 3 } else { 0 };
+            assert_eq!(found.n_presses, fold.split.test.len() - spent);
+        }
+    }
+}

@@ -79,11 +79,12 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     }
     let tables = bench.tables_at(&found);
     let mut fitted = refine_bench(taught, places, &tables, &teachers, &found, &settings)?;
-    let pairs = pair(taught, places, &tables, &fitted, bench.pair)?;
-    let scale = Scale::of(
-        &pair(recording, places, &tables, &fitted, bench.pair)?,
-        left_out.clone(),
-    );
+    let whole = pair(recording, places, &tables, &fitted, bench.pair)?;
+    let scale = Scale::of(&whole, left_out.clone());
+    let pairs = match fold.taxel {
+        Some(_) => pair(taught, places, &tables, &fitted, bench.pair)?,
+        None => whole,
+    };
 
     let mut train_settings = bench.train.clone();
     if fold.taxel.is_some() {

@@ -30,7 +30,7 @@ pub struct Adaptation {
     pub used: Vec<usize>,
 }
 
-/// Fits one contact height, within `limit_mm` of the bench's median, and the gains of all taxels to the first `n_presses` presses that the
+/// Fits one contact height, within `limit_mm` of the bench's median, and the gains of all taxels to the first presses, `n_presses` at most, that the
 /// twin would feel at least half as much as the most, by least absolute deviations. Taxels in `left_out` do not count for the height. `None`
 /// without as many presses of prescribed pose, and some more to judge.
 ///

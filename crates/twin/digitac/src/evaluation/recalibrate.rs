@@ -2,7 +2,7 @@
 //!
 //! Contact heights differ from one mounting to the next by some hundredths of a millimetre. This changes readings by some percent, and no
 //! model can predict it. So the contact height of a file that the bench was not fitted to is fitted to its first presses, with the trained
-//! twin unchanged and by a rule that is fixed beforehand and looks at poses only: the first three that the twin would feel at least half as
+//! twin unchanged, by its physical part alone (a perceptron may take a wrong height for something it has learned to correct), and by a rule that is fixed beforehand and looks at poses only: the first three that the twin would feel at least half as
 //! much as the most. These presses are not scored.
 
 use std::collections::BTreeSet;
@@ -64,6 +64,7 @@ pub fn recalibrate(
         return Ok(None);
     }
     let used = felt(&of_file, &|index| along(index, bench), twin, left_out, N_PRESSES)?;
+    let physical = &twin.physics().gains;
     let deviation_kpa = |presses: &[usize], offset_mm: f64| -> Result<f64, DigitacError> {
         let mut bench = bench.clone();
         let height = Estimate {
@@ -78,7 +79,8 @@ pub fn recalibrate(
                 readings_kpa: &press.taxels_kpa,
                 valid: &press.valid,
             };
-            sum += sample.deviation_kpa(&twin.predict(&[&features])[0], left_out);
+            let predicted = physical.readings_kpa(&[&features]).swap_remove(0);
+            sum += sample.deviation_kpa(&predicted, left_out);
         }
         Ok(sum)
     };
