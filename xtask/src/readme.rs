@@ -82,7 +82,7 @@ fn check_options(root: &Path, command: &str) -> Result<()> {
     };
     let subcommands: Vec<&str> = arguments
         .split_whitespace()
-        .take_while(|word| word.chars().all(char::is_alphabetic))
+        .take_while(|word| word.starts_with(char::is_alphabetic) && !word.contains(['/', '.']))
         .collect();
     let asked = format!("{program} -- {} --help", subcommands.join(" "));
     let output = shell(root, &asked)
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn options_of_a_command_that_is_not_run_are_looked_up() {
         let error_of = |option: &str| {
-            let command = format!("bash -c 'echo its help names --known' -- go {option}");
+            let command = format!("bash -c 'test $1 = two-words && echo its help names --known' -- two-words {option}");
             let checked = check_options(Path::new("."), &command);
             checked.map_or_else(|error| format!("{error:#}"), |()| String::new())
         };
