@@ -179,7 +179,8 @@ mod tests {
     #[test]
     fn options_of_a_command_that_is_not_run_are_looked_up() {
         let error_of = |option: &str| {
-            let command = format!("bash -c 'test $1 = two-words && echo its help names --known' -- two-words {option}");
+            let command =
+                format!("bash -c 'test $1 = two-words && echo its help names --known' -- two-words {option}");
             let checked = check_options(Path::new("."), &command);
             checked.map_or_else(|error| format!("{error:#}"), |()| String::new())
         };

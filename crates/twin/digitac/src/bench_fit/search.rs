@@ -293,15 +293,7 @@ impl<'a> Fit<'a> {
         if self.has_history {
             follow_each_other(&self.recording.presses, &mut features);
         }
-        let is_static = features.iter().all(|features| features.n_frames() < 2);
-        let model = BarometerModel {
-            time_constants_s: if is_static {
-                Vec::new()
-            } else {
-                self.settings.time_constants_s.clone()
-            },
-            has_port_law: self.settings.port_law,
-        };
+        let model = BarometerModel::new(&features, &self.settings.time_constants_s, self.settings.port_law);
         let solve = |is_used: &dyn Fn(usize) -> bool, near: Option<&Solution>| {
             let fitted: Vec<Fitted<'_>> = self
                 .presses

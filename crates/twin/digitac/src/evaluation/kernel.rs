@@ -126,15 +126,7 @@ impl Fit {
                 is_used: true,
             })
             .collect();
-        let is_static = presses.iter().all(|press| press.features.n_frames() < 2);
-        let model = BarometerModel {
-            time_constants_s: if is_static {
-                Vec::new()
-            } else {
-                TIME_CONSTANTS_S.to_vec()
-            },
-            has_port_law: false,
-        };
+        let model = BarometerModel::new(&rested, &TIME_CONSTANTS_S, false);
         let series = Series::new(&fitted, ports_mm.len(), left_out);
         let problem = CurveProblem {
             curve: &curve,

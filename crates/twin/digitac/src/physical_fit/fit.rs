@@ -7,9 +7,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::{Elastic, Pressures, Series};
-use crate::DigitacError;
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
 use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, median, minimize_robust};
+use crate::{DigitacError, Features};
 
 /// Deviations below this share of the largest reading count quadratically, larger ones linearly.
 const CORNER: f64 = 2e-3;
@@ -35,6 +35,27 @@ pub(crate) struct BarometerModel {
     pub(crate) time_constants_s: Vec<f64>,
     /// Whether readings may grow otherwise than in proportion to the pressure.
     pub(crate) has_port_law: bool,
+}
+
+impl BarometerModel {
+    /// The model for readings of some presses. If each is a single frame, there is neither memory nor port law: a port's pressure then depends on its
+    /// distance alone, where a port law cannot be told from what the tip does otherwise than simulated.
+    pub(crate) fn new<'a>(
+        presses: impl IntoIterator<Item = &'a Features>,
+        time_constants_s: &[f64],
+        has_port_law: bool,
+    ) -> Self {
+        if presses.into_iter().all(|features| features.n_frames() < 2) {
+            return Self {
+                time_constants_s: Vec::new(),
+                has_port_law: false,
+            };
+        }
+        Self {
+            time_constants_s: time_constants_s.to_vec(),
+            has_port_law,
+        }
+    }
 }
 
 /// The result of a fit.

@@ -164,15 +164,13 @@ impl<'a> Parts<'a> {
         left_out: &BTreeSet<usize>,
         settings: &TrainSettings,
     ) -> Result<Gains, DigitacError> {
-        let is_static = self.presses.iter().all(|press| press.features.n_frames() < 2);
-        let model = BarometerModel {
-            time_constants_s: if variant.has_memory() && !is_static {
-                settings.time_constants_s.clone()
-            } else {
-                Vec::new()
-            },
-            has_port_law: settings.port_law,
+        let constants: &[f64] = if variant.has_memory() {
+            &settings.time_constants_s
+        } else {
+            &[]
         };
+        let every_press = self.presses.iter().map(|press| &press.features);
+        let model = BarometerModel::new(every_press, constants, settings.port_law);
         let teachers: BTreeSet<usize> = teachers.iter().copied().collect();
         let presses = in_order(self.presses.iter().map(|press| &press.mounting[..]));
         let fitted: Vec<Fitted<'_>> = presses
