@@ -1,7 +1,9 @@
 //! Elastic readings, and their gradient by the parameters.
 
 use super::perceptron::{self, PerceptronPass};
-use super::{Matrix, Parameters, Physics, Variant};
+use twintac_learn::Matrix;
+
+use super::{Parameters, Physics, Variant};
 
 /// Below this share of the largest reading, squared, the size of a frame's readings is rounded off to keep
 /// its slope finite.

@@ -4,7 +4,6 @@
 //! difference quotient. A framework for automatic differentiation would take a third of the processor time of the whole build.
 
 mod elastic;
-mod matrix;
 mod normalization;
 mod parameters;
 mod perceptron;
@@ -13,7 +12,6 @@ mod twin;
 mod variant;
 
 pub(crate) use elastic::{ElasticRows, Pass};
-pub(crate) use matrix::Matrix;
 pub(crate) use normalization::Normalization;
 pub(crate) use parameters::{Parameters, Weights};
 pub(crate) use physics::Physics;

@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 use rand::Rng;
 
 use super::perceptron::Layer;
-use super::{Matrix, Physics, Variant};
+use twintac_learn::Matrix;
+
+use super::{Physics, Variant};
 use crate::features::Gains;
 use crate::seed;
 
@@ -84,7 +86,7 @@ impl Parameters {
     }
 
     /// The arrays of numbers, in a fixed order.
-    pub(crate) fn arrays(&self) -> impl Iterator<Item = &Vec<f32>> {
+    pub(crate) fn arrays(&self) -> impl Iterator<Item = &Vec<f32>> + Clone {
         let layers = self
             .layers
             .iter()

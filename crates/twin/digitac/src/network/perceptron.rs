@@ -2,7 +2,7 @@
 
 use std::f32::consts::{PI, SQRT_2};
 
-use super::Matrix;
+use twintac_learn::Matrix;
 
 /// A layer: rows × weight + bias. Also holds the gradient of one.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::{Normalization, Variant};
 use crate::Features;
 use crate::features::Gains;
-use crate::network::Matrix;
+use twintac_learn::Matrix;
 
 /// Memory shares below this start here: at zero the gradient vanishes.
 const SMALLEST_MEMORY: f64 = 1e-3;

@@ -4,8 +4,9 @@ use rand::seq::SliceRandom;
 use twintac_random::RandomStream;
 
 use crate::features::{overstress_matrix, port_reading, port_slopes};
-use crate::network::{Matrix, Parameters, Pass, Physics};
+use crate::network::{Parameters, Pass, Physics};
 use crate::{Features, PairedPress, Variant, seed};
+use twintac_learn::Matrix;
 
 /// Presses side by side, padded to the longest.
 pub(crate) struct Batch {

@@ -1,6 +1,5 @@
 //! Training: which presses are used for training, validation and test, how the parameters of each variant are learned, and which variant is chosen.
 
-mod adamw;
 mod batch;
 mod held_out;
 mod settings;

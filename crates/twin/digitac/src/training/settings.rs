@@ -24,7 +24,7 @@ pub struct TrainSettings {
     pub patience: usize,
     /// Epochs without a better validation loss before training stops.
     pub stop_patience: usize,
-    /// Largest norm of a parameter's gradient.
+    /// Largest norm of the gradient, over all parameters together.
     pub gradient_norm: f64,
     /// AdamW's decay of weights: it pulls physical variants back to the fitted physics.
     pub weight_decay: f64,

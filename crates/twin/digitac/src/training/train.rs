@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
+use twintac_learn::{AdamW, AdamWSettings};
 
-use super::adamw::AdamW;
 use super::batch::{Batch, batches};
 use super::{Split, TrainSettings};
 use crate::bench_fit::in_order;
@@ -231,9 +231,11 @@ fn train_variant(
     let mut random = seed::stream(settings.seed, &format!("training/{variant}"));
     let mut parameters = Parameters::new(physics, settings.hidden(variant), settings.seed);
     let mut optimizer = AdamW::new(
-        &parameters,
-        settings.weight_decay as f32,
-        settings.gradient_norm as f32,
+        parameters.arrays(),
+        AdamWSettings {
+            weight_decay: settings.weight_decay as f32,
+            gradient_norm: settings.gradient_norm as f32,
+        },
     );
     let mut learning_rate = settings.learning_rate;
     let mut best_loss = mean_loss(&parameters, physics, &validation);
@@ -247,7 +249,7 @@ fn train_variant(
             let noise = (settings.noise(variant), &mut random);
             let (loss, gradient) = train[index].loss_and_gradient(&parameters, physics, noise);
             sum += f64::from(loss);
-            optimizer.step(learning_rate, &mut parameters, &gradient);
+            optimizer.step(learning_rate, parameters.arrays_mut(), gradient.arrays());
         }
         let loss = sum / train.len() as f64;
         let validation_loss = mean_loss(&parameters, physics, &validation);

@@ -12,33 +12,42 @@ const BLOCK: usize = 512;
 
 /// A matrix, stored row by row.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Matrix {
-    pub(crate) values: Vec<f32>,
-    pub(crate) n_columns: usize,
+pub struct Matrix {
+    /// `[n_rows * n_columns]`
+    pub values: Vec<f32>,
+    /// Length of a row.
+    pub n_columns: usize,
 }
 
 impl Matrix {
-    pub(crate) fn zeros(n_rows: usize, n_columns: usize) -> Self {
+    /// A matrix of zeros.
+    #[must_use]
+    pub fn zeros(n_rows: usize, n_columns: usize) -> Self {
         Self {
             values: vec![0.0; n_rows * n_columns],
             n_columns,
         }
     }
 
-    pub(crate) fn n_rows(&self) -> usize {
+    /// Number of rows.
+    #[must_use]
+    pub fn n_rows(&self) -> usize {
         self.values.len() / self.n_columns.max(1)
     }
 
-    pub(crate) fn rows(&self) -> impl Iterator<Item = &[f32]> {
+    /// The rows, from the first.
+    pub fn rows(&self) -> impl Iterator<Item = &[f32]> {
         self.values.chunks_exact(self.n_columns.max(1))
     }
 
-    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut [f32]> {
+    /// The same, to be changed.
+    pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [f32]> {
         self.values.chunks_exact_mut(self.n_columns.max(1))
     }
 
     /// Sum of each column, from the first row to the last.
-    pub(crate) fn column_sums(&self) -> Vec<f32> {
+    #[must_use]
+    pub fn column_sums(&self) -> Vec<f32> {
         let mut sums = vec![0.0; self.n_columns];
         for row in self.rows() {
             sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += value);
@@ -46,7 +55,9 @@ impl Matrix {
         sums
     }
 
-    pub(crate) fn transposed(&self) -> Self {
+    /// The transposed matrix.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
         let (n_rows, n_columns) = (self.n_rows(), self.n_columns);
         let values = (0..n_columns).flat_map(|j| (0..n_rows).map(move |i| self.values[i * n_columns + j]));
         Self {
@@ -57,12 +68,13 @@ impl Matrix {
 
     /// The product of two matrices. Its sums always run in the same order, in fused multiplications and additions, so that every
     /// processor gives the same bits.
-    pub(crate) fn times(&self, right: &Self) -> Self {
+    #[must_use]
+    pub fn times(&self, right: &Self) -> Self {
         self.product(self.n_rows(), [self.n_columns, 1], right)
     }
 
     /// Writes the product of two matrices into a third, whose rows are made as many. Each row of it has the same bits however many there are.
-    pub(crate) fn times_into(&self, right: &Self, result: &mut Self) {
+    pub fn times_into(&self, right: &Self, result: &mut Self) {
         result.values.clear();
         result.values.resize(self.n_rows() * right.n_columns, 0.0);
         result.n_columns = right.n_columns;
@@ -70,7 +82,8 @@ impl Matrix {
     }
 
     /// The product of the transposed matrix and another.
-    pub(crate) fn transposed_times(&self, right: &Self) -> Self {
+    #[must_use]
+    pub fn transposed_times(&self, right: &Self) -> Self {
         self.product(self.n_columns, [1, self.n_columns], right)
     }
 

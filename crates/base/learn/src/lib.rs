@@ -1,0 +1,9 @@
+//! What small networks are trained with: matrices of single precision, and the optimizer AdamW.
+//!
+//! Networks of this project are small and of a fixed structure. Their gradients are written by hand, and tested against differences.
+
+mod adamw;
+mod matrix;
+
+pub use adamw::{AdamW, AdamWSettings};
+pub use matrix::Matrix;

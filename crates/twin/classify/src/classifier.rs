@@ -1,0 +1,246 @@
+//! A trained classifier.
+
+use rand::seq::SliceRandom;
+use twintac_learn::{AdamW, AdamWSettings, Matrix};
+use twintac_random::{RandomStream, normal, stream};
+
+use crate::network::Network;
+use crate::series::N_SAMPLES;
+use crate::{ClassifyError, Confusion, Series, TrainSettings, Trial};
+
+/// Part of the steps over which the learning rate rises.
+const RISE: f64 = 0.1;
+
+/// Tells the shape of a press from what the taxels read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Classifier {
+    network: Network,
+    scale: Scale,
+    n_classes: usize,
+}
+
+/// How training goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Passes over the trials that are done.
+    pub epoch: usize,
+    /// How many there will be.
+    pub of: usize,
+    /// Mean cross-entropy over the last pass.
+    pub loss: f64,
+}
+
+/// Brings the largest reading to unit deviation, on a logarithmic scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Scale {
+    mean: f32,
+    per_deviation: f32,
+}
+
+impl Classifier {
+    /// Trains on trials of so many classes. The same trials in the same order with the same seed give the same classifier, to the last bit.
+    ///
+    /// # Errors
+    /// No trials; trials of different sensors or of a class that there is not; settings that make no sense.
+    pub fn train(
+        trials: &[Trial],
+        n_classes: usize,
+        settings: &TrainSettings,
+        seed: u64,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Self, ClassifyError> {
+        settings.check()?;
+        let first = trials.first().ok_or(ClassifyError::NoTrials)?;
+        for trial in trials {
+            let (expected, found) = (first.series.n_taxels(), trial.series.n_taxels());
+            if found != expected {
+                return Err(ClassifyError::Taxels { expected, found });
+            }
+            if trial.class >= n_classes {
+                let class = trial.class;
+                return Err(ClassifyError::Class { class, n_classes });
+            }
+        }
+        let mut random = stream(seed, "classify/training");
+        let n_inputs = first.series.n_taxels() + 1;
+        let mut weights = stream(seed, "classify/weights");
+        let network = Network::new(n_inputs, n_classes, settings, &mut weights);
+        let scale = Scale::of(trials);
+        let mut classifier = Self {
+            network,
+            scale,
+            n_classes,
+        };
+        let optimizer = AdamWSettings {
+            weight_decay: settings.weight_decay as f32,
+            gradient_norm: settings.gradient_norm as f32,
+        };
+        let mut optimizer = AdamW::new(classifier.network.arrays(), optimizer);
+        let steps_of_epoch = trials.len().div_ceil(settings.batch);
+        let epochs = settings.epochs.max(settings.least_steps.div_ceil(steps_of_epoch));
+        let n_steps = epochs * steps_of_epoch;
+        let mut step = 0;
+        let mut order: Vec<usize> = (0..trials.len()).collect();
+        for epoch in 0..epochs {
+            order.shuffle(&mut random);
+            let mut sum = 0.0;
+            for batch in order.chunks(settings.batch) {
+                let mut input = Matrix::zeros(0, n_inputs);
+                let mut classes = Vec::with_capacity(batch.len());
+                for &index in batch {
+                    classifier.disturbed(&trials[index].series, settings, &mut random, &mut input.values);
+                    classes.push(trials[index].class);
+                }
+                let (loss, slopes) = classifier.network.loss_and_slopes(&input, &classes);
+                sum += f64::from(loss) * batch.len() as f64;
+                let rate = settings.learning_rate * schedule(step as f64 / n_steps as f64);
+                optimizer.step(rate, classifier.network.arrays_mut(), slopes.arrays());
+                step += 1;
+            }
+            progress(Progress {
+                epoch: epoch + 1,
+                of: epochs,
+                loss: sum / trials.len() as f64,
+            });
+        }
+        Ok(classifier)
+    }
+
+    /// The class of a press.
+    #[must_use]
+    pub fn classify(&self, series: &Series) -> usize {
+        let mut input = Matrix::zeros(0, series.n_taxels() + 1);
+        self.put(series, &mut input.values);
+        let scores = self.network.scores(&input).values;
+        let classes = scores.iter().enumerate();
+        classes
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .map_or(0, |(class, _)| class)
+    }
+
+    /// Which classes trials are taken for.
+    #[must_use]
+    pub fn judge(&self, trials: &[Trial]) -> Confusion {
+        let mut confusion = Confusion::new(self.n_classes);
+        for trial in trials {
+            confusion.count(trial.class, self.classify(&trial.series));
+        }
+        confusion
+    }
+
+    /// Appends the inputs of a series.
+    fn put(&self, series: &Series, to: &mut Vec<f32>) {
+        let largest = (series.largest_kpa.ln() - self.scale.mean) * self.scale.per_deviation;
+        for row in &series.shares {
+            to.extend(row.iter().copied().chain([largest]));
+        }
+    }
+
+    /// The same of a sensor whose gains are a little different, with noise.
+    fn disturbed(
+        &self,
+        series: &Series,
+        settings: &TrainSettings,
+        random: &mut RandomStream,
+        to: &mut Vec<f32>,
+    ) {
+        let first = to.len();
+        self.put(series, to);
+        let n_taxels = series.n_taxels();
+        let mut noise = |deviation: f64| normal(random, deviation) as f32;
+        let gains: Vec<f32> = (0..n_taxels).map(|_| 1.0 + noise(settings.gain_noise)).collect();
+        for row in to[first..].chunks_exact_mut(n_taxels + 1) {
+            for (share, gain) in row.iter_mut().zip(&gains) {
+                *share = *share * gain + noise(settings.sample_noise);
+            }
+        }
+        debug_assert_eq!(to.len() - first, N_SAMPLES * (n_taxels + 1));
+    }
+}
+
+impl Scale {
+    fn of(trials: &[Trial]) -> Self {
+        let n = trials.len() as f32;
+        let logarithm = |trial: &Trial| trial.series.largest_kpa.ln();
+        let mean = trials.iter().map(logarithm).sum::<f32>() / n;
+        let square: f32 = trials.iter().map(|trial| (logarithm(trial) - mean).powi(2)).sum();
+        Self {
+            mean,
+            per_deviation: (square / n).sqrt().max(1e-3).recip(),
+        }
+    }
+}
+
+/// The learning rate over its largest, at a part of the steps.
+fn schedule(part: f64) -> f64 {
+    if part < RISE {
+        return part / RISE;
+    }
+    0.5 * (1.0 + (std::f64::consts::PI * (part - RISE) / (1.0 - RISE)).cos())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::Rng;
+
+    /// Presses whose class is which of two taxels rises first, and not how much they read.
+    fn trials(n: usize, seed: u64) -> Vec<Trial> {
+        let mut random = stream(seed, "trials");
+        (0..n)
+            .map(|index| {
+                let class = index % 2;
+                let peaks: [f64; 2] = [(); 2].map(|()| random.random_range(5.0..50.0));
+                let delay_s = random.random_range(0.15..0.3);
+                let read = |time_s: f64, taxel: usize| {
+                    let start_s = if taxel == class { 0.1 } else { 0.1 + delay_s };
+                    peaks[taxel] * ((time_s - start_s) / 0.5).clamp(0.0, 1.0)
+                };
+                let frame = |i: usize| (0..2).map(|taxel| read(i as f64 / 55.0, taxel)).collect();
+                let series = Series::of(&(0..55).map(frame).collect::<Vec<_>>()).unwrap();
+                Trial { class, series }
+            })
+            .collect()
+    }
+
+    fn train(trials: &[Trial]) -> Classifier {
+        let settings = TrainSettings {
+            width: 16,
+            hidden: 32,
+            epochs: 30,
+            least_steps: 200,
+            ..TrainSettings::default()
+        };
+        Classifier::train(trials, 2, &settings, 1, &mut |_| ()).unwrap()
+    }
+
+    #[test]
+    fn order_in_time_is_learned() {
+        let classifier = train(&trials(60, 1));
+        let found = classifier.judge(&trials(100, 2));
+        assert!(found.accuracy_percent() > 95.0, "{found:?}");
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_classifier() {
+        let trials = trials(20, 1);
+        assert_eq!(train(&trials), train(&trials));
+    }
+
+    #[test]
+    fn what_cannot_be_learned_is_an_error() {
+        let settings = TrainSettings::default();
+        let error = |trials: &[Trial], settings: &TrainSettings| {
+            Classifier::train(trials, 1, settings, 1, &mut |_| ())
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(error(&[], &settings).contains("no trials"));
+        assert!(error(&trials(2, 1), &settings).contains("class 1"));
+        let settings = TrainSettings {
+            n_heads: 5,
+            ..settings
+        };
+        assert!(error(&trials(2, 1), &settings).contains("n_heads is 5"));
+    }
+}

@@ -1,0 +1,60 @@
+//! A linear map with an offset.
+
+use twintac_learn::Matrix;
+use twintac_random::{RandomStream, normal};
+
+/// `y = x w + b`
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Linear {
+    /// `[n_inputs][n_outputs]`
+    weight: Matrix,
+    /// `[n_outputs]`
+    bias: Vec<f32>,
+}
+
+impl Linear {
+    /// Random weights that keep the size of what goes through, and no offset.
+    pub(super) fn new(n_inputs: usize, n_outputs: usize, random: &mut RandomStream) -> Self {
+        let mut weight = Matrix::zeros(n_inputs, n_outputs);
+        let deviation = (n_inputs as f64).sqrt().recip();
+        for value in &mut weight.values {
+            *value = normal(random, deviation) as f32;
+        }
+        Self {
+            weight,
+            bias: vec![0.0; n_outputs],
+        }
+    }
+
+    pub(super) fn forward(&self, input: &Matrix) -> Matrix {
+        let mut output = input.times(&self.weight);
+        for row in output.rows_mut() {
+            row.iter_mut()
+                .zip(&self.bias)
+                .for_each(|(value, bias)| *value += bias);
+        }
+        output
+    }
+
+    /// The slope of the input; adds those of the parameters to `slopes`.
+    pub(super) fn backward(&self, input: &Matrix, output_slope: &Matrix, slopes: &mut Self) -> Matrix {
+        add(
+            &mut slopes.weight.values,
+            &input.transposed_times(output_slope).values,
+        );
+        add(&mut slopes.bias, &output_slope.column_sums());
+        output_slope.times(&self.weight.transposed())
+    }
+
+    pub(super) fn arrays(&self) -> [&Vec<f32>; 2] {
+        [&self.weight.values, &self.bias]
+    }
+
+    pub(super) fn arrays_mut(&mut self) -> [&mut Vec<f32>; 2] {
+        [&mut self.weight.values, &mut self.bias]
+    }
+}
+
+pub(super) fn add(to: &mut [f32], values: &[f32]) {
+    to.iter_mut().zip(values).for_each(|(to, value)| *to += value);
+}
