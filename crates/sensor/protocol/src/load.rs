@@ -59,9 +59,9 @@ impl Load {
             Err(document.error(&format!("{within}{field}"), problem, hint))
         };
         let smallest = [
-            ("force_n", self.force_n, 1e-6),
-            ("rest_s", Range::Fixed(self.rest_s), 0.1),
-            ("hold_s", Range::Fixed(self.hold_s), 0.1),
+            ("force_n", &self.force_n, 1e-6),
+            ("rest_s", &Range::Fixed(self.rest_s), 0.1),
+            ("hold_s", &Range::Fixed(self.hold_s), 0.1),
         ];
         for (field, range, least) in smallest {
             if let Some((problem, hint)) = range.problem(least) {

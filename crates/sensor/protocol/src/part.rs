@@ -59,12 +59,12 @@ impl Part {
             Err(document.error(&format!("{within}{field}"), problem, hint))
         };
         let smallest = [
-            ("depth_mm", self.depth_mm, 1e-3),
-            ("speed_mm_per_s", self.speed_mm_per_s, 1e-3),
-            ("hold_s", self.hold_s, 0.0),
-            ("spin_rad", self.spin_rad, f64::NEG_INFINITY),
-            ("tilt_rad", self.tilt_rad, 0.0),
-            ("clearance_mm", Range::Fixed(self.clearance_mm), 0.0),
+            ("depth_mm", &self.depth_mm, 1e-3),
+            ("speed_mm_per_s", &self.speed_mm_per_s, 1e-3),
+            ("hold_s", &self.hold_s, 0.0),
+            ("spin_rad", &self.spin_rad, f64::NEG_INFINITY),
+            ("tilt_rad", &self.tilt_rad, 0.0),
+            ("clearance_mm", &Range::Fixed(self.clearance_mm), 0.0),
         ];
         for (field, range, least) in smallest {
             if let Some((problem, hint)) = range.problem(least) {

@@ -99,6 +99,8 @@ mod tests {
 
     const DEMO: &str = include_str!("../../../../protocols/demo.toml");
     const CHARACTERIZE: &str = include_str!("../../../../protocols/characterize.toml");
+    const PAPER: &str = include_str!("../../../../protocols/paper.toml");
+    const SHAPES: &str = include_str!("../../../../protocols/shapes.toml");
     const REAL_TO_SIM: &str = include_str!("../../../../protocols/real2sim.toml");
 
     fn known() -> Target {
@@ -120,7 +122,12 @@ mod tests {
 
     #[test]
     fn shipped_protocols_are_valid_and_stay_within_their_ranges() {
-        for (file, text) in [("demo.toml", DEMO), ("real2sim.toml", REAL_TO_SIM)] {
+        for (file, text) in [
+            ("demo.toml", DEMO),
+            ("paper.toml", PAPER),
+            ("shapes.toml", SHAPES),
+            ("real2sim.toml", REAL_TO_SIM),
+        ] {
             let protocol = Protocol::parse(file, text).unwrap();
             for part in &protocol.parts {
                 let [shallow, deep] = part.depth_mm.ends();
@@ -135,6 +142,21 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_value_may_be_one_of_a_few() {
+        let plans = Protocol::parse("paper.toml", PAPER)
+            .unwrap()
+            .plan(&known(), 1)
+            .unwrap();
+        let mut speeds: Vec<f64> = plans.iter().map(|plan| plan.speed_mm_per_s).collect();
+        speeds.sort_by(f64::total_cmp);
+        speeds.dedup();
+        assert_eq!(speeds, [1.0, 2.0, 5.0]);
+        let nothing = PAPER.replace("[1.0, 2.0, 5.0]", "[]");
+        let error = Protocol::parse("paper.toml", &nothing).unwrap_err().to_string();
+        assert!(error.contains("speed_mm_per_s` is one of nothing"), "{error}");
     }
 
     #[test]

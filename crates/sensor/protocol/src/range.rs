@@ -1,17 +1,27 @@
-//! A number, or a range to draw it from.
+//! A number, a range to draw it from, or a few to choose from.
 
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use twintac_random::RandomStream;
 
-/// One number, or two between which a press's value is drawn evenly.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "expected a number or [from, to]")]
+/// One number, two between which a press's value is drawn evenly, or a few of which one is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "expected a number, [from, to] or { one_of = [...] }")]
 pub enum Range {
     /// Always the same.
     Fixed(f64),
     /// Drawn between the two.
     Between([f64; 2]),
+    /// One of them, each as likely as the next.
+    OneOf(OneOf),
+}
+
+/// A few numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OneOf {
+    /// The numbers; one or more.
+    one_of: Vec<f64>,
 }
 
 impl Default for Range {
@@ -22,20 +32,34 @@ impl Default for Range {
 
 impl Range {
     pub(crate) fn ends(&self) -> [f64; 2] {
-        match *self {
-            Self::Fixed(value) => [value, value],
-            Self::Between(ends) => ends,
+        match self {
+            Self::Fixed(value) => [*value, *value],
+            Self::Between(ends) => *ends,
+            Self::OneOf(OneOf { one_of }) => [
+                one_of.iter().copied().fold(f64::INFINITY, f64::min),
+                one_of.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            ],
         }
     }
 
     pub(crate) fn draw(&self, random: &mut RandomStream) -> f64 {
         let [low, high] = self.ends();
-        low + (high - low) * random.random::<f64>()
+        let share = random.random::<f64>();
+        match self {
+            Self::OneOf(OneOf { one_of }) => one_of[(share * one_of.len() as f64) as usize],
+            _ => low + (high - low) * share,
+        }
     }
 
     /// What is wrong with it if nothing may be less than `least`: the problem and a hint.
     pub(crate) fn problem(&self, least: f64) -> Option<(String, String)> {
         let [low, high] = self.ends();
+        if matches!(self, Self::OneOf(OneOf { one_of }) if one_of.is_empty()) {
+            return Some((
+                "is one of nothing".to_owned(),
+                "give one number or more".to_owned(),
+            ));
+        }
         if low > high {
             return Some((
                 format!("runs from {low} to {high}"),
