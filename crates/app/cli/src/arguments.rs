@@ -95,11 +95,27 @@ pub(crate) struct Recorded {
 
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    #[command(flatten)]
-    pub(crate) recorded: Recorded,
-    /// Folder of the run [default: runs/<sensor>].
+    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: about two hours.
+    #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
+    pub(crate) paper: bool,
+    /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
+    #[arg(long, requires = "paper")]
+    pub(crate) quick: bool,
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE", required_unless_present = "paper")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Recordings: CSV files or patterns like 'data/*.csv'.
+    #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "paper")]
+    pub(crate) recordings: Vec<String>,
+    /// How to read the recordings (TOML) [default: the file that the sensor description names].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Folder of the run [default: runs/<sensor>, or runs/paper].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Print the figures of --paper as JSON.
+    #[arg(long, requires = "paper")]
+    pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) start: Start,
 }

@@ -70,8 +70,8 @@ impl Files {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
         let reality = fs::read_to_string(root.join("realities/default.toml")).unwrap();
         let coarse = reality
-            .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
-            .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
+            .replace("edges_per_height = 7.0", "edges_per_height = 4.0")
+            .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 2.0");
         assert_ne!(coarse, reality);
         let [reality, protocol, settings] = [
             ("reality.toml", &*coarse),

@@ -22,6 +22,30 @@ pub(crate) const DEMO_PROTOCOL: BuiltIn = BuiltIn {
     text: include_str!("../built_in/demo.toml"),
 };
 
+/// The protocol of the paper's data.
+pub(crate) const PAPER_PROTOCOL: BuiltIn = BuiltIn {
+    name: "protocols/paper.toml",
+    text: include_str!("../built_in/paper.toml"),
+};
+
+/// The protocol of the trials that shapes are told by.
+pub(crate) const SHAPES_PROTOCOL: BuiltIn = BuiltIn {
+    name: "protocols/shapes.toml",
+    text: include_str!("../built_in/shapes.toml"),
+};
+
+/// The protocol of the paper's pressure maps.
+pub(crate) const MAPS_PROTOCOL: BuiltIn = BuiltIn {
+    name: "protocols/maps.toml",
+    text: include_str!("../built_in/maps.toml"),
+};
+
+/// The protocol that a sensor is characterized with.
+pub(crate) const CHARACTERIZE_PROTOCOL: BuiltIn = BuiltIn {
+    name: "protocols/characterize.toml",
+    text: include_str!("../built_in/characterize.toml"),
+};
+
 /// The imperfections of the emulated bench, from a file or without one.
 pub(crate) const REALITY: BuiltIn = BuiltIn {
     name: "realities/default.toml",
@@ -96,7 +120,15 @@ mod tests {
     #[test]
     fn what_is_built_in_is_what_people_edit() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-        for built_in in REALITIES.into_iter().chain([DEMO_PROTOCOL, LAB_RIG]) {
+        let others = [
+            DEMO_PROTOCOL,
+            PAPER_PROTOCOL,
+            SHAPES_PROTOCOL,
+            MAPS_PROTOCOL,
+            CHARACTERIZE_PROTOCOL,
+            LAB_RIG,
+        ];
+        for built_in in REALITIES.into_iter().chain(others) {
             let edited = std::fs::read_to_string(root.join(built_in.name)).unwrap();
             assert_eq!(built_in.text, edited, "{}", built_in.name);
         }

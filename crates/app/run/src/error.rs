@@ -104,6 +104,9 @@ pub enum RunError {
     /// A material could not be fitted.
     #[error(transparent)]
     Calibrate(#[from] twintac_calibrate::CalibrateError),
+    /// Shapes cannot be learned.
+    #[error(transparent)]
+    Classify(#[from] twintac_classify::ClassifyError),
     /// A twin could not be made or judged.
     #[error(transparent)]
     Twin(#[from] digitac::DigitacError),

@@ -55,6 +55,7 @@ mod files;
 pub mod mesh;
 mod metrics;
 mod model;
+pub mod paper;
 mod predict;
 mod press_checksum;
 mod progress;

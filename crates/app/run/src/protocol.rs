@@ -36,7 +36,10 @@ impl Planned {
     /// # Errors
     /// Those of [`read`](Self::read).
     pub fn parse(file: &str, text: &str, sensor: &Sensor, seed: u64) -> Result<Self, RunError> {
-        let protocol = Protocol::parse(file, text)?;
+        Self::of(&Protocol::parse(file, text)?, sensor, seed)
+    }
+
+    pub(crate) fn of(protocol: &Protocol, sensor: &Sensor, seed: u64) -> Result<Self, RunError> {
         let target = target(sensor);
         Ok(Self {
             presses: protocol.plan(&target, seed)?,

@@ -116,7 +116,7 @@ fn descriptions_have_units_and_mark_what_is_inferred() {
     };
     assert!(line("gel").contains("34 × 18 × 8.5 mm *"), "{text}");
     assert!(
-        line("shell").contains("1 mm beside the gel, 8.5 mm * high"),
+        line("shell").contains("1 mm beside the gel, 3 mm * high"),
         "{text}"
     );
     assert!(

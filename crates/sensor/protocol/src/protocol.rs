@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use twintac_config::ConfigError;
 
-use crate::{Load, LoadPlan, Part, PlanError, PressPlan, Target};
+use crate::{Load, LoadPlan, Part, Places, PlanError, PressPlan, Target};
 
 /// What is pressed, and what is put on the gel.
 ///
@@ -72,6 +72,17 @@ impl Protocol {
         Ok(document.value)
     }
 
+    /// The same with so many presses of each indenter, in parts whose places are drawn.
+    #[must_use]
+    pub fn with_random_places(mut self, n_places: u32) -> Self {
+        for part in &mut self.parts {
+            if let Places::Random { count, .. } = &mut part.places {
+                *count = n_places;
+            }
+        }
+        self
+    }
+
     /// The presses on a sensor: for each part and each indenter, the whole list of places as often as it is repeated.
     ///
     /// # Errors
@@ -94,8 +105,8 @@ impl Protocol {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Indenters;
     use crate::target::AllWord;
-    use crate::{Indenters, Places};
 
     const DEMO: &str = include_str!("../../../../protocols/demo.toml");
     const CHARACTERIZE: &str = include_str!("../../../../protocols/characterize.toml");

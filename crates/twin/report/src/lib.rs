@@ -6,7 +6,7 @@
 mod sections;
 mod twin_report;
 
-pub use sections::{page, warp_plot};
+pub use sections::{page, pressure_maps, warp_plot};
 pub use twin_report::{Making, StageTime, TrainedVariant, TwinReport};
 
 /// The twin's error that the TwinTac paper reports: mean absolute error over the largest contact pressure, %.

@@ -8,6 +8,7 @@ mod export;
 mod files;
 mod follow;
 mod mesh;
+mod paper;
 mod predict;
 mod record;
 mod reproduce;

@@ -11,7 +11,15 @@ use crate::caller::caller;
 
 /// Runs every stage on recordings.
 pub(crate) fn run(arguments: &Reproduce) -> Result<()> {
-    let run = start(&arguments.recorded, &arguments.start, arguments.out.as_deref())?;
+    let Some(sensor) = &arguments.sensor else {
+        return super::paper::run(arguments);
+    };
+    let recorded = Recorded {
+        sensor: sensor.clone(),
+        recordings: arguments.recordings.clone(),
+        import: arguments.import.clone(),
+    };
+    let run = start(&recorded, &arguments.start, arguments.out.as_deref())?;
     super::stages::finish(&run)
 }
 

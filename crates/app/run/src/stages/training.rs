@@ -1,6 +1,6 @@
 //! Stage `training`: every variant of the twin, the one that validation presses choose, and that one again on all presses.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use digitac::{
     Epoch, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split, TrainSettings, Trained, Variant,
@@ -13,6 +13,9 @@ use crate::files::write_json;
 use crate::press_checksum::press_checksum;
 use crate::progress::Work;
 use crate::{Run, RunError};
+
+/// Stage that has the paper's twin.
+const PAPER_TWIN: &str = "paper-twin";
 
 /// How each variant did: `variants.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -67,6 +70,30 @@ impl Run {
             training.keep(complete, everything, &folder.join("complete"))
         })?;
         self.publish_model()
+    }
+
+    /// Trains the paper's twin on all presses, test presses too: its stress feature through its perceptron.
+    pub(crate) fn train_paper_twin(&self) -> Result<(), RunError> {
+        let inputs = self.inputs().stage(&self.stage("training"))?;
+        self.run_stage(PAPER_TWIN, inputs, |folder| {
+            let training = Training::open(self)?;
+            let work = Work::start(self.progress(), "training", training.settings.epochs);
+            let mut everything = training.simulation.split.clone();
+            everything.train.append(&mut everything.test);
+            everything.train.sort_unstable();
+            let settings = TrainSettings {
+                variants: vec![Variant::Paper],
+                ..training.settings.clone()
+            };
+            let trained = training.train(&everything, &settings, &work)?;
+            let paper = trained.first().ok_or_else(nothing_trained)?;
+            training.keep(paper, everything, folder)
+        })
+    }
+
+    /// The folder of the paper's twin of all presses.
+    pub(crate) fn paper_twin_folder(&self) -> PathBuf {
+        self.stage(PAPER_TWIN)
     }
 
     /// Puts the twin of all presses where people look for it.

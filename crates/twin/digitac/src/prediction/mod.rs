@@ -7,5 +7,5 @@ mod state;
 mod tests;
 
 pub use at_place::TwinAtPlace;
-pub use planned::{Prediction, at_place, predict};
+pub use planned::{Prediction, at_place, predict, simulated_recording};
 pub use state::TwinState;

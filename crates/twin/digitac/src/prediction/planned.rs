@@ -73,6 +73,37 @@ pub fn predict(
     Ok(plans.iter().zip(along).map(predict).collect())
 }
 
+/// The same as a recording, for whatever learns from recordings: readings are the twin's, and what was not simulated counts as unusable.
+///
+/// # Errors
+/// Those of [`predict`].
+pub fn simulated_recording(
+    twin: &Twin,
+    bench: &BenchEstimate,
+    source: &dyn DepthTableSource,
+    plans: &[PressPlan],
+    rate_hz: f64,
+) -> Result<Recording, DigitacError> {
+    let n_taxels = twin.taxels().len();
+    let predictions = predict(twin, bench, source, plans, rate_hz)?;
+    let press = |(plan, predicted): (&PressPlan, Prediction)| {
+        let untouched = made(plan, &plan.trajectory(rate_hz), source, n_taxels)?;
+        let usable = predicted
+            .simulated
+            .iter()
+            .map(|simulated| vec![*simulated; n_taxels]);
+        Ok(Press {
+            force_n: Some(predicted.force_n),
+            valid: usable.collect(),
+            taxels_raw: predicted.readings_kpa.clone(),
+            taxels_kpa: predicted.readings_kpa,
+            ..untouched
+        })
+    };
+    let presses = plans.iter().zip(predictions).map(press);
+    Ok(recording(twin, presses.collect::<Result<_, DigitacError>>()?))
+}
+
 /// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
 /// it was found.
 ///

@@ -29,27 +29,45 @@ fn peak(label: &str, press: &PressEvaluation, sensor: &Sensor) -> Option<HeatMap
     let total = |frame: &usize| press.measured_kpa[*frame].iter().sum::<f64>();
     let frames = (0..press.time_s.len()).filter(|frame| total(frame).is_finite());
     let frame = frames.max_by(|a, b| total(a).total_cmp(&total(b)))?;
+    let (measured, predicted) = (&press.measured_kpa[frame], &press.predicted_kpa[frame]);
+    let depth_mm = fixed(press.depth_mm[frame], 2);
+    let title = format!("{label}: {}, {depth_mm} mm deep", press.name);
+    pressure_maps(
+        sensor,
+        title,
+        &[("sensor", measured), ("twin", predicted)],
+        Some((press.place_mm, MARK_MM)),
+    )
+}
+
+/// Maps of readings above the baseline, each with its name, in one colour scale. `circle_mm` is the centre and radius of a circle to mark. `None` if they
+/// cannot be drawn: two taxels at one place.
+#[must_use]
+pub fn pressure_maps(
+    sensor: &Sensor,
+    title: String,
+    readings_kpa: &[(&str, &[f64])],
+    circle_mm: Option<([f64; 2], f64)>,
+) -> Option<HeatMaps> {
     let taxels_mm = taxels_mm(sensor);
     let (rectangle, baseline) = (window(sensor), vec![0.0; taxels_mm.len()]);
     let settings = settings(rectangle, &taxels_mm);
-    let map = |name: &str, readings: &[f64]| {
+    let map = |(name, readings): &(&str, &[f64])| {
         let map = pressure_map(&taxels_mm, readings, &baseline, rectangle, &settings).ok()?;
         Some(HeatMap {
-            name: name.into(),
+            name: (*name).into(),
             min_mm: rectangle.min_mm,
             max_mm: rectangle.max_mm,
             grid: map.grid,
             values: map.pressure_kpa,
         })
     };
-    let (measured, predicted) = (&press.measured_kpa[frame], &press.predicted_kpa[frame]);
-    let depth_mm = fixed(press.depth_mm[frame], 2);
     Some(HeatMaps {
-        title: format!("{label}: {}, {depth_mm} mm deep", press.name),
-        maps: vec![map("sensor", measured)?, map("twin", predicted)?],
+        title,
+        maps: readings_kpa.iter().map(map).collect::<Option<_>>()?,
         unit: "kPa".into(),
         marks_mm: taxels_mm,
-        circle_mm: Some((press.place_mm, MARK_MM)),
+        circle_mm,
     })
 }
 

@@ -22,6 +22,7 @@ use parts::badge;
 use crate::TwinReport;
 
 pub use alignment::warp_plot;
+pub use maps::pressure_maps;
 
 /// The whole page; parts without data are left out.
 #[must_use]
