@@ -72,7 +72,7 @@ impl TrainSettings {
                 });
             }
         }
-        if self.width % self.n_heads != 0 {
+        if !self.width.is_multiple_of(self.n_heads) {
             return Err(ClassifyError::Setting {
                 setting: "n_heads",
                 expected: "a divisor of the width",

@@ -6,7 +6,7 @@ use digitac::{Model, simulated_recording};
 use serde::{Deserialize, Serialize};
 use twintac_recording::{Press, Recording};
 
-use super::Paper;
+use super::experiments::Paper;
 use crate::built_in::{MAPS_PROTOCOL, reality};
 use crate::depth_tables::DepthTableStore;
 use crate::files::{read_json, write_json};

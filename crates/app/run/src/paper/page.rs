@@ -6,7 +6,9 @@ use twintac_recording::Provenance;
 use twintac_report::pressure_maps;
 use twintac_sensor::Sensor;
 
-use super::{Effort, PaperMetrics, ShapesResult, Simulated};
+use super::effort::Effort;
+use super::metrics::PaperMetrics;
+use super::shapes::{ShapesResult, Simulated};
 
 /// The twin's error that the paper reports, %.
 const PAPER_ERROR_PERCENT: f64 = 5.95;

@@ -11,7 +11,7 @@ use twintac_protocol::Protocol;
 use twintac_random::stream;
 use twintac_recording::Recording;
 
-use super::Paper;
+use super::experiments::Paper;
 use crate::built_in::{SHAPES_PROTOCOL, reality};
 use crate::depth_tables::DepthTableStore;
 use crate::files::{read_json, write_json};
