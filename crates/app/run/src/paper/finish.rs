@@ -14,6 +14,7 @@ impl Paper {
     pub fn finish(&self) -> Result<PaperMetrics, RunError> {
         let data = self.data()?;
         let twin = data.evaluate()?;
+        self.pairs(&data)?;
         let maps = self.maps(&data)?;
         let sensor = self.characterize()?;
         self.trials()?;

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! data/              a run: the paper's data, and twins trained on them
+//! pairs/             every frame of the bench beside the simulation, as one array, and a data card
 //! trials/            a run: presses of the bench that shapes are told by
 //! simulated/         the same as the twins feel them (Parquet)
 //! shapes/            classifiers, and which shapes they tell
@@ -21,6 +22,7 @@ mod finish;
 mod maps;
 mod metrics;
 mod page;
+mod pairs;
 mod shapes;
 mod under_a_ball;
 
