@@ -6,11 +6,14 @@ use super::experiments::Paper;
 use crate::files::{read_json, sha256, write_file};
 use crate::{Run, RunError};
 
-/// A column: its name, NumPy's type of it, and a frame's value as bytes.
+/// Bytes of a value, from a press, its number and the number of its frame.
+type Value = Box<dyn Fn(&PairedPress, usize, usize) -> Vec<u8>>;
+
+/// A column: its name, NumPy's type of it, and its values.
 struct Column {
     name: String,
     kind: &'static str,
-    value: Box<dyn Fn(&PairedPress, usize, usize) -> Vec<u8>>,
+    value: Value,
 }
 
 fn float(name: impl Into<String>, value: impl Fn(&PairedPress, usize) -> f64 + 'static) -> Column {
