@@ -28,6 +28,12 @@ pub(crate) const PAPER_PROTOCOL: BuiltIn = BuiltIn {
     text: include_str!("../built_in/paper.toml"),
 };
 
+/// The protocol of the presses that the gel's material is fitted to.
+pub(crate) const MATERIAL_PROTOCOL: BuiltIn = BuiltIn {
+    name: "protocols/material.toml",
+    text: include_str!("../built_in/material.toml"),
+};
+
 /// The protocol of the trials that shapes are told by.
 pub(crate) const SHAPES_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/shapes.toml",
@@ -124,6 +130,7 @@ mod tests {
             DEMO_PROTOCOL,
             PAPER_PROTOCOL,
             SHAPES_PROTOCOL,
+            MATERIAL_PROTOCOL,
             MAPS_PROTOCOL,
             CHARACTERIZE_PROTOCOL,
             LAB_RIG,

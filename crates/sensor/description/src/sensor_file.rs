@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use toml::{Table, Value};
+
 use crate::{Sensor, SensorError};
 
 /// PhysTac's description, and its name for errors.
@@ -60,6 +62,33 @@ impl SensorFile {
         Self::parse(Path::new(name), text)
     }
 
+    /// The same sensor with a gel of another material: the text of a material file (TOML). Its constants are not inferred any more; comments are lost.
+    ///
+    /// # Errors
+    /// A material that cannot be read or is wrong.
+    pub fn with_material(&self, material: &str) -> Result<Self, SensorError> {
+        let file = self.folder.join(&self.sensor.name).with_extension("toml");
+        let unreadable = |found: &dyn std::fmt::Display| SensorError {
+            file: file.display().to_string(),
+            line: 0,
+            field: "gel.material".to_owned(),
+            problem: format!("is no TOML table: {found}"),
+            hint: "give a material such as those in materials/".to_owned(),
+        };
+        let table = |text: &str| toml::from_str::<Table>(text).map_err(|found| unreadable(&found));
+        let mut description = table(&self.text)?;
+        if let Some(Value::Table(gel)) = description.get_mut("gel") {
+            gel.insert("material".to_owned(), Value::Table(table(material)?));
+        }
+        if let Some(Value::Array(inferred)) = description.get_mut("inferred") {
+            let of_material =
+                |path: &Value| path.as_str().is_some_and(|path| path.starts_with("gel.material"));
+            inferred.retain(|path| !of_material(path));
+        }
+        let text = toml::to_string(&description).map_err(|found| unreadable(&found))?;
+        Self::parse(&file, &text)
+    }
+
     /// The files of surfaces (STL) that the description names: their names, and where they are.
     pub fn surfaces(&self) -> impl Iterator<Item = (&String, PathBuf)> {
         let names = self.sensor.surfaces.keys();
@@ -84,5 +113,25 @@ mod tests {
         let (name, text) = PHYSTAC;
         assert_eq!(text, std::fs::read_to_string(root.join(name)).unwrap());
         assert_eq!(SensorFile::phystac().unwrap().sensor.taxels.len(), 8);
+    }
+
+    #[test]
+    fn another_material_changes_nothing_else() {
+        let described = SensorFile::phystac().unwrap();
+        let yeoh = "model = 'yeoh'\nc10_kpa = 12.0\nc20_kpa = 7.0\nc30_kpa = 0.0\npoissons_ratio = 0.46\nsource = 'a test'";
+        let other = described.with_material(yeoh).unwrap();
+        let material = &other.sensor.gel.material;
+        assert_eq!(material.shear_modulus_kpa(), 24.0);
+        assert_eq!(other.sensor.taxels, described.sensor.taxels);
+        assert_eq!(other.sensor.indenters, described.sensor.indenters);
+        assert!(other.sensor.inferred.contains(&"taxels".to_owned()));
+        let again = SensorFile::parse(Path::new("other.toml"), &other.text).unwrap();
+        assert_eq!(again.text, other.text);
+
+        let error = described
+            .with_material("model = 'yeoh'\nsource = 'a test'")
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("says nothing about volume"), "{error}");
     }
 }

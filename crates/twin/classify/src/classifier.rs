@@ -5,11 +5,12 @@ use twintac_learn::{AdamW, AdamWSettings, Matrix};
 use twintac_random::{RandomStream, normal, stream};
 
 use crate::network::Network;
-use crate::series::N_SAMPLES;
 use crate::{ClassifyError, Confusion, Series, TrainSettings, Trial};
 
 /// Part of the steps over which the learning rate rises.
 const RISE: f64 = 0.1;
+/// Inputs that vary less than this over the trials are not enlarged further: what varies there is noise.
+const SMALLEST_DEVIATION: f32 = 0.01;
 
 /// Tells the shape of a press from what the taxels read.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,11 +31,13 @@ pub struct Progress {
     pub loss: f64,
 }
 
-/// Brings the largest reading to unit deviation, on a logarithmic scale.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Brings every input to zero mean and unit deviation over the trials; the largest reading on a logarithmic scale.
+#[derive(Clone, Debug, PartialEq)]
 struct Scale {
-    mean: f32,
-    per_deviation: f32,
+    /// `[N_SAMPLES * n_inputs]`.
+    means: Vec<f32>,
+    /// One over the deviation; `[N_SAMPLES * n_inputs]`.
+    per_deviation: Vec<f32>,
 }
 
 impl Classifier {
@@ -88,7 +91,8 @@ impl Classifier {
                 let mut input = Matrix::zeros(0, n_inputs);
                 let mut classes = Vec::with_capacity(batch.len());
                 for &index in batch {
-                    classifier.disturbed(&trials[index].series, settings, &mut random, &mut input.values);
+                    let series = &trials[index].series;
+                    classifier.put_disturbed(series, settings, &mut random, &mut input.values);
                     classes.push(trials[index].class);
                 }
                 let (loss, slopes) = classifier.network.loss_and_slopes(&input, &classes);
@@ -110,7 +114,8 @@ impl Classifier {
     #[must_use]
     pub fn classify(&self, series: &Series) -> usize {
         let mut input = Matrix::zeros(0, series.n_taxels() + 1);
-        self.put(series, &mut input.values);
+        input.values = unscaled(series);
+        self.scale.apply(&mut input.values);
         let scores = self.network.scores(&input).values;
         let classes = scores.iter().enumerate();
         classes
@@ -128,45 +133,56 @@ impl Classifier {
         confusion
     }
 
-    /// Appends the inputs of a series.
-    fn put(&self, series: &Series, to: &mut Vec<f32>) {
-        let largest = (series.largest_kpa.ln() - self.scale.mean) * self.scale.per_deviation;
-        for row in &series.shares {
-            to.extend(row.iter().copied().chain([largest]));
-        }
-    }
-
-    /// The same of a sensor whose gains are a little different, with noise.
-    fn disturbed(
+    /// Appends the inputs of a series, as of a sensor whose gains are a little different, with noise.
+    fn put_disturbed(
         &self,
         series: &Series,
         settings: &TrainSettings,
         random: &mut RandomStream,
         to: &mut Vec<f32>,
     ) {
-        let first = to.len();
-        self.put(series, to);
         let n_taxels = series.n_taxels();
         let mut noise = |deviation: f64| normal(random, deviation) as f32;
         let gains: Vec<f32> = (0..n_taxels).map(|_| 1.0 + noise(settings.gain_noise)).collect();
-        for row in to[first..].chunks_exact_mut(n_taxels + 1) {
+        let mut inputs = unscaled(series);
+        for row in inputs.chunks_exact_mut(n_taxels + 1) {
             for (share, gain) in row.iter_mut().zip(&gains) {
                 *share = *share * gain + noise(settings.sample_noise);
             }
         }
-        debug_assert_eq!(to.len() - first, N_SAMPLES * (n_taxels + 1));
+        self.scale.apply(&mut inputs);
+        to.append(&mut inputs);
     }
+}
+
+/// The inputs of a series as they are; `[N_SAMPLES][n_taxels + 1]`, the largest reading last in each row.
+fn unscaled(series: &Series) -> Vec<f32> {
+    let largest = series.largest_kpa.ln();
+    let rows = series.shares.iter();
+    rows.flat_map(|row| row.iter().copied().chain([largest]))
+        .collect()
 }
 
 impl Scale {
     fn of(trials: &[Trial]) -> Self {
-        let n = trials.len() as f32;
-        let logarithm = |trial: &Trial| trial.series.largest_kpa.ln();
-        let mean = trials.iter().map(logarithm).sum::<f32>() / n;
-        let square: f32 = trials.iter().map(|trial| (logarithm(trial) - mean).powi(2)).sum();
+        let inputs: Vec<Vec<f32>> = trials.iter().map(|trial| unscaled(&trial.series)).collect();
+        let n = inputs.len() as f32;
+        let mean = |index: usize| inputs.iter().map(|input| input[index]).sum::<f32>() / n;
+        let means: Vec<f32> = (0..inputs[0].len()).map(mean).collect();
+        let per_deviation = |(index, mean): (usize, &f32)| {
+            let squares = inputs.iter().map(|input| (input[index] - mean).powi(2));
+            (squares.sum::<f32>() / n).sqrt().max(SMALLEST_DEVIATION).recip()
+        };
         Self {
-            mean,
-            per_deviation: (square / n).sqrt().max(1e-3).recip(),
+            per_deviation: means.iter().enumerate().map(per_deviation).collect(),
+            means,
+        }
+    }
+
+    fn apply(&self, inputs: &mut [f32]) {
+        let scales = self.means.iter().zip(&self.per_deviation);
+        for (input, (mean, per_deviation)) in inputs.iter_mut().zip(scales) {
+            *input = (*input - mean) * per_deviation;
         }
     }
 }
@@ -182,6 +198,7 @@ fn schedule(part: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Sampling;
     use rand::Rng;
 
     /// Presses whose class is which of two taxels rises first, and not how much they read.
@@ -197,7 +214,8 @@ mod tests {
                     peaks[taxel] * ((time_s - start_s) / 0.5).clamp(0.0, 1.0)
                 };
                 let frame = |i: usize| (0..2).map(|taxel| read(i as f64 / 55.0, taxel)).collect();
-                let series = Series::of(&(0..55).map(frame).collect::<Vec<_>>()).unwrap();
+                let readings_kpa: Vec<_> = (0..55).map(frame).collect();
+                let series = Series::of(&readings_kpa, Sampling::Time).unwrap();
                 Trial { class, series }
             })
             .collect()

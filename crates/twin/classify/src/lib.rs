@@ -5,13 +5,14 @@
 //! to tokens, places in time are learned, encoder layers follow, and the tokens of all times together give the class.
 //!
 //! ```
-//! use twintac_classify::{Classifier, Series, TrainSettings, Trial};
+//! use twintac_classify::{Classifier, Sampling, Series, TrainSettings, Trial};
 //!
 //! let press = |peak_kpa: [f64; 2]| -> Vec<Vec<f64>> {
 //!     let share = |frame: usize| (std::f64::consts::PI * frame as f64 / 40.0).sin();
 //!     (0..=40).map(|frame| peak_kpa.map(|kpa| kpa * share(frame)).to_vec()).collect()
 //! };
-//! let trial = |class, peak_kpa| Trial { class, series: Series::of(&press(peak_kpa)).unwrap() };
+//! let series = |peak_kpa| Series::of(&press(peak_kpa), Sampling::Load).unwrap();
+//! let trial = |class, peak_kpa| Trial { class, series: series(peak_kpa) };
 //! let trials: Vec<Trial> = (0..8)
 //!     .flat_map(|i| [trial(0, [9.0 + f64::from(i), 2.0]), trial(1, [9.0 + f64::from(i), 8.0])])
 //!     .collect();
@@ -30,5 +31,5 @@ mod settings;
 pub use classifier::{Classifier, Progress};
 pub use confusion::Confusion;
 pub use error::ClassifyError;
-pub use series::{Series, Trial};
+pub use series::{Sampling, Series, Trial};
 pub use settings::TrainSettings;

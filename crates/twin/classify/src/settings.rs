@@ -41,13 +41,13 @@ impl Default for TrainSettings {
             n_layers: 2,
             n_heads: 4,
             hidden: 64,
-            epochs: 80,
-            least_steps: 1000,
+            epochs: 60,
+            least_steps: 1500,
             batch: 32,
             learning_rate: 2e-3,
             weight_decay: 0.05,
             gradient_norm: 1.0,
-            gain_noise: 0.02,
+            gain_noise: 0.03,
             sample_noise: 0.005,
         }
     }

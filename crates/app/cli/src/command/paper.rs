@@ -44,10 +44,11 @@ fn text(found: &PaperMetrics) -> String {
     for result in &found.shapes {
         let accuracies = &result.accuracy_percent;
         lines.push(format!(
-            "shapes, {:2} real trials and {:2} simulated ({}): {:.1} %",
-            result.real_trials,
-            result.simulated_trials,
-            result.simulated.name(),
+            "shapes, {:2} real trials and {:3} simulated ({}), over {}: {:.1} %",
+            result.mixture.real_trials,
+            result.mixture.simulated_trials,
+            result.mixture.simulated.name(),
+            result.mixture.sampling,
             accuracies.iter().sum::<f64>() / accuracies.len() as f64
         ));
     }

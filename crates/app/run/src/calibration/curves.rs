@@ -244,6 +244,18 @@ fn of_recording(
         .collect()
 }
 
+/// The forces of all presses of a recording.
+///
+/// # Errors
+/// A press of prescribed force, or one that never comes near the gel; an indenter that the gel does not have.
+pub(crate) fn force_curves(recording: &Recording, gel: &Gel) -> Result<Vec<Measured>, RunError> {
+    let curve = |press: &Press| {
+        let curve = of_press(press, Signals::Force, &[], gel).at(|| press.name.clone())?;
+        Ok((curve, recording.provenance))
+    };
+    recording.presses.iter().map(curve).collect()
+}
+
 fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Result<Curve, RunError> {
     if press.control != Control::Pose {
         return Err(RunError::Input(

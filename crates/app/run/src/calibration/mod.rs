@@ -15,6 +15,7 @@ use twintac_plot::{png, svg};
 use twintac_recording::Provenance;
 use twintac_simulate::{Gel, SimulateSettings};
 
+pub(crate) use curves::force_curves;
 pub use curves::{CsvPlace, Measured, curve_of_csv, curves_of_file};
 
 use crate::files::{write_file, write_json};

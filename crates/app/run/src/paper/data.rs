@@ -3,17 +3,27 @@
 use std::path::Path;
 
 use super::experiments::Paper;
+use super::level::Level;
 use crate::built_in::reality;
-use crate::{Planned, Run, RunError};
+use crate::{Planned, Run, RunError, SensorFile};
 
 impl Paper {
-    /// The paper's data, and the twins of them.
-    pub(super) fn data(&self) -> Result<Run, RunError> {
-        let (protocol, sensor) = (self.effort.data(), &self.sensor.sensor);
-        let planned = Planned::parse(protocol.name, protocol.text, sensor, self.seed)?;
-        let source = format!("{} presses on the emulated bench", planned.presses.len());
-        let run = self.run("data", &source)?;
+    /// The paper's presses, as the bench records them.
+    pub(super) fn presses(&self) -> Result<Run, RunError> {
+        let protocol = self.effort.data();
+        let planned = Planned::parse(protocol.name, protocol.text, &self.sensor.sensor, self.seed)?;
+        let run = self.run(
+            "presses",
+            &format!("{} presses on the emulated bench", planned.presses.len()),
+        )?;
         run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        Ok(run)
+    }
+
+    /// Twins of the presses, on the gel of a sensor that lies so.
+    pub(super) fn data(&self, presses: &Run, sensor: SensorFile, level: &Level) -> Result<Run, RunError> {
+        let run = self.run_with(sensor, "data", &presses.record().source)?;
+        run.take(presses, level, |recording| level.recording(recording))?;
         run.finish()?;
         run.train_paper_twin()?;
         Ok(run)

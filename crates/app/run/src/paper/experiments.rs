@@ -39,10 +39,16 @@ impl Paper {
         self.folder.join("report.html")
     }
 
+    /// A run with the sensor as it is described.
     pub(super) fn run(&self, name: &str, source: &str) -> Result<Run, RunError> {
+        self.run_with(self.sensor.clone(), name, source)
+    }
+
+    /// A run whose gel is simulated as another description says. The bench's gel is its own.
+    pub(super) fn run_with(&self, sensor: SensorFile, name: &str, source: &str) -> Result<Run, RunError> {
         let settings = self.effort.run_settings();
         let (folder, caller) = (self.folder.join(name), self.caller.clone());
-        Run::start(&folder, self.sensor.clone(), source, self.seed, settings, caller)
+        Run::start(&folder, sensor, source, self.seed, settings, caller)
     }
 
     pub(super) fn progress(&self) -> &dyn Progress {

@@ -12,17 +12,22 @@ impl Paper {
     /// # Errors
     /// Those of the stages.
     pub fn finish(&self) -> Result<PaperMetrics, RunError> {
-        let data = self.data()?;
+        let presses = self.presses()?;
+        let level = self.level(&presses)?;
+        let (fitted, material) = self.material(&level)?;
+        let data = self.data(&presses, fitted, &level)?;
         let twin = data.evaluate()?;
         self.pairs(&data)?;
-        let maps = self.maps(&data)?;
+        let maps = self.maps(&data, &level)?;
         let sensor = self.characterize()?;
         self.trials()?;
-        self.simulated(&data)?;
+        self.simulated(&data, &level)?;
         let metrics = PaperMetrics {
             provenance: twin.provenance,
             effort: self.effort,
             seed: self.seed,
+            tilt_rad: level.tilt_rad,
+            material,
             twin,
             sensor,
             maps,

@@ -4,9 +4,11 @@ use std::path::Path;
 
 use digitac::{Model, simulated_recording};
 use serde::{Deserialize, Serialize};
+use twintac_protocol::PressPlan;
 use twintac_recording::{Press, Recording};
 
 use super::experiments::Paper;
+use super::level::Level;
 use crate::built_in::{MAPS_PROTOCOL, reality};
 use crate::depth_tables::DepthTableStore;
 use crate::files::{read_json, write_json};
@@ -29,15 +31,16 @@ pub struct ShapeMap {
 
 impl Paper {
     /// Presses five shapes at the gel's middle, on the bench and in the twin.
-    pub(super) fn maps(&self, data: &Run) -> Result<Vec<ShapeMap>, RunError> {
+    pub(super) fn maps(&self, data: &Run, level: &Level) -> Result<Vec<ShapeMap>, RunError> {
         let sensor = &self.sensor.sensor;
         let planned = Planned::parse(MAPS_PROTOCOL.name, MAPS_PROTOCOL.text, sensor, self.seed)?;
         let run = self.run("five-shapes", "five presses on the emulated bench")?;
         run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        let felt: Vec<PressPlan> = planned.presses.iter().map(|plan| level.plan(plan)).collect();
         let model_folder = data.model_folder();
         let inputs = self
             .inputs()
-            .settings("plans", &planned.presses)?
+            .settings("plans", &felt)?
             .file(&model_folder.join("weights.safetensors"))?
             .file(&model_folder.join("twin.json"))?
             .stage(&run.stage("recordings"))?;
@@ -47,7 +50,7 @@ impl Paper {
             let gel = gel_of(&model, &model_folder)?;
             let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress());
             let (bench, rate_hz) = (&model.record.bench, sensor.readout.rate_hz);
-            let twin = simulated_recording(&model.twin, bench, &store, &planned.presses, rate_hz)?;
+            let twin = simulated_recording(&model.twin, bench, &store, &felt, rate_hz)?;
             write_json(&folder.join("maps.json"), &compared(&run.recording()?, &twin))
         })?;
         read_json(&self.folder.join("maps/maps.json"))

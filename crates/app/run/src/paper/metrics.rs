@@ -5,6 +5,7 @@ use twintac_recording::Provenance;
 
 use super::effort::Effort;
 use super::maps::ShapeMap;
+use super::material::GelMaterial;
 use super::shapes::ShapesResult;
 use super::under_a_ball::SensorFigures;
 use crate::Metrics;
@@ -18,6 +19,10 @@ pub struct PaperMetrics {
     pub effort: Effort,
     /// Seed of all that chance decides.
     pub seed: u64,
+    /// How the sensor was found to lie: turned about the bench's x and y axes, radians.
+    pub tilt_rad: [f64; 2],
+    /// What the gel was found to be made of.
+    pub material: GelMaterial,
     /// The twin, and what it is compared with.
     pub twin: Metrics,
     /// What the sensor does under a ball.

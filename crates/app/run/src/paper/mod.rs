@@ -3,7 +3,10 @@
 //! A folder with a run for each recording, and a stage for each experiment:
 //!
 //! ```text
-//! data/              a run: the paper's data, and twins trained on them
+//! presses/           a run: the paper's presses, as the bench records them
+//! force-presses/     a run: presses of every shape, for their forces
+//! material/          what the gel is made of, fitted to them
+//! data/              a run: the presses on a gel that is levelled and fitted, and twins trained on them
 //! pairs/             every frame of the bench beside the simulation, as one array, and a data card
 //! trials/            a run: presses of the bench that shapes are told by
 //! simulated/         the same as the twins feel them (Parquet)
@@ -19,16 +22,20 @@ mod data;
 mod effort;
 mod experiments;
 mod finish;
+mod level;
 mod maps;
+mod material;
 mod metrics;
 mod page;
 mod pairs;
 mod shapes;
+mod trials;
 mod under_a_ball;
 
 pub use effort::Effort;
 pub use experiments::Paper;
 pub use maps::ShapeMap;
+pub use material::GelMaterial;
 pub use metrics::PaperMetrics;
-pub use shapes::{ShapesResult, Simulated};
+pub use shapes::{Mixture, ShapesResult, Simulated};
 pub use under_a_ball::SensorFigures;

@@ -2,25 +2,20 @@
 
 use std::path::Path;
 
-use digitac::{Model, simulated_recording};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use twintac_classify::{Classifier, Confusion, Series, Trial};
-use twintac_protocol::Protocol;
+use twintac_classify::{Classifier, Confusion, Progress, Sampling, Series, TrainSettings, Trial};
 use twintac_random::stream;
 use twintac_recording::Recording;
 
 use super::experiments::Paper;
-use crate::built_in::{SHAPES_PROTOCOL, reality};
-use crate::depth_tables::DepthTableStore;
+use crate::RunError;
 use crate::files::{read_json, write_json};
-use crate::model::gel_of;
 use crate::progress::Work;
-use crate::{Planned, Run, RunError};
 
-/// The simulated presses are drawn with another seed than the real ones.
-const SIMULATED_SEED: u64 = 1_000_000;
+/// So often a training says how it goes.
+const SAYINGS: usize = 20;
 
 /// Where the simulated trials of a training come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,8 +30,6 @@ pub enum Simulated {
 }
 
 impl Simulated {
-    const ALL: [Self; 3] = [Self::None, Self::Twin, Self::PaperTwin];
-
     /// The name used in files.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -48,132 +41,156 @@ impl Simulated {
     }
 }
 
-/// One way to train, over all seeds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ShapesResult {
+/// A way to train: what a classifier sees, and of how many trials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mixture {
     /// Trials of each shape on the bench.
     pub real_trials: usize,
     /// Where the simulated ones come from.
     pub simulated: Simulated,
     /// How many of them each shape has.
     pub simulated_trials: usize,
+    /// How a press becomes a series.
+    pub sampling: Sampling,
+}
+
+/// One way to train, over all seeds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShapesResult {
+    /// What was trained with.
+    #[serde(flatten)]
+    pub mixture: Mixture,
     /// Part of the test trials whose shape is told, seed by seed, %.
     pub accuracy_percent: Vec<f64>,
     /// All seeds together.
     pub confusion: Confusion,
 }
 
-/// A training and what it is worth.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Trained {
-    confusion: Confusion,
-}
-
 /// A training to do.
 struct Job {
+    mixture: Mixture,
     seed: u64,
-    real_trials: usize,
-    simulated: Simulated,
 }
 
 impl Job {
     fn name(&self) -> String {
-        let simulated = self.simulated.name();
-        format!("{}-real-{simulated}-seed-{}", self.real_trials, self.seed)
+        let Mixture {
+            real_trials,
+            simulated,
+            simulated_trials,
+            sampling,
+        } = self.mixture;
+        let (simulated, seed) = (simulated.name(), self.seed);
+        format!("{real_trials}-real-{simulated_trials}-{simulated}-by-{sampling}-seed-{seed}")
+    }
+}
+
+/// The trials of the bench and of the twins, sampled one way.
+struct Trials {
+    sampling: Sampling,
+    real: Vec<Trial>,
+    twin: Vec<Trial>,
+    paper_twin: Vec<Trial>,
+}
+
+impl Trials {
+    fn read(paper: &Paper, sampling: Sampling) -> Result<Self, RunError> {
+        let classes = paper.shape_names();
+        let read = |file: &str| trials_of(&paper.folder.join(file), &classes, sampling);
+        Ok(Self {
+            sampling,
+            real: read("trials/recordings/presses.parquet")?,
+            twin: read("simulated/twin.parquet")?,
+            paper_twin: read("simulated/paper-twin.parquet")?,
+        })
+    }
+
+    /// What to learn from, and what to test with. The bench's trials of each shape are halved anew for each seed: so many of the first half to learn
+    /// from, all of the second to test with. The simulated ones are drawn anew as well.
+    fn divide(&self, n_classes: usize, job: &Job) -> (Vec<Trial>, Vec<Trial>) {
+        let Mixture {
+            real_trials,
+            simulated,
+            simulated_trials,
+            ..
+        } = job.mixture;
+        let made: &[Trial] = match simulated {
+            Simulated::None => &[],
+            Simulated::Twin => &self.twin,
+            Simulated::PaperTwin => &self.paper_twin,
+        };
+        let (mut train, mut test) = (Vec::new(), Vec::new());
+        for class in 0..n_classes {
+            let shuffled = |trials: &[Trial], name: &str| {
+                let mut own: Vec<Trial> = trials.iter().filter(|t| t.class == class).cloned().collect();
+                own.shuffle(&mut stream(job.seed, &format!("paper/{name}/{class}")));
+                own
+            };
+            let mut learned = shuffled(&self.real, "shapes");
+            test.extend(learned.split_off(learned.len() / 2));
+            train.extend(learned.into_iter().take(real_trials));
+            train.extend(shuffled(made, "simulated").into_iter().take(simulated_trials));
+        }
+        (train, test)
     }
 }
 
 impl Paper {
-    /// The presses of the bench that shapes are told by.
-    pub(super) fn trials(&self) -> Result<Run, RunError> {
-        let planned = self.shapes(2 * self.effort.real_trials(), self.seed)?;
-        let source = format!("{} trials on the emulated bench", planned.presses.len());
-        let run = self.run("trials", &source)?;
-        run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
-        Ok(run)
-    }
-
-    fn shapes(&self, n_trials: u32, seed: u64) -> Result<Planned, RunError> {
-        let protocol = Protocol::parse(SHAPES_PROTOCOL.name, SHAPES_PROTOCOL.text)?;
-        Planned::of(&protocol.with_random_places(n_trials), &self.sensor.sensor, seed)
-    }
-
-    /// Presses that the twins of a run would feel.
-    pub(super) fn simulated(&self, data: &Run) -> Result<(), RunError> {
-        let planned = self.shapes(self.effort.simulated_trials(), self.seed + SIMULATED_SEED)?;
-        let models = [
-            (Simulated::Twin, data.model_folder()),
-            (Simulated::PaperTwin, data.paper_twin_folder()),
-        ];
-        let mut inputs = self.inputs().settings("plans", &planned.presses)?;
-        for (_, folder) in &models {
-            inputs = inputs
-                .file(&folder.join("weights.safetensors"))?
-                .file(&folder.join("twin.json"))?;
-        }
-        self.run_stage("simulated", inputs, |folder| {
-            let _work = Work::start(self.progress(), "simulating trials", 0);
-            for (simulated, model_folder) in &models {
-                let model = Model::load(model_folder)?;
-                let gel = gel_of(&model, model_folder)?;
-                let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress());
-                let rate_hz = gel.sensor().readout.rate_hz;
-                let bench = &model.record.bench;
-                let mut recording =
-                    simulated_recording(&model.twin, bench, &store, &planned.presses, rate_hz)?;
-                recording.sensor.clone_from(&gel.sensor().name);
-                recording.write_parquet(&folder.join(simulated.name()).with_extension("parquet"))?;
-            }
-            Ok(())
-        })
-    }
-
     /// Trains on real and simulated trials in every mixture, and tests on real ones.
     pub(super) fn classify(&self) -> Result<Vec<ShapesResult>, RunError> {
-        let (trials, simulated) = (self.folder.join("trials"), self.folder.join("simulated"));
         let settings = self.effort.classifier();
         let inputs = self
             .inputs()
             .settings("settings", &settings)?
             .settings("effort", &self.effort)?
-            .stage(&trials.join("recordings"))?
-            .stage(&simulated)?;
+            .stage(&self.folder.join("trials/recordings"))?
+            .stage(&self.folder.join("simulated"))?;
         self.run_stage("shapes", inputs, |folder| {
-            let classes: Vec<String> = self.shape_names();
-            let real = trials_of(&trials.join("recordings/presses.parquet"), &classes)?;
-            let made = |simulated_by: Simulated| match simulated_by {
-                Simulated::None => Ok(Vec::new()),
-                other => trials_of(&simulated.join(other.name()).with_extension("parquet"), &classes),
-            };
-            let simulated: Vec<Vec<Trial>> =
-                Simulated::ALL.map(made).into_iter().collect::<Result<_, _>>()?;
+            let read = |sampling| Trials::read(self, sampling);
+            let trials = [read(Sampling::Load)?, read(Sampling::Time)?];
             let jobs = self.jobs();
-            let work = Work::start(self.progress(), "learning shapes", jobs.len());
-            let trained: Vec<Trained> = jobs
+            let work = Work::start(self.progress(), "learning shapes", SAYINGS * jobs.len());
+            let confusions: Vec<Confusion> = jobs
                 .par_iter()
                 .with_max_len(1)
                 .map(|job| {
                     let path = folder.join("trainings").join(job.name()).with_extension("json");
-                    if let Ok(trained) = read_json::<Trained>(&path) {
-                        work.step("");
-                        return Ok(trained);
+                    if let Ok(confusion) = read_json(&path) {
+                        (0..SAYINGS).for_each(|_| work.step(""));
+                        return Ok(confusion);
                     }
-                    let (mut train, test) = divide(&real, classes.len(), job);
-                    train.extend(simulated[job.simulated as usize].iter().cloned());
-                    let classifier =
-                        Classifier::train(&train, classes.len(), &settings, job.seed, &mut |_| ())?;
-                    let trained = Trained {
-                        confusion: classifier.judge(&test),
-                    };
-                    write_json(&path, &trained)?;
-                    work.step(&format!("{:.1} %", trained.confusion.accuracy_percent()));
-                    Ok(trained)
+                    let seen = trials.iter().find(|seen| seen.sampling == job.mixture.sampling);
+                    let seen = seen.unwrap_or(&trials[0]);
+                    let confusion = self.train(job, seen, &settings, &work)?;
+                    write_json(&path, &confusion)?;
+                    Ok(confusion)
                 })
                 .collect::<Result<_, RunError>>()?;
-            let n_simulated = self.effort.simulated_trials() as usize;
-            write_json(&folder.join("result.json"), &results(&jobs, trained, n_simulated))
+            write_json(&folder.join("result.json"), &results(&jobs, confusions))
         })?;
         read_json(&self.folder.join("shapes/result.json"))
+    }
+
+    fn train(
+        &self,
+        job: &Job,
+        trials: &Trials,
+        settings: &TrainSettings,
+        work: &Work<'_>,
+    ) -> Result<Confusion, RunError> {
+        let n_classes = self.shape_names().len();
+        let (train, test) = trials.divide(n_classes, job);
+        let name = job.name();
+        let mut said = 0;
+        let mut say = |progress: Progress| {
+            let due = SAYINGS * progress.epoch / progress.of;
+            for _ in said..due {
+                work.step(&format!("{name}: loss {:.3}", progress.loss));
+            }
+            said = due;
+        };
+        let classifier = Classifier::train(&train, n_classes, settings, job.seed, &mut say)?;
+        Ok(classifier.judge(&test))
     }
 
     /// The shapes in the order of their classes.
@@ -183,64 +200,37 @@ impl Paper {
     }
 
     fn jobs(&self) -> Vec<Job> {
-        let mut jobs = Vec::new();
-        for &real_trials in self.effort.curve() {
-            for simulated in Simulated::ALL {
-                if real_trials > 0 || simulated != Simulated::None {
-                    jobs.extend((1..=self.effort.seeds()).map(|seed| Job {
-                        seed,
-                        real_trials,
-                        simulated,
-                    }));
-                }
-            }
-        }
-        jobs
+        let seeds = 1..=self.effort.seeds();
+        let mixtures = self.effort.mixtures().into_iter();
+        mixtures
+            .flat_map(|mixture| seeds.clone().map(move |seed| Job { mixture, seed }))
+            .collect()
     }
 }
 
 /// The trials of a recording's presses, those of each shape in their order. A press that is not felt is left out.
-fn trials_of(file: &Path, classes: &[String]) -> Result<Vec<Trial>, RunError> {
+fn trials_of(file: &Path, classes: &[String], sampling: Sampling) -> Result<Vec<Trial>, RunError> {
     let recording = Recording::read_parquet(file)?;
     let trial = |press: &twintac_recording::Press| {
         Some(Trial {
             class: classes.iter().position(|class| *class == press.indenter)?,
-            series: Series::of(&press.taxels_kpa)?,
+            series: Series::of(&press.taxels_kpa, sampling)?,
         })
     };
     Ok(recording.presses.iter().filter_map(trial).collect())
 }
 
-/// The trials of each shape in two halves, drawn anew for each seed: so many of the first half to learn from, and the second half to test with.
-fn divide(real: &[Trial], n_classes: usize, job: &Job) -> (Vec<Trial>, Vec<Trial>) {
-    let (mut train, mut test) = (Vec::new(), Vec::new());
-    for class in 0..n_classes {
-        let mut own: Vec<&Trial> = real.iter().filter(|trial| trial.class == class).collect();
-        own.shuffle(&mut stream(job.seed, &format!("paper/shapes/{class}")));
-        let (first, second) = own.split_at(own.len() / 2);
-        train.extend(first.iter().take(job.real_trials).copied().cloned());
-        test.extend(second.iter().copied().cloned());
-    }
-    (train, test)
-}
-
-fn results(jobs: &[Job], trained: Vec<Trained>, n_simulated: usize) -> Vec<ShapesResult> {
+fn results(jobs: &[Job], confusions: Vec<Confusion>) -> Vec<ShapesResult> {
     let mut results: Vec<ShapesResult> = Vec::new();
-    for (job, Trained { confusion }) in jobs.iter().zip(trained) {
+    for (job, confusion) in jobs.iter().zip(confusions) {
         let accuracy = confusion.accuracy_percent();
-        match results.last_mut() {
-            Some(last) if last.real_trials == job.real_trials && last.simulated == job.simulated => {
+        match results.last_mut().filter(|last| last.mixture == job.mixture) {
+            Some(last) => {
                 last.accuracy_percent.push(accuracy);
                 last.confusion.add(&confusion);
             }
-            _ => results.push(ShapesResult {
-                real_trials: job.real_trials,
-                simulated: job.simulated,
-                simulated_trials: if job.simulated == Simulated::None {
-                    0
-                } else {
-                    n_simulated
-                },
+            None => results.push(ShapesResult {
+                mixture: job.mixture,
                 accuracy_percent: vec![accuracy],
                 confusion,
             }),

@@ -80,6 +80,27 @@ impl Run {
         })
     }
 
+    /// Takes the recordings of another run, changed; `how` is what the change depends on.
+    ///
+    /// # Errors
+    /// The other run has no recordings; a file that cannot be written.
+    pub(crate) fn take(
+        &self,
+        other: &Self,
+        how: &impl Serialize,
+        change: impl FnOnce(Recording) -> Recording,
+    ) -> Result<(), RunError> {
+        let inputs = self.inputs().settings("change", how)?;
+        self.run_stage(
+            "recordings",
+            inputs.stage(&other.stage("recordings"))?,
+            |folder| {
+                let changed = change(other.recording()?);
+                Ok(changed.write_parquet(&folder.join("presses.parquet"))?)
+            },
+        )
+    }
+
     /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
     pub(crate) fn live_tables(
         &self,

@@ -101,6 +101,8 @@ pub struct BenchSettings {
     pub contact_offset_limit_mm: f64,
     /// How far a port may be from where it is described, mm. Zero fits no places.
     pub port_shift_limit_mm: f64,
+    /// Pull of a port to its place, for each square millimetre. Many presses in a plane, of several shapes, tell places well and need less of it.
+    pub port_shift_pull: f64,
     /// By how much the radius of all ports may differ from its description, mm. Zero fits none.
     pub port_radius_limit_mm: f64,
     /// Smallest and largest stiffness over the simulated one. Fitted to presses of prescribed force, if the tip is known: a blunter tip on a
@@ -130,6 +132,7 @@ impl Default for BenchSettings {
             n_places: 5,
             contact_offset_limit_mm: 0.4,
             port_shift_limit_mm: 0.5,
+            port_shift_pull: 1e-3,
             port_radius_limit_mm: 0.5,
             stiffness_limits: [0.5, 2.0],
             time_constants_s: TIME_CONSTANTS_S.to_vec(),

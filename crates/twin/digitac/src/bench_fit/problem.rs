@@ -18,8 +18,6 @@ const N_DEPTHS: usize = 96;
 const DEPTH_POWER: f64 = 1.5;
 /// Step of ln radius and ln stiffness for slopes.
 const STEP: f64 = 1e-3;
-/// Pull of a port to its place, for each square millimetre.
-const SHIFT_PULL: f64 = 1e-3;
 /// Pull of the ports' radius to its description, for each square millimetre.
 const RADIUS_PULL: f64 = 1e-3;
 /// Largest coefficient of the smooth factor.
@@ -384,7 +382,8 @@ impl Elastic for BenchProblem<'_> {
             unknowns.push(within(self.settings.port_radius_limit_mm, RADIUS_PULL));
         }
         let n_shifts = self.n_taxels * self.axes.len();
-        unknowns.extend((0..n_shifts).map(|_| within(self.settings.port_shift_limit_mm, SHIFT_PULL)));
+        let (limit_mm, pull) = (self.settings.port_shift_limit_mm, self.settings.port_shift_pull);
+        unknowns.extend((0..n_shifts).map(|_| within(limit_mm, pull)));
         if self.form.is_some() {
             unknowns.extend((0..N_TERMS).map(|_| within(FORM_LIMIT, self.settings.smooth_factor_pull)));
         }

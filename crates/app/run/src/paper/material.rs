@@ -1,0 +1,102 @@
+//! What the gel is made of, from the force of a few presses.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use twintac_simulate::{Gel, SimulateSettings};
+
+use super::experiments::Paper;
+use super::level::Level;
+use crate::built_in::{MATERIAL_PROTOCOL, reality};
+use crate::calibration::{calibrate, force_curves};
+use crate::files::{read_json, read_text, write_json};
+use crate::{Planned, RunError, SensorFile};
+
+/// What is fitted. Forces tell no more of a gel than how stiff it is, how that grows with strain, and how it gives way when it is confined.
+const FREE: [&str; 4] = ["c10_kpa", "c20_kpa", "poissons_ratio", "depth_offset_mm"];
+
+/// Frames of each press that are simulated.
+const MOST_FRAMES: usize = 14;
+
+/// A gel's material, as its presses tell it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GelMaterial {
+    /// First constant of Yeoh's model, kPa: half the shear modulus at small strain.
+    pub c10_kpa: f64,
+    /// Second constant, kPa: how the gel stiffens.
+    pub c20_kpa: f64,
+    /// Poisson's ratio at small strain.
+    pub poissons_ratio: f64,
+    /// What the fit leaves of the forces, % of the largest.
+    pub residual_percent: f64,
+    /// Presses that it was fitted to.
+    pub presses: usize,
+}
+
+impl Paper {
+    /// Presses every shape once, and fits the gel's material to the forces. The sensor with that gel, and its material.
+    pub(super) fn material(&self, level: &Level) -> Result<(SensorFile, GelMaterial), RunError> {
+        let protocol = MATERIAL_PROTOCOL;
+        let described = &self.sensor;
+        let mut planned = Planned::parse(protocol.name, protocol.text, &described.sensor, self.seed)?;
+        planned.presses.truncate(self.effort.material_presses());
+        let n_presses = planned.presses.len();
+        let run = self.run(
+            "force-presses",
+            &format!("{n_presses} presses on the emulated bench"),
+        )?;
+        run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        let start = described.with_material(&yeoh(described))?;
+        let settings = SimulateSettings {
+            edges_per_height: 5.0,
+            edges_per_contact_radius: 4.0,
+            ..SimulateSettings::default()
+        };
+        let inputs = self
+            .inputs()
+            .settings("start", &start.text)?
+            .settings("simulate", &settings)?
+            .settings("level", level)?
+            .stage(&run.stage("recordings"))?;
+        self.run_stage("material", inputs, |folder| {
+            let gel = Gel::new(start.sensor.clone(), settings.clone());
+            let curves = force_curves(&level.recording(run.recording()?), &gel)?;
+            let free = FREE.map(str::to_owned);
+            let found = calibrate(
+                &start,
+                settings.clone(),
+                curves,
+                &free,
+                MOST_FRAMES,
+                self.progress(),
+            )?;
+            let value = |name: &str| {
+                let unknown = found.fit.unknowns.iter().find(|unknown| unknown.name == name);
+                unknown.map_or(f64::NAN, |unknown| unknown.value)
+            };
+            let material = GelMaterial {
+                c10_kpa: value("c10_kpa"),
+                c20_kpa: value("c20_kpa"),
+                poissons_ratio: value("poissons_ratio"),
+                residual_percent: found.fit.noise_percent,
+                presses: n_presses,
+            };
+            found.write(folder, &start)?;
+            write_json(&folder.join("found.json"), &material)
+        })?;
+        let folder = self.folder.join("material");
+        let fitted = described.with_material(&read_text(&folder.join("material.toml"))?)?;
+        Ok((fitted, read_json(&folder.join("found.json"))?))
+    }
+}
+
+/// The described gel as one of Yeoh's model that stiffens a little, without which a ring may buckle it (Yeoh, Rubber Chemistry and Technology 63, 1990).
+fn yeoh(described: &SensorFile) -> String {
+    let material = &described.sensor.gel.material;
+    let shear_kpa = material.shear_modulus_kpa();
+    format!(
+        "model = \"yeoh\"\nc10_kpa = {}\nc20_kpa = {}\nc30_kpa = 0.0\npoissons_ratio = 0.49\nsource = \"the described gel, before the fit\"\n",
+        0.5 * shear_kpa,
+        0.1 * shear_kpa,
+    )
+}
