@@ -280,6 +280,11 @@ fn a_model_survives_its_folder_and_notices_damage() {
             model.twin.predict(&[&press.features])
         );
     }
+    let card = std::fs::read_to_string(folder.join("CARD.md")).unwrap();
+    let percent = model.record.validation.overall.nearest_in_contact.percent;
+    for part in [&model.record.variant.to_string(), &format!("| {percent:.2} |")] {
+        assert!(card.contains(part), "{card}");
+    }
     let message = |folder: &std::path::Path| Model::load(folder).unwrap_err().to_string();
     for name in ["weights.safetensors", "twin.json", "checksums.json"] {
         let path = folder.join(name);

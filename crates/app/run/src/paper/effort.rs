@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use twintac_classify::{Sampling, TrainSettings};
 use twintac_simulate::SimulateSettings;
 
-use super::shapes::{Mixture, Simulated};
+use super::mixture::{Mixture, Simulated};
 use crate::RunSettings;
 use crate::built_in::{BuiltIn, DEMO_PROTOCOL, PAPER_PROTOCOL};
 

@@ -9,7 +9,8 @@ use twintac_sensor::Sensor;
 
 use super::effort::{Effort, PAPER_SIMULATED};
 use super::metrics::PaperMetrics;
-use super::shapes::{Mixture, ShapesResult, Simulated};
+use super::mixture::{Mixture, Simulated};
+use super::shapes::ShapesResult;
 
 /// The twin's error that the paper reports, %.
 const PAPER_ERROR_PERCENT: f64 = 5.95;

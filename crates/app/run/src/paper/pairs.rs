@@ -3,26 +3,9 @@
 use digitac::{PairedPress, Split};
 
 use super::experiments::Paper;
+use super::structured_array::{Column, array, float};
 use crate::files::{read_json, sha256, write_file};
 use crate::{Run, RunError};
-
-/// Bytes of a value, from a press, its number and the number of its frame.
-type Value = Box<dyn Fn(&PairedPress, usize, usize) -> Vec<u8>>;
-
-/// A column: its name, NumPy's type of it, and its values.
-struct Column {
-    name: String,
-    kind: &'static str,
-    value: Value,
-}
-
-fn float(name: impl Into<String>, value: impl Fn(&PairedPress, usize) -> f64 + 'static) -> Column {
-    Column {
-        name: name.into(),
-        kind: "<f4",
-        value: Box::new(move |press, _, frame| (value(press, frame) as f32).to_le_bytes().to_vec()),
-    }
-}
 
 impl Paper {
     /// Writes `frames.npy` and `CARD.md`: each frame of the bench beside what is simulated of it.
@@ -104,36 +87,6 @@ fn columns(taxels: &[String], shapes: Vec<String>, parts: Vec<u8>) -> Vec<Column
     columns
 }
 
-/// The frames as a structured array in NumPy's format 1.0 (NumPy enhancement proposal 1).
-fn array(presses: &[PairedPress], columns: &[Column]) -> Vec<u8> {
-    let fields = columns
-        .iter()
-        .map(|column| format!("('{}', '{}')", column.name, column.kind));
-    let fields = fields.collect::<Vec<_>>().join(", ");
-    let n_frames: usize = presses.iter().map(|press| press.features.n_frames()).sum();
-    let header = format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': ({n_frames},), }}");
-    let start = b"\x93NUMPY\x01\x00";
-    let unpadded = start.len() + 2 + header.len() + 1;
-    let padding = unpadded.next_multiple_of(64) - unpadded;
-    let length = (header.len() + padding + 1) as u16;
-    let mut bytes = [
-        &start[..],
-        &length.to_le_bytes(),
-        header.as_bytes(),
-        &vec![b' '; padding],
-        b"\n",
-    ]
-    .concat();
-    for (index, press) in presses.iter().enumerate() {
-        for frame in 0..press.features.n_frames() {
-            for column in columns {
-                bytes.extend((column.value)(press, index, frame));
-            }
-        }
-    }
-    bytes
-}
-
 fn card(n_frames: usize, n_presses: usize, shapes: &[String], taxels: &[String], sha256: &str) -> String {
     let (shapes, taxels) = (shapes.join(", "), taxels.join(", "));
     format!(
@@ -163,4 +116,86 @@ fn card(n_frames: usize, n_presses: usize, shapes: &[String], taxels: &[String],
          | `<taxel>_stress_kpa_per_mm` | the paper's feature: mean of von Mises stress over distance, over the taxel's cluster of surface nodes, kPa/mm (arXiv 2509.10063, equation 6) |\n\n\
          SHA-256 of `frames.npy`: `{sha256}`\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+    use digitac::{Features, Warp};
+    use std::process::Command;
+
+    use super::*;
+
+    fn press(name: &str, n_frames: usize) -> PairedPress {
+        let row = |from: f64| (0..8).map(|k| from + f64::from(k)).collect::<Vec<f64>>();
+        let rows = |from: f64| {
+            (0..n_frames)
+                .map(|frame| row(from + 100.0 * frame as f64))
+                .collect()
+        };
+        let numbers = |from: f64| {
+            (0..n_frames)
+                .map(|frame| from + frame as f64)
+                .collect::<Vec<f64>>()
+        };
+        let mut valid = vec![vec![true; 8]; n_frames];
+        valid[0][7] = false;
+        PairedPress {
+            name: name.into(),
+            mounting: "lab".into(),
+            indenter: "cube".into(),
+            place_mm: [1.0, -2.0],
+            features: Features {
+                time_s: numbers(0.0),
+                depth_mm: numbers(-1.0),
+                force_n: numbers(3.0),
+                pressure_kpa: rows(10.0),
+                stress_kpa_per_mm: rows(20.0),
+                simulated: vec![true; n_frames],
+                since_previous_s: None,
+                zero_frames: 0..1,
+            },
+            measured_force_n: Some(numbers(4.0)),
+            readings_kpa: rows(0.0),
+            valid,
+            warp: Warp::identity(n_frames),
+        }
+    }
+
+    /// What the card says of the array is true in Python. `TWINTAC_PYTHON` names one with `numpy` and `pandas`.
+    #[test]
+    fn the_lines_of_the_card_read_the_array() {
+        let asked = std::env::var("TWINTAC_PYTHON");
+        let python = asked.clone().unwrap_or_else(|_| "python3".into());
+        let import = Command::new(&python)
+            .args(["-c", "import numpy, pandas"])
+            .output();
+        if !import.is_ok_and(|output| output.status.success()) {
+            assert!(asked.is_err(), "{python} has no numpy or no pandas");
+            eprintln!("skipped: no Python with numpy and pandas; TWINTAC_PYTHON can name one");
+            return;
+        }
+        let shapes = ["sphere", "cube"].map(str::to_owned);
+        let taxels: Vec<String> = (0..8).map(|k| format!("t{k}")).collect();
+        let presses = [press("a", 3), press("b", 2)];
+        let bytes = array(&presses, &columns(&taxels, shapes.to_vec(), vec![0, 2]));
+        let card = card(5, 2, &shapes, &taxels, &sha256(&bytes));
+        let lines = card.split("```").nth(1).unwrap().trim_start_matches("python");
+        let checks = "
+assert len(frames) == 5 and list(frames['press']) == [0, 0, 0, 1, 1]
+assert list(frames['depth_mm']) == [-1, 0, 1, -1, 0] and set(frames['shape']) == {1}
+assert readings[2, 5] == 205 and np.isnan(readings[0, 7]) and stress[1, 0] == 120
+assert frames['t3_port_kpa'][4] == 113 and frames['force_n'][4] == 5 and test.sum() == 2
+";
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("frames.npy"), &bytes).unwrap();
+        std::fs::write(folder.path().join("card.py"), format!("{lines}{checks}")).unwrap();
+        let run = Command::new(&python)
+            .arg("card.py")
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        assert!(String::from_utf8_lossy(&run.stdout).starts_with("(3, 8) (3, 8)"));
+    }
 }

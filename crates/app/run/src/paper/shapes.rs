@@ -10,49 +10,13 @@ use twintac_random::stream;
 use twintac_recording::Recording;
 
 use super::experiments::Paper;
+use super::mixture::{Mixture, Simulated};
 use crate::RunError;
 use crate::files::{read_json, write_json};
 use crate::progress::Work;
 
 /// So often a training says how it goes.
 const SAYINGS: usize = 20;
-
-/// Where the simulated trials of a training come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Simulated {
-    /// There are none.
-    None,
-    /// This project's twin.
-    Twin,
-    /// The paper's twin: its stress feature and its perceptron.
-    PaperTwin,
-}
-
-impl Simulated {
-    /// The name used in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Twin => "twin",
-            Self::PaperTwin => "paper-twin",
-        }
-    }
-}
-
-/// A way to train: what a classifier sees, and of how many trials.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Mixture {
-    /// Trials of each shape on the bench.
-    pub real_trials: usize,
-    /// Where the simulated ones come from.
-    pub simulated: Simulated,
-    /// How many of them each shape has.
-    pub simulated_trials: usize,
-    /// How a press becomes a series.
-    pub sampling: Sampling,
-}
 
 /// One way to train, over all seeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

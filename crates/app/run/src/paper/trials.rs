@@ -7,7 +7,7 @@ use twintac_protocol::{PressPlan, Protocol};
 
 use super::experiments::Paper;
 use super::level::Level;
-use super::shapes::Simulated;
+use super::mixture::Simulated;
 use crate::built_in::{SHAPES_PROTOCOL, reality};
 use crate::depth_tables::DepthTableStore;
 use crate::model::gel_of;

@@ -1,4 +1,4 @@
-//! A model's folder: `weights.safetensors`, `twin.json`, and `checksums.json` with the SHA-256 of both.
+//! A model's folder: `weights.safetensors`, `twin.json`, `CARD.md` for people, and `checksums.json` with the SHA-256 of all.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,12 +8,14 @@ use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::card::card;
 use super::{Model, ModelRecord};
 use crate::network::{Parameters, Physics, Weights};
 use crate::{DigitacError, Twin};
 
 const WEIGHTS: &str = "weights.safetensors";
 const RECORD: &str = "twin.json";
+const CARD: &str = "CARD.md";
 const CHECKSUMS: &str = "checksums.json";
 /// Version of the folder's layout.
 const VERSION: u32 = 1;
@@ -42,6 +44,7 @@ impl Model {
         let contents = [
             (WEIGHTS, pack(&self.twin.parameters().weights(), folder)?),
             (RECORD, json(&self.record, folder)?),
+            (CARD, card(self).into_bytes()),
         ];
         for (name, bytes) in &contents {
             checksums.sha256.insert((*name).to_owned(), sha256(bytes));

@@ -1,5 +1,6 @@
 //! A twin with all that is needed to use it and to know where it comes from, and the folder that keeps it.
 
+mod card;
 mod folder;
 mod record;
 
