@@ -19,6 +19,20 @@ const FOLDERS: [&str; 10] = [
     "fuzz",
 ];
 
+/// Writes what stands between `<!-- NAME -->` and `<!-- end -->` anew.
+pub fn replace_part(text: &mut String, name: &str, part: &str) -> Result<()> {
+    let begin = format!("<!-- {name} -->\n");
+    let from = text
+        .find(&begin)
+        .with_context(|| format!("there is no line `{}`", begin.trim()))?
+        + begin.len();
+    let length = text[from..]
+        .find("<!-- end -->")
+        .with_context(|| format!("the part `{name}` has no end"))?;
+    text.replace_range(from..from + length, part);
+    Ok(())
+}
+
 /// Each path in backquotes in README.md and ARCHITECTURE.md exists, unless it has a placeholder.
 pub fn files_named_exist(root: &Path) -> Result<()> {
     for document in ["README.md", "ARCHITECTURE.md"] {

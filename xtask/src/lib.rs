@@ -1,7 +1,8 @@
 //! What CI runs beside the tests of the crates, and the rules of this workspace.
 //!
 //! The rules are tests: `xtask/tests/rules.rs` lists them. What each crate owns and must never know stands in `xtask/rooms.toml` ([`rooms`]); how
-//! source text is read and judged stands in [`code`]; the commands of README.md are run by [`readme`].
+//! source text is read and judged stands in [`code`]; the commands of README.md are run by [`readme`]; [`results`]
+//! keeps what the paper's experiments found.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -10,6 +11,7 @@ pub mod code;
 pub mod documents;
 pub mod fuzz;
 pub mod readme;
+pub mod results;
 pub mod rooms;
 
 use std::path::{Path, PathBuf};

@@ -7,9 +7,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use xtask::cargo::{cargo, run};
-use xtask::{fuzz, readme, rooms};
+use xtask::{fuzz, readme, results, rooms};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | bench softbody [--json] | bench scaling | bench peers | bench recording | bench twin |
+const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | results [FILE] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench twin |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
@@ -17,6 +17,8 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
   test   every test, optimised
   readme the commands of README.md and docs/guide.md in blocks that are tagged `sh`, word for word; those of `cargo test` last
   rooms  writes the tables of ARCHITECTURE.md from xtask/rooms.toml
+  results  writes the table of docs/results.md from docs/results/metrics.json, and says when that is stale; FILE: the metrics.json of `reproduce --paper` at
+         this commit, which is kept first
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         "test" => test(),
         "readme" => readme::run(&xtask::root()),
         "rooms" => rooms::page::write(&xtask::root()),
+        "results" => results::write(&xtask::root(), std::env::args().nth(2).as_deref()),
         "bench" => bench(),
         "fuzz" => fuzz::fuzz(&std::env::args().skip(2).collect::<Vec<_>>()),
         "verify" => return verify(),

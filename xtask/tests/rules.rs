@@ -12,8 +12,8 @@ use std::sync::Arc;
 use anyhow::{Result, ensure};
 use libtest_mimic::{Arguments, Failed, Trial};
 use xtask::code::{Crate, circles, length, public};
-use xtask::documents;
 use xtask::rooms::{Graph, Rooms, page, rule};
+use xtask::{documents, results};
 
 /// What the tests look at, read once.
 struct Workspace {
@@ -169,6 +169,11 @@ fn of_documents(workspace: &Arc<Workspace>) -> Vec<Trial> {
             workspace,
             "documents::rooms_are_those_of_rooms_toml".into(),
             |all, root| page::is_fresh(root, &all.rooms),
+        ),
+        trial(
+            workspace,
+            "documents::results_are_those_that_are_kept".into(),
+            |_, root| results::is_fresh(root),
         ),
         trial(workspace, "documents::files_named_exist".into(), |_, root| {
             documents::files_named_exist(root)

@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 
 use super::{Rooms, Term};
+use crate::documents::replace_part;
 
 /// A part's name, and what it says.
 type Part = (&'static str, fn(&Rooms) -> String);
@@ -34,15 +35,7 @@ pub fn is_fresh(root: &Path, rooms: &Rooms) -> Result<()> {
 fn fresh(text: &str, rooms: &Rooms) -> Result<String> {
     let mut text = text.to_owned();
     for (name, part) in PARTS {
-        let begin = format!("<!-- rooms: {name} -->\n");
-        let from = text
-            .find(&begin)
-            .with_context(|| format!("ARCHITECTURE.md has no line `{}`", begin.trim()))?
-            + begin.len();
-        let length = text[from..]
-            .find("<!-- end -->")
-            .with_context(|| format!("ARCHITECTURE.md: the part `{name}` has no end"))?;
-        text.replace_range(from..from + length, &part(rooms));
+        replace_part(&mut text, &format!("rooms: {name}"), &part(rooms)).context("ARCHITECTURE.md")?;
     }
     Ok(text)
 }

@@ -4,7 +4,7 @@ use rand::seq::SliceRandom;
 use twintac_learn::{AdamW, AdamWSettings, Matrix};
 use twintac_random::{RandomStream, normal, stream};
 
-use crate::network::Network;
+use crate::network::{Network, softmax};
 use crate::{ClassifyError, Confusion, Series, TrainSettings, Trial};
 
 /// Part of the steps over which the learning rate rises.
@@ -15,7 +15,8 @@ const SMALLEST_DEVIATION: f32 = 0.01;
 /// Tells the shape of a press from what the taxels read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
-    network: Network,
+    /// They vote: their classes' probabilities are averaged.
+    networks: Vec<Network>,
     scale: Scale,
     n_classes: usize,
 }
@@ -64,50 +65,28 @@ impl Classifier {
                 return Err(ClassifyError::Class { class, n_classes });
             }
         }
-        let mut random = stream(seed, "classify/training");
-        let n_inputs = first.series.n_taxels() + 1;
-        let mut weights = stream(seed, "classify/weights");
-        let network = Network::new(n_inputs, n_classes, settings, &mut weights);
         let scale = Scale::of(trials);
-        let mut classifier = Self {
-            network,
-            scale,
+        let school = School {
+            trials,
+            scale: &scale,
+            settings,
             n_classes,
         };
-        let optimizer = AdamWSettings {
-            weight_decay: settings.weight_decay as f32,
-            gradient_norm: settings.gradient_norm as f32,
-        };
-        let mut optimizer = AdamW::new(classifier.network.arrays(), optimizer);
-        let steps_of_epoch = trials.len().div_ceil(settings.batch);
-        let epochs = settings.epochs.max(settings.least_steps.div_ceil(steps_of_epoch));
-        let n_steps = epochs * steps_of_epoch;
-        let mut step = 0;
-        let mut order: Vec<usize> = (0..trials.len()).collect();
-        for epoch in 0..epochs {
-            order.shuffle(&mut random);
-            let mut sum = 0.0;
-            for batch in order.chunks(settings.batch) {
-                let mut input = Matrix::zeros(0, n_inputs);
-                let mut classes = Vec::with_capacity(batch.len());
-                for &index in batch {
-                    let series = &trials[index].series;
-                    classifier.put_disturbed(series, settings, &mut random, &mut input.values);
-                    classes.push(trials[index].class);
-                }
-                let (loss, slopes) = classifier.network.loss_and_slopes(&input, &classes);
-                sum += f64::from(loss) * batch.len() as f64;
-                let rate = settings.learning_rate * schedule(step as f64 / n_steps as f64);
-                optimizer.step(rate, classifier.network.arrays_mut(), slopes.arrays());
-                step += 1;
-            }
-            progress(Progress {
-                epoch: epoch + 1,
-                of: epochs,
-                loss: sum / trials.len() as f64,
-            });
-        }
-        Ok(classifier)
+        let networks = (0..settings.n_networks).map(|index| {
+            let mut random = stream(seed, &format!("classify/{index}"));
+            school.network(&mut random, &mut |done: Progress| {
+                progress(Progress {
+                    epoch: index * done.of + done.epoch,
+                    of: settings.n_networks * done.of,
+                    ..done
+                });
+            })
+        });
+        Ok(Self {
+            networks: networks.collect(),
+            scale,
+            n_classes,
+        })
     }
 
     /// The class of a press.
@@ -116,8 +95,16 @@ impl Classifier {
         let mut input = Matrix::zeros(0, series.n_taxels() + 1);
         input.values = unscaled(series);
         self.scale.apply(&mut input.values);
-        let scores = self.network.scores(&input).values;
-        let classes = scores.iter().enumerate();
+        let mut probabilities = vec![0.0; self.n_classes];
+        for network in &self.networks {
+            let mut scores = network.scores(&input).values;
+            softmax(&mut scores);
+            probabilities
+                .iter_mut()
+                .zip(scores)
+                .for_each(|(sum, own)| *sum += own);
+        }
+        let classes = probabilities.iter().enumerate();
         classes
             .max_by(|a, b| a.1.total_cmp(b.1))
             .map_or(0, |(class, _)| class)
@@ -132,15 +119,60 @@ impl Classifier {
         }
         confusion
     }
+}
+
+/// What networks are trained with.
+struct School<'a> {
+    trials: &'a [Trial],
+    scale: &'a Scale,
+    settings: &'a TrainSettings,
+    n_classes: usize,
+}
+
+impl School<'_> {
+    /// Trains one network.
+    fn network(&self, random: &mut RandomStream, progress: &mut dyn FnMut(Progress)) -> Network {
+        let (trials, settings) = (self.trials, self.settings);
+        let n_inputs = trials[0].series.n_taxels() + 1;
+        let mut network = Network::new(n_inputs, self.n_classes, settings, random);
+        let optimizer = AdamWSettings {
+            weight_decay: settings.weight_decay as f32,
+            gradient_norm: settings.gradient_norm as f32,
+        };
+        let mut optimizer = AdamW::new(network.arrays(), optimizer);
+        let steps_of_epoch = trials.len().div_ceil(settings.batch);
+        let epochs = settings.epochs.max(settings.least_steps.div_ceil(steps_of_epoch));
+        let n_steps = epochs * steps_of_epoch;
+        let mut step = 0;
+        let mut order: Vec<usize> = (0..trials.len()).collect();
+        for epoch in 0..epochs {
+            order.shuffle(random);
+            let mut sum = 0.0;
+            for batch in order.chunks(settings.batch) {
+                let mut input = Matrix::zeros(0, n_inputs);
+                let mut classes = Vec::with_capacity(batch.len());
+                for &index in batch {
+                    self.put_disturbed(&trials[index].series, random, &mut input.values);
+                    classes.push(trials[index].class);
+                }
+                let (loss, slopes) = network.loss_and_slopes(&input, &classes);
+                sum += f64::from(loss) * batch.len() as f64;
+                let rate = settings.learning_rate * schedule(step as f64 / n_steps as f64);
+                optimizer.step(rate, network.arrays_mut(), slopes.arrays());
+                step += 1;
+            }
+            progress(Progress {
+                epoch: epoch + 1,
+                of: epochs,
+                loss: sum / trials.len() as f64,
+            });
+        }
+        network
+    }
 
     /// Appends the inputs of a series, as of a sensor whose gains are a little different, with noise.
-    fn put_disturbed(
-        &self,
-        series: &Series,
-        settings: &TrainSettings,
-        random: &mut RandomStream,
-        to: &mut Vec<f32>,
-    ) {
+    fn put_disturbed(&self, series: &Series, random: &mut RandomStream, to: &mut Vec<f32>) {
+        let settings = self.settings;
         let n_taxels = series.n_taxels();
         let mut noise = |deviation: f64| normal(random, deviation) as f32;
         let gains: Vec<f32> = (0..n_taxels).map(|_| 1.0 + noise(settings.gain_noise)).collect();
@@ -223,6 +255,7 @@ mod tests {
 
     fn train(trials: &[Trial]) -> Classifier {
         let settings = TrainSettings {
+            n_networks: 2,
             width: 16,
             hidden: 32,
             epochs: 30,
@@ -234,7 +267,7 @@ mod tests {
 
     #[test]
     fn order_in_time_is_learned() {
-        let classifier = train(&trials(60, 1));
+        let classifier = train(&trials(120, 1));
         let found = classifier.judge(&trials(100, 2));
         assert!(found.accuracy_percent() > 95.0, "{found:?}");
     }

@@ -16,7 +16,7 @@
 //! let trials: Vec<Trial> = (0..8)
 //!     .flat_map(|i| [trial(0, [9.0 + f64::from(i), 2.0]), trial(1, [9.0 + f64::from(i), 8.0])])
 //!     .collect();
-//! let settings = TrainSettings { epochs: 40, ..TrainSettings::default() };
+//! let settings = TrainSettings { n_networks: 1, epochs: 40, ..TrainSettings::default() };
 //! let classifier = Classifier::train(&trials, 2, &settings, 1, &mut |_| ()).unwrap();
 //! assert_eq!(classifier.classify(&trial(1, [12.5, 7.0]).series), 1);
 //! ```

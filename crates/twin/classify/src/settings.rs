@@ -8,6 +8,8 @@ use crate::ClassifyError;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrainSettings {
+    /// Networks that vote.
+    pub n_networks: usize,
     /// Numbers in a token.
     pub width: usize,
     /// Encoder layers.
@@ -37,11 +39,12 @@ pub struct TrainSettings {
 impl Default for TrainSettings {
     fn default() -> Self {
         Self {
+            n_networks: 4,
             width: 32,
             n_layers: 2,
             n_heads: 4,
             hidden: 64,
-            epochs: 60,
+            epochs: 30,
             least_steps: 1500,
             batch: 32,
             learning_rate: 2e-3,
@@ -56,6 +59,7 @@ impl Default for TrainSettings {
 impl TrainSettings {
     pub(crate) fn check(&self) -> Result<(), ClassifyError> {
         let sizes = [
+            ("n_networks", self.n_networks),
             ("width", self.width),
             ("n_layers", self.n_layers),
             ("n_heads", self.n_heads),

@@ -156,6 +156,7 @@ impl Effort {
         match self {
             Self::Full => TrainSettings::default(),
             Self::Quick => TrainSettings {
+                n_networks: 1,
                 epochs: 10,
                 least_steps: 100,
                 ..TrainSettings::default()

@@ -15,6 +15,9 @@ use crate::RunError;
 use crate::files::{read_json, write_json};
 use crate::progress::Work;
 
+/// Few trials of the bench among many simulated ones are shown so often that there are no more than this many of those for each.
+const SIMULATED_PER_REAL: usize = 5;
+
 /// So often a training says how it goes.
 const SAYINGS: usize = 20;
 
@@ -92,7 +95,9 @@ impl Trials {
             };
             let mut learned = shuffled(&self.real, "shapes");
             test.extend(learned.split_off(learned.len() / 2));
-            train.extend(learned.into_iter().take(real_trials));
+            learned.truncate(real_trials);
+            let shown = (simulated_trials / (SIMULATED_PER_REAL * real_trials.max(1))).max(1);
+            (0..shown).for_each(|_| train.extend(learned.iter().cloned()));
             train.extend(shuffled(made, "simulated").into_iter().take(simulated_trials));
         }
         (train, test)

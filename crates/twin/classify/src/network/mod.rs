@@ -126,16 +126,24 @@ fn whole(mut tokens: Matrix) -> Matrix {
     tokens
 }
 
+/// Scores as probabilities.
+pub(crate) fn softmax(scores: &mut [f32]) {
+    let largest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    scores
+        .iter_mut()
+        .for_each(|score| *score = (*score - largest).exp());
+    let sum: f32 = scores.iter().sum();
+    scores.iter_mut().for_each(|score| *score /= sum);
+}
+
 /// Mean of minus the logarithm of the true classes' shares, and its slope by the scores.
 fn cross_entropy(mut scores: Matrix, classes: &[usize]) -> (f32, Matrix) {
     let per_series = (classes.len() as f32).recip();
     let mut loss = 0.0;
     for (row, class) in scores.rows_mut().zip(classes) {
-        let largest = row.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let sum: f32 = row.iter().map(|score| (score - largest).exp()).sum();
-        loss += (sum.ln() + largest - row[*class]) * per_series;
-        row.iter_mut()
-            .for_each(|score| *score = (*score - largest).exp() / sum * per_series);
+        softmax(row);
+        loss -= row[*class].max(f32::MIN_POSITIVE).ln() * per_series;
+        row.iter_mut().for_each(|share| *share *= per_series);
         row[*class] -= per_series;
     }
     (loss, scores)

@@ -1,0 +1,282 @@
+//! What `twintac reproduce --paper` found, kept as data, and the table in docs/results.md that is written from it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::documents::replace_part;
+
+const KEPT: &str = "docs/results/metrics.json";
+const PAGE: &str = "docs/results.md";
+const COMMAND: &str = "twintac reproduce --paper";
+/// What the figures depend on.
+const SOURCES: [&str; 5] = ["crates", "protocols", "realities", "sensors", "Cargo.lock"];
+
+/// Figures, and what made them.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    command: String,
+    commit: String,
+    metrics: Value,
+}
+
+/// Keeps a `metrics.json` of this commit, where one is given; writes the table, and says whether the figures are of older sources.
+pub fn write(root: &Path, metrics: Option<&str>) -> Result<()> {
+    if let Some(path) = metrics {
+        ensure!(
+            git(root, &["status", "--porcelain"])?.is_empty(),
+            "something is not committed: nobody could make these figures again"
+        );
+        let text = fs::read_to_string(path).with_context(|| format!("reading {path}"))?;
+        let metrics: Value = serde_json::from_str(&text).with_context(|| format!("reading {path}"))?;
+        ensure!(
+            metrics["effort"] == "full",
+            "{path} was made with --quick: its figures show nothing"
+        );
+        let kept = Kept {
+            command: COMMAND.to_owned(),
+            commit: git(root, &["rev-parse", "--short", "HEAD"])?,
+            metrics,
+        };
+        let file = root.join(KEPT);
+        fs::create_dir_all(file.parent().unwrap_or(root))?;
+        fs::write(&file, serde_json::to_string_pretty(&kept)? + "\n")?;
+    }
+    let (kept, text) = read(root)?;
+    fs::write(root.join(PAGE), fresh(text, &kept)?)?;
+    eprintln!("{}", age(root, &kept)?);
+    Ok(())
+}
+
+/// The table is as [`write`] would leave it.
+pub fn is_fresh(root: &Path) -> Result<()> {
+    let (kept, text) = read(root)?;
+    ensure!(
+        fresh(text.clone(), &kept)? == text,
+        "{PAGE} is not what {KEPT} says: run `cargo xtask results`"
+    );
+    Ok(())
+}
+
+fn read(root: &Path) -> Result<(Kept, String)> {
+    let kept = fs::read_to_string(root.join(KEPT)).with_context(|| format!("reading {KEPT}"))?;
+    let kept = serde_json::from_str(&kept).with_context(|| format!("reading {KEPT}"))?;
+    let text = fs::read_to_string(root.join(PAGE)).with_context(|| format!("reading {PAGE}"))?;
+    Ok((kept, text))
+}
+
+/// Whether the sources have changed since.
+fn age(root: &Path, kept: &Kept) -> Result<String> {
+    let Kept { command, commit, .. } = kept;
+    let diff = [&["diff", "--name-only", commit, "--"], &SOURCES[..]].concat();
+    let Ok(changed) = git(root, &diff) else {
+        return Ok(format!(
+            "{KEPT} is of commit {commit}, which is not in this clone"
+        ));
+    };
+    let n = changed.lines().count();
+    Ok(if n == 0 {
+        format!("{KEPT} is of commit {commit}, and so are the sources")
+    } else {
+        format!(
+            "{KEPT} is stale: it is of commit {commit}, and {n} files that it may depend on have changed since; make it again with `{command}`"
+        )
+    })
+}
+
+fn git(root: &Path, arguments: &[&str]) -> Result<String> {
+    let output = Command::new("git")
+        .args(arguments)
+        .current_dir(root)
+        .output()
+        .context("starting git")?;
+    if !output.status.success() {
+        bail!(
+            "`git {}`: {}",
+            arguments.join(" "),
+            String::from_utf8_lossy(&output.stderr).trim()
+        );
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+fn fresh(mut text: String, kept: &Kept) -> Result<String> {
+    replace_part(&mut text, "results: paper", &table(kept)).context(PAGE)?;
+    Ok(text)
+}
+
+fn table(kept: &Kept) -> String {
+    let metrics = &kept.metrics;
+    let number = |value: &Value, decimals: usize, unit: &str| {
+        let number = value.as_f64();
+        number.map_or("not given".to_owned(), |number| {
+            format!("{number:.decimals$} {unit}")
+        })
+    };
+    let twin = &metrics["twin"];
+    let nearest = |figures: &Value| number(&figures["nearest_in_contact_percent"], 2, "%");
+    let sensor = &metrics["sensor"];
+    let mut rows = vec![
+        (
+            "error of this twin, on presses that it never saw",
+            "5.95 %",
+            nearest(&twin["twin"]),
+        ),
+        (
+            "the same of the paper's network",
+            "",
+            nearest(&twin["variants"]["paper"]),
+        ),
+        (
+            "the same of a fitted curve",
+            "",
+            nearest(&twin["baselines"]["kernel"]),
+        ),
+        (
+            "sensitivity under a 25 mm ball",
+            "7.24 kPa/N",
+            number(&sensor["sensitivity_kpa_per_n"], 2, "kPa/N"),
+        ),
+        ("linear to", "212 N", number(&sensor["linear_to_n"], 1, "N")),
+        (
+            "largest force",
+            "212 N",
+            number(&sensor["largest_force_n"], 1, "N"),
+        ),
+        (
+            "smallest weight found",
+            "0.007 N",
+            number(&sensor["smallest_step_n"], 4, "N"),
+        ),
+    ];
+    let maps = metrics["maps"].as_array().cloned().unwrap_or_default();
+    let mean = maps
+        .iter()
+        .filter_map(|map| map["difference_percent"].as_f64())
+        .sum::<f64>()
+        / maps.len().max(1) as f64;
+    rows.push((
+        "five shapes, twin beside sensor: mean difference of the taxels",
+        "",
+        format!("{mean:.1} %"),
+    ));
+    let lines = rows
+        .into_iter()
+        .map(|(name, paper, own)| format!("| {name} | {paper} | {own} |\n"));
+    let results = metrics["shapes"].as_array();
+    format!(
+        "\n`{}`, commit {}, seed {}: the bench is `emulated`, the twin `simulated`, the paper's figures `real`, of another sensor.\n\n\
+         | what | paper | here |\n|---|---|---|\n{}\n{}\n",
+        kept.command,
+        kept.commit,
+        metrics["seed"],
+        lines.collect::<String>(),
+        shapes(results.map_or(&[], Vec::as_slice))
+    )
+}
+
+/// A way to train, but for the bench's trials: whose simulated trials, how many of each shape, and how presses are sampled.
+type Way<'a> = (&'a str, u64, &'a str);
+
+/// Accuracies: a row for each number of the bench's trials, a column for each way.
+fn shapes(results: &[Value]) -> String {
+    fn text<'a>(result: &'a Value, name: &str) -> &'a str {
+        result[name].as_str().unwrap_or_default()
+    }
+    let count = |result: &Value, name: &str| result[name].as_u64().unwrap_or(0);
+    let mut cells: BTreeMap<(u64, Way<'_>), String> = BTreeMap::new();
+    for result in results {
+        let way = (
+            text(result, "simulated"),
+            count(result, "simulated_trials"),
+            text(result, "sampling"),
+        );
+        cells.insert((count(result, "real_trials"), way), accuracy(result));
+    }
+    let ways: BTreeSet<Way<'_>> = cells.keys().map(|(_, way)| *way).collect();
+    let real: BTreeSet<u64> = cells.keys().map(|(real, _)| *real).collect();
+    let head = ways.iter().map(|(whose, n, sampling)| {
+        let what = match *whose {
+            "none" => "alone".to_owned(),
+            "paper_twin" => format!("{n} of the paper's twin"),
+            _ => format!("{n} simulated"),
+        };
+        let over = if *sampling == "time" { ", over time" } else { "" };
+        format!(" {what}{over} |")
+    });
+    let mut table = format!(
+        "| presses of each shape on the bench |{}\n|---|{}\n",
+        head.collect::<String>(),
+        "---|".repeat(ways.len())
+    );
+    for real in real {
+        let own = ways
+            .iter()
+            .map(|way| cells.get(&(real, *way)).map_or("", String::as_str));
+        table += &format!(
+            "| {real} |{}\n",
+            own.map(|cell| format!(" {cell} |")).collect::<String>()
+        );
+    }
+    table
+}
+
+/// Mean and standard deviation over seeds, %.
+fn accuracy(result: &Value) -> String {
+    let percent: Vec<f64> = result["accuracy_percent"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_f64)
+        .collect();
+    let n = percent.len().max(1) as f64;
+    let mean = percent.iter().sum::<f64>() / n;
+    let square: f64 = percent.iter().map(|value| (value - mean).powi(2)).sum();
+    format!("{mean:.1} ± {:.1}", (square / (n - 1.0).max(1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn accuracies_stand_by_their_trials() {
+        let result = |real: u64, simulated: u64, whose: &str, percent: [f64; 3]| {
+            serde_json::json!({
+                "real_trials": real, "simulated": whose, "simulated_trials": simulated, "sampling": "load", "accuracy_percent": percent,
+            })
+        };
+        let results = [
+            result(20, 0, "none", [80.0, 82.0, 84.0]),
+            result(0, 96, "twin", [90.0, 92.0, 94.0]),
+            result(20, 96, "twin", [95.0, 95.0, 95.0]),
+        ];
+        let lines = shapes(&results);
+        let lines: Vec<&str> = lines.lines().collect();
+        assert_eq!(
+            lines[0],
+            "| presses of each shape on the bench | alone | 96 simulated |"
+        );
+        assert_eq!(
+            lines[2..],
+            ["| 0 |  | 92.0 ± 2.0 |", "| 20 | 82.0 ± 2.0 | 95.0 ± 0.0 |"]
+        );
+    }
+
+    #[test]
+    fn what_was_made_quickly_is_not_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("metrics.json");
+        fs::write(&path, r#"{"effort": "quick"}"#).unwrap();
+        let error = write(&crate::root(), path.to_str()).unwrap_err().to_string();
+        assert!(
+            error.contains("--quick") || error.contains("not committed"),
+            "{error}"
+        );
+    }
+}
