@@ -95,7 +95,7 @@ pub(crate) struct Recorded {
 
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: about half an hour.
+    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: less than an hour.
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.

@@ -47,6 +47,7 @@ impl Paper {
         )?;
         run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
         let start = described.with_material(&yeoh(described))?;
+        // Every step of the fit presses all curves again, with derivatives: coarser than the tables.
         let settings = SimulateSettings {
             edges_per_height: 5.0,
             edges_per_contact_radius: 4.0,

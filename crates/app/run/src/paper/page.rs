@@ -250,12 +250,7 @@ fn shapes(metrics: &PaperMetrics, sensor: &Sensor) -> Vec<Block> {
             Some(table(&metrics.shapes)),
         )]),
     ];
-    let mut counts: Vec<usize> = results
-        .iter()
-        .filter(|result| result.mixture.simulated_trials != PAPER_SIMULATED)
-        .filter(|result| result.mixture.simulated == Simulated::Twin)
-        .map(|result| result.mixture.real_trials)
-        .collect();
+    let mut counts: Vec<usize> = results.iter().map(|result| result.mixture.real_trials).collect();
     counts.sort_unstable();
     counts.dedup();
     let over_simulated = counts.iter().enumerate().filter_map(|(index, real)| {

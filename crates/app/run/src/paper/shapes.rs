@@ -54,7 +54,6 @@ impl Job {
 
 /// The trials of the bench and of the twins, sampled one way.
 struct Trials {
-    sampling: Sampling,
     real: Vec<Trial>,
     twin: Vec<Trial>,
     paper_twin: Vec<Trial>,
@@ -65,7 +64,6 @@ impl Trials {
         let classes = paper.shape_names();
         let read = |file: &str| trials_of(&paper.folder.join(file), &classes, sampling);
         Ok(Self {
-            sampling,
             real: read("trials/recordings/presses.parquet")?,
             twin: read("simulated/twin.parquet")?,
             paper_twin: read("simulated/paper-twin.parquet")?,
@@ -115,8 +113,8 @@ impl Paper {
             .stage(&self.folder.join("trials/recordings"))?
             .stage(&self.folder.join("simulated"))?;
         self.run_stage("shapes", inputs, |folder| {
-            let read = |sampling| Trials::read(self, sampling);
-            let trials = [read(Sampling::Load)?, read(Sampling::Time)?];
+            let by_load = Trials::read(self, Sampling::Load)?;
+            let by_time = Trials::read(self, Sampling::Time)?;
             let jobs = self.jobs();
             let work = Work::start(self.progress(), "learning shapes", SAYINGS * jobs.len());
             let confusions: Vec<Confusion> = jobs
@@ -128,8 +126,10 @@ impl Paper {
                         (0..SAYINGS).for_each(|_| work.step(""));
                         return Ok(confusion);
                     }
-                    let seen = trials.iter().find(|seen| seen.sampling == job.mixture.sampling);
-                    let seen = seen.unwrap_or(&trials[0]);
+                    let seen = match job.mixture.sampling {
+                        Sampling::Load => &by_load,
+                        Sampling::Time => &by_time,
+                    };
                     let confusion = self.train(job, seen, &settings, &work)?;
                     write_json(&path, &confusion)?;
                     Ok(confusion)
