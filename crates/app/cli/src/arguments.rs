@@ -214,7 +214,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
     pub(crate) curves: Option<PathBuf>,
     /// Free parameters: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
-    /// bulk_modulus_kpa), poissons_ratio, depth_offset_mm, force_scale, force_offset_n.
+    /// bulk_modulus_kpa), poissons_ratio, friction, depth_offset_mm, force_scale, force_offset_n.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
     pub(crate) free: Vec<String>,
     /// About how many frames of each curve to simulate.

@@ -1,6 +1,6 @@
 //! A trained twin is read by NumPy alone. `TWINTAC_PYTHON` names a Python with `numpy` and `safetensors`.
 
-#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+#![allow(clippy::unwrap_used, clippy::print_stderr)] // a test that cannot set itself up has failed
 
 use std::fs;
 use std::path::Path;
@@ -14,14 +14,14 @@ depth_step_mm = 0.5
 [bench]
 n_places = 2
 [train]
-epochs = 20
-variants = ["paper"]
+epochs = 60
+variants = ["VARIANT"]
 "#;
 
 const PROTOCOL: &str = r#"
 summary = "A few presses with one ball"
 indenters = ["sphere-25"]
-places = { kind = "random", x_mm = [-9.0, 9.0], y_mm = [-4.0, 4.0], count = 10 }
+places = { kind = "random", x_mm = [-9.0, 9.0], y_mm = [-4.0, 4.0], count = 16 }
 depth_mm = [0.5, 1.0]
 speed_mm_per_s = 4.0
 hold_s = 0.2
@@ -38,7 +38,16 @@ fn twintac(arguments: &[&str]) {
 }
 
 #[test]
-fn numpy_reads_what_the_twin_reads() {
+fn numpy_reads_what_the_papers_network_reads() {
+    numpy_reads_what_the_twin_reads("paper");
+}
+
+#[test]
+fn numpy_reads_what_a_twin_with_ports_reads() {
+    numpy_reads_what_the_twin_reads("pressure+memory+mlp");
+}
+
+fn numpy_reads_what_the_twin_reads(variant: &str) {
     let asked = std::env::var("TWINTAC_PYTHON");
     let python = asked.clone().unwrap_or_else(|_| "python3".into());
     let has_packages = Command::new(&python)
@@ -55,13 +64,13 @@ fn numpy_reads_what_the_twin_reads() {
         fs::write(folder.path().join(name), text).unwrap();
         folder.path().join(name).to_str().unwrap().to_owned()
     };
-    let reality = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../realities/default.toml");
+    let reality = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../realities/harder.toml");
     let coarse = fs::read_to_string(reality)
         .unwrap()
         .replace("edges_per_height = 7.0", "edges_per_height = 3.0")
         .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 2.0");
     let (reality, protocol) = (file("reality.toml", &coarse), file("protocol.toml", PROTOCOL));
-    let settings = file("settings.toml", SETTINGS);
+    let settings = file("settings.toml", &SETTINGS.replace("VARIANT", variant));
     let run = folder.path().join("run");
     let run = run.to_str().unwrap();
     let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];

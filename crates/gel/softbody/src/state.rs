@@ -105,7 +105,7 @@ impl SoftBody {
             ..
         } = self.settings;
         for (field, found) in [("friction", friction), ("obstacle_friction", obstacle_friction)] {
-            if found > 0.0 {
+            if found > 0.0 && !directions.is_empty() {
                 let expected = "0 where a press is to be differentiated";
                 return Err(SoftBodyError::Setting {
                     field,

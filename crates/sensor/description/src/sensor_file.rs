@@ -67,26 +67,55 @@ impl SensorFile {
     /// # Errors
     /// A material that cannot be read or is wrong.
     pub fn with_material(&self, material: &str) -> Result<Self, SensorError> {
-        let file = self.folder.join(&self.sensor.name).with_extension("toml");
-        let unreadable = |found: &dyn std::fmt::Display| SensorError {
-            file: file.display().to_string(),
+        let material: Table =
+            toml::from_str(material).map_err(|found| self.unreadable("gel.material", &found))?;
+        self.edited(|description| {
+            if let Some(Value::Table(gel)) = description.get_mut("gel") {
+                gel.insert("material".to_owned(), Value::Table(material));
+            }
+            if let Some(Value::Array(inferred)) = description.get_mut("inferred") {
+                let of_material =
+                    |path: &Value| path.as_str().is_some_and(|path| path.starts_with("gel.material"));
+                inferred.retain(|path| !of_material(path));
+            }
+        })
+    }
+
+    /// The same description with one coefficient of friction between the gel and every indenter.
+    ///
+    /// # Errors
+    /// A coefficient that a description may not have.
+    pub fn with_friction(&self, friction: f64) -> Result<Self, SensorError> {
+        self.edited(|description| {
+            if let Some(Value::Array(indenters)) = description.get_mut("indenters") {
+                for indenter in indenters.iter_mut().filter_map(Value::as_table_mut) {
+                    indenter.insert("friction".to_owned(), Value::Float(friction));
+                }
+            }
+        })
+    }
+
+    /// The description as its text says it, with a change.
+    fn edited(&self, edit: impl FnOnce(&mut Table)) -> Result<Self, SensorError> {
+        let mut description: Table =
+            toml::from_str(&self.text).map_err(|found| self.unreadable("", &found))?;
+        edit(&mut description);
+        let text = toml::to_string(&description).map_err(|found| self.unreadable("", &found))?;
+        Self::parse(&self.file(), &text)
+    }
+
+    fn file(&self) -> PathBuf {
+        self.folder.join(&self.sensor.name).with_extension("toml")
+    }
+
+    fn unreadable(&self, field: &str, found: &dyn std::fmt::Display) -> SensorError {
+        SensorError {
+            file: self.file().display().to_string(),
             line: 0,
-            field: "gel.material".to_owned(),
+            field: field.to_owned(),
             problem: format!("is no TOML table: {found}"),
-            hint: "give a material such as those in materials/".to_owned(),
-        };
-        let table = |text: &str| toml::from_str::<Table>(text).map_err(|found| unreadable(&found));
-        let mut description = table(&self.text)?;
-        if let Some(Value::Table(gel)) = description.get_mut("gel") {
-            gel.insert("material".to_owned(), Value::Table(table(material)?));
+            hint: "give a table such as those in materials/ and sensors/".to_owned(),
         }
-        if let Some(Value::Array(inferred)) = description.get_mut("inferred") {
-            let of_material =
-                |path: &Value| path.as_str().is_some_and(|path| path.starts_with("gel.material"));
-            inferred.retain(|path| !of_material(path));
-        }
-        let text = toml::to_string(&description).map_err(|found| unreadable(&found))?;
-        Self::parse(&file, &text)
     }
 
     /// The files of surfaces (STL) that the description names: their names, and where they are.
@@ -133,5 +162,18 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(error.contains("says nothing about volume"), "{error}");
+    }
+
+    #[test]
+    fn friction_goes_to_every_indenter() {
+        let rough = SensorFile::phystac().unwrap().with_friction(0.2).unwrap();
+        assert!(
+            rough
+                .sensor
+                .indenters
+                .iter()
+                .all(|indenter| indenter.friction == Some(0.2))
+        );
+        assert!(rough.with_friction(-0.1).is_err());
     }
 }

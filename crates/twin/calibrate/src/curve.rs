@@ -41,6 +41,8 @@ pub struct Curve {
     pub name: String,
     /// Shape of the indenter.
     pub shape: Shape,
+    /// Coulomb's coefficient of friction between gel and indenter, as described.
+    pub friction: f64,
     /// Place of the indenter's origin in the gel's plane, mm.
     pub x_mm: f64,
     /// Place of the indenter's origin in the gel's plane, mm.

@@ -132,6 +132,7 @@ mod tests {
     fn press() -> Curve {
         let time_s: Vec<f64> = (0..=2000).map(|i| 0.01 * f64::from(i)).collect();
         Curve {
+            friction: 0.0,
             name: "press".into(),
             shape: Shape::Sphere { radius_mm: 1.0 },
             x_mm: 0.0,

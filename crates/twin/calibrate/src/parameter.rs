@@ -12,6 +12,8 @@ pub enum Parameter {
     Constant(String),
     /// Poisson's ratio at small strain.
     PoissonsRatio,
+    /// Coulomb's coefficient of friction between gel and indenters, the same for all curves.
+    Friction,
     /// True depth of the indenter less the recorded depth, mm; each curve has its own.
     DepthOffset,
     /// Measured over true force, the same for all curves.
@@ -23,8 +25,9 @@ pub enum Parameter {
 }
 
 /// All that are not constants of a material.
-const KNOWN: [(&str, Parameter); 5] = [
+const KNOWN: [(&str, Parameter); 6] = [
     ("poissons_ratio", Parameter::PoissonsRatio),
+    ("friction", Parameter::Friction),
     ("depth_offset_mm", Parameter::DepthOffset),
     ("force_scale", Parameter::ForceScale),
     ("force_offset_n", Parameter::ForceOffset),

@@ -12,6 +12,9 @@ use crate::{CalibrateError, Parameter};
 /// Depths farther above the gel than this are simulated as this one, mm: nothing changes there.
 const ABOVE_MM: f64 = -0.05;
 
+/// Step of the difference quotient by the coefficient of friction: what the solver leaves unbalanced is small beside what it does.
+const FRICTION_DIFFERENCE: f64 = 0.05;
+
 /// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSettings {
@@ -132,7 +135,8 @@ impl<'a> Problem<'a> {
         Ok(evaluation)
     }
 
-    /// One press, with the indices of the unknowns that its rates are for.
+    /// One press, with the indices of the unknowns that its rates are for. The rates by material and depth are those of a gel without friction, which
+    /// cannot be differentiated: friction changes how much is carried, and little of how that changes.
     fn press(&self, index: usize, x: &[f64]) -> Result<(Vec<usize>, Vec<RatedFrame>), CalibrateError> {
         let curve = &self.curves[index];
         let place = PressPlace {
@@ -155,15 +159,42 @@ impl<'a> Problem<'a> {
             .collect();
         let found = (0..self.unknowns.all.len())
             .filter_map(|unknown| Some((unknown, self.unknowns.direction(unknown, index, x)?)));
-        let (unknowns, directions): (Vec<usize>, Vec<Direction>) = found.unzip();
+        let (mut unknowns, directions): (Vec<usize>, Vec<Direction>) = found.unzip();
         let gel = self.gel.clone().with_material(self.unknowns.material(x));
-        let frames = gel
-            .mesh(&place)
-            .and_then(|mesh| mesh.press_with_rates(&keyframes, deeper_mm, &directions))
-            .map_err(|error: SimulateError| CalibrateError::Simulate {
+        let press = |friction: f64, directions: &[Direction]| {
+            let rough = gel.clone().with_friction(friction);
+            let frames = rough
+                .mesh(&place)
+                .and_then(|mesh| mesh.press_with_rates(&keyframes, deeper_mm, directions));
+            frames.map_err(|error: SimulateError| CalibrateError::Simulate {
                 curve: curve.name.clone(),
                 error,
-            })?;
+            })
+        };
+        let mut frames = press(0.0, &directions)?;
+        let free = self
+            .unknowns
+            .all
+            .iter()
+            .position(|unknown| unknown.parameter == Parameter::Friction);
+        let friction = self.unknowns.value(&Parameter::Friction, None, x, curve.friction);
+        if friction > 0.0 {
+            for (frame, rough) in frames.iter_mut().zip(press(friction, &[])?) {
+                frame.force_n = rough.force_n;
+                frame.port_pressure_kpa = rough.port_pressure_kpa;
+            }
+        }
+        if let Some(free) = free {
+            unknowns.push(free);
+            let rougher = press(friction + FRICTION_DIFFERENCE, &[])?;
+            for (frame, rougher) in frames.iter_mut().zip(rougher) {
+                let rate = |more: f64, value: f64| (more - value) / FRICTION_DIFFERENCE;
+                let pressures = rougher.port_pressure_kpa.iter().zip(&frame.port_pressure_kpa);
+                let rates = pressures.map(|(more, value)| rate(*more, *value)).collect();
+                frame.port_pressure_rates_kpa.push(rates);
+                frame.force_rates_n.push(rate(rougher.force_n, frame.force_n));
+            }
+        }
         Ok((unknowns, frames))
     }
 

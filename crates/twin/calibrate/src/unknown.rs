@@ -109,7 +109,11 @@ impl Unknowns {
                     (_, Some(curve)) if curves.len() > 1 => format!("{parameter} of {}", curves[curve].name),
                     _ => parameter.to_string(),
                 };
-                unknowns.all.push(unknown(material, parameter, owner, name)?);
+                let mut unknown = unknown(material, parameter, owner, name)?;
+                if *parameter == Parameter::Friction {
+                    unknown.start = curves.iter().map(|curve| curve.friction).fold(0.0, f64::max);
+                }
+                unknowns.all.push(unknown);
             }
         }
         Ok(unknowns)
@@ -190,6 +194,7 @@ fn unknown(
         }
         // Forces are about straight in the ratio, on any scale that opens up towards 1/2 they are not.
         Parameter::PoissonsRatio => (Scale::Linear, poissons_ratio(material), [0.05, 0.4999], 0.05),
+        Parameter::Friction => (Scale::Linear, 0.0, [0.0, 1.0], 0.1),
         Parameter::DepthOffset => (Scale::Linear, 0.0, [-1.0, 1.0], 0.1),
         Parameter::ForceOffset => (Scale::Linear, 0.0, ENDLESS, f64::INFINITY),
         Parameter::ForceScale => (Scale::Log, 1.0, [-1e3_f64.ln(), 1e3_f64.ln()], 0.7),
@@ -265,6 +270,7 @@ mod tests {
         let curve = Curve {
             name: "a".into(),
             shape: twintac_shape::Shape::Sphere { radius_mm: 3.0 },
+            friction: 0.0,
             x_mm: 0.0,
             y_mm: 0.0,
             rotation: glam::DQuat::IDENTITY,

@@ -69,7 +69,12 @@ fn model(json: &str) -> Model {
 
 /// What a bench would measure: this far down at a speed, a hold, and up; noise of 1 % of the largest force.
 fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64) -> Curve {
-    let shape = Shape::Sphere { radius_mm: 4.0 };
+    let ball = Shape::Sphere { radius_mm: 4.0 };
+    measured_with(ball, &gel(material), depth_mm, hold_s, n, seed)
+}
+
+/// The same with any shape on any gel.
+fn measured_with(shape: Shape, gel: &Gel, depth_mm: f64, hold_s: f64, n: usize, seed: u64) -> Curve {
     let duration_s = 2.0 + hold_s;
     let time_s: Vec<f64> = (0..n).map(|i| duration_s * i as f64 / (n - 1) as f64).collect();
     let depth = |t: f64| {
@@ -94,7 +99,7 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
         .zip(&depths)
         .map(|(&time_s, &depth_mm)| Keyframe { time_s, depth_mm })
         .collect();
-    let history = gel(material).press(&place, &keyframes).unwrap();
+    let history = gel.press(&place, &keyframes).unwrap();
     assert_eq!(history.failure, None);
     let largest_n = history
         .frames
@@ -129,6 +134,7 @@ fn measured(material: &Material, depth_mm: f64, hold_s: f64, n: usize, seed: u64
         });
     }
     Curve {
+        friction: 0.0,
         name: format!("press {seed}"),
         shape,
         x_mm: 0.0,
@@ -195,6 +201,23 @@ fn stiffness_and_depth_offset_are_found() {
     assert_recovered(&fit, "depth_offset_mm", 0.05, 0.2);
     assert!((fit.poissons_ratio - 0.47).abs() < 1e-12);
     assert!((fit.noise_percent - 1.0).abs() < 0.3);
+}
+
+#[test]
+fn friction_is_found_beside_stiffness() {
+    let rough = gel(&Material::neo_hookean(60.0, 0.47)).with_friction(0.3);
+    let ball = Shape::Sphere { radius_mm: 4.0 };
+    let punch = Shape::Cylinder {
+        radius_mm: 3.0,
+        height_mm: 6.0,
+        edge_radius_mm: 0.8,
+    };
+    let curves = [(ball, 2.0, 11), (punch, 1.2, 12)]
+        .map(|(shape, depth_mm, seed)| forces(measured_with(shape, &rough, depth_mm, 0.0, 150, seed)));
+    let start = Material::neo_hookean(75.0, 0.47);
+    let fit = found(&curves, &start, &["shear_modulus_kpa", "friction"]);
+    assert_recovered(&fit, "shear_modulus_kpa", 60.0 / 2.94, 0.02);
+    assert_recovered(&fit, "friction", 0.3, 0.3);
 }
 
 #[test]

@@ -178,14 +178,26 @@ impl Gel {
             .mesh_for(&place.shape, &above, place.depth_mm, None)
     }
 
-    /// The same gel with the friction of an indenter of the sensor, if its description states one.
+    /// Coulomb's coefficient of friction between an indenter and the gel: the described one, or else that of the settings.
+    #[must_use]
+    pub fn friction(&self, indenter: &str) -> f64 {
+        let known = self.sensor.indenter(indenter);
+        known
+            .and_then(|known| known.friction)
+            .unwrap_or(self.settings.solver.friction)
+    }
+
+    /// The same gel with this friction of whatever has none described.
+    #[must_use]
+    pub fn with_friction(mut self, friction: f64) -> Self {
+        self.settings.solver.friction = friction;
+        self
+    }
+
+    /// The same gel with the friction of an indenter.
     pub(crate) fn rough_for(&self, indenter: &str) -> Self {
-        let mut gel = self.clone();
-        let known = gel.sensor.indenter(indenter);
-        if let Some(friction) = known.and_then(|known| known.friction) {
-            gel.settings.solver.friction = friction;
-        }
-        gel
+        let friction = self.friction(indenter);
+        self.clone().with_friction(friction)
     }
 
     /// The same gel with a coarse mesh, to estimate how deep a force presses.
@@ -380,7 +392,14 @@ impl GelMesh {
         depths: &[Keyframe],
         show: &mut dyn FnMut(&Fields<'_>),
     ) -> DepthTable {
-        let history = self.press(place, depths, show);
+        let mut history = self.press(place, depths, show);
+        if let ([untouched, _, deeper @ ..], true) = (depths, history.frames.len() < 2)
+            && !deeper.is_empty()
+        {
+            // With friction, a first step that only an edge meets may find no equilibrium: the table starts a step deeper.
+            let depths = [&[*untouched], deeper].concat();
+            history = self.press(place, &depths, show);
+        }
         DepthTable {
             indenter: place.indenter.clone(),
             gel_from_indenter_at_touch: history.gel_from_indenter_at_touch,

@@ -148,6 +148,7 @@ pub fn curve_of_csv(path: &Path, place: &CsvPlace, gel: &Gel) -> Result<Measured
             .shape(&place.indenter)
             .at(|| path.display().to_string())?
             .clone(),
+        friction: gel.friction(&place.indenter),
         x_mm: place.x_mm,
         y_mm: place.y_mm,
         rotation: DQuat::IDENTITY,
@@ -318,6 +319,7 @@ fn of_press(press: &Press, signals: Signals, chosen: &[usize], gel: &Gel) -> Res
     Ok(Curve {
         name: press.name.clone(),
         shape: shape.clone(),
+        friction: gel.friction(&press.indenter),
         x_mm: first.position_mm.x,
         y_mm: first.position_mm.y,
         rotation: first.rotation,

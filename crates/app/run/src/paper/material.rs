@@ -12,8 +12,14 @@ use crate::calibration::{calibrate, force_curves};
 use crate::files::{read_json, read_text, write_json};
 use crate::{Planned, RunError, SensorFile};
 
-/// What is fitted. Forces tell no more of a gel than how stiff it is, how that grows with strain, and how it gives way when it is confined.
-const FREE: [&str; 4] = ["c10_kpa", "c20_kpa", "poissons_ratio", "depth_offset_mm"];
+/// What is fitted. Forces tell no more of a gel than how stiff it is, how that grows with strain, how it gives way when it is confined, and how much it sticks.
+const FREE: [&str; 5] = [
+    "c10_kpa",
+    "c20_kpa",
+    "poissons_ratio",
+    "friction",
+    "depth_offset_mm",
+];
 
 /// Frames of each press that are simulated.
 const MOST_FRAMES: usize = 14;
@@ -27,6 +33,8 @@ pub struct GelMaterial {
     pub c20_kpa: f64,
     /// Poisson's ratio at small strain.
     pub poissons_ratio: f64,
+    /// Coulomb's coefficient of friction between gel and indenters.
+    pub friction: f64,
     /// What the fit leaves of the forces, % of the largest.
     pub residual_percent: f64,
     /// Presses that it was fitted to.
@@ -34,7 +42,7 @@ pub struct GelMaterial {
 }
 
 impl Paper {
-    /// Presses every shape once, and fits the gel's material to the forces. The sensor with that gel, and its material.
+    /// Presses every shape once, and fits the gel's material and its friction to the forces. The sensor with that gel, and what was found.
     pub(super) fn material(&self, level: &Level) -> Result<(SensorFile, GelMaterial), RunError> {
         let protocol = MATERIAL_PROTOCOL;
         let described = &self.sensor;
@@ -79,6 +87,7 @@ impl Paper {
                 c10_kpa: value("c10_kpa"),
                 c20_kpa: value("c20_kpa"),
                 poissons_ratio: value("poissons_ratio"),
+                friction: value("friction"),
                 residual_percent: found.fit.noise_percent,
                 presses: n_presses,
             };
@@ -86,8 +95,9 @@ impl Paper {
             write_json(&folder.join("found.json"), &material)
         })?;
         let folder = self.folder.join("material");
+        let material: GelMaterial = read_json(&folder.join("found.json"))?;
         let fitted = described.with_material(&read_text(&folder.join("material.toml"))?)?;
-        Ok((fitted, read_json(&folder.join("found.json"))?))
+        Ok((fitted.with_friction(material.friction)?, material))
     }
 }
 

@@ -5,7 +5,7 @@
 //! ```text
 //! presses/           a run: the paper's presses, as the bench records them
 //! force-presses/     a run: presses of every shape, for their forces
-//! material/          what the gel is made of, fitted to them
+//! material/          what the gel is made of and how rough it is, fitted to them
 //! data/              a run: the presses on a gel that is levelled and fitted, and twins trained on them
 //! pairs/             every frame of the bench beside the simulation, as one array, and a data card
 //! trials/            a run: presses of the bench that shapes are told by
@@ -18,6 +18,7 @@
 //! report.html, metrics.json
 //! ```
 
+mod blocks;
 mod data;
 mod effort;
 mod experiments;
@@ -30,6 +31,7 @@ mod mixture;
 mod page;
 mod pairs;
 mod shapes;
+mod shapes_section;
 mod structured_array;
 mod trials;
 mod under_a_ball;

@@ -313,6 +313,7 @@ fn measure(gel: &Gel, press: &Press, offset_mm: f64, random: &mut RandomStream) 
     let mut curve = Curve {
         name: "press".into(),
         shape: press.shape.clone(),
+        friction: 0.0,
         x_mm: place.x_mm,
         y_mm: place.y_mm,
         rotation: place.rotation,

@@ -42,11 +42,32 @@ pub fn predict(
     plans: &[PressPlan],
     rate_hz: f64,
 ) -> Result<Vec<Prediction>, DigitacError> {
+    along(twin, bench, source, plans, &unread(twin, source, plans, rate_hz)?)
+}
+
+/// The planned presses as ones that were made, without readings.
+fn unread(
+    twin: &Twin,
+    source: &dyn DepthTableSource,
+    plans: &[PressPlan],
+    rate_hz: f64,
+) -> Result<Recording, DigitacError> {
     let n_taxels = twin.taxels().len();
     let made = |plan: &PressPlan| made(plan, &plan.trajectory(rate_hz), source, n_taxels);
-    let recording = recording(twin, plans.iter().map(made).collect::<Result<_, _>>()?);
-    let (places, tables) = simulate(&recording, bench, source)?;
-    let along = features(&recording, &places, &tables, bench)?;
+    Ok(recording(twin, plans.iter().map(made).collect::<Result<_, _>>()?))
+}
+
+/// Steps a twin along the presses of a recording, which are those of `plans`.
+fn along(
+    twin: &Twin,
+    bench: &BenchEstimate,
+    source: &dyn DepthTableSource,
+    plans: &[PressPlan],
+    recording: &Recording,
+) -> Result<Vec<Prediction>, DigitacError> {
+    let n_taxels = twin.taxels().len();
+    let (places, tables) = simulate(recording, bench, source)?;
+    let along = features(recording, &places, &tables, bench)?;
     let mut state = twin.state();
     state.tare_untouched();
     let predict = |(plan, along): (&PressPlan, Features)| {
@@ -85,23 +106,23 @@ pub fn simulated_recording(
     rate_hz: f64,
 ) -> Result<Recording, DigitacError> {
     let n_taxels = twin.taxels().len();
-    let predictions = predict(twin, bench, source, plans, rate_hz)?;
-    let press = |(plan, predicted): (&PressPlan, Prediction)| {
-        let untouched = made(plan, &plan.trajectory(rate_hz), source, n_taxels)?;
+    let unread = unread(twin, source, plans, rate_hz)?;
+    let predictions = along(twin, bench, source, plans, &unread)?;
+    let press = |(unread, predicted): (Press, Prediction)| {
         let usable = predicted
             .simulated
             .iter()
             .map(|simulated| vec![*simulated; n_taxels]);
-        Ok(Press {
+        Press {
             force_n: Some(predicted.force_n),
             valid: usable.collect(),
             taxels_raw: predicted.readings_kpa.clone(),
             taxels_kpa: predicted.readings_kpa,
-            ..untouched
-        })
+            ..unread
+        }
     };
-    let presses = plans.iter().zip(predictions).map(press);
-    Ok(recording(twin, presses.collect::<Result<_, DigitacError>>()?))
+    let presses = unread.presses.into_iter().zip(predictions).map(press);
+    Ok(recording(twin, presses.collect()))
 }
 
 /// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
