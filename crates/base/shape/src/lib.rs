@@ -16,10 +16,11 @@ mod solid;
 mod stl;
 mod surface;
 mod surface_error;
+mod union;
 
 pub use dome::Dome;
 pub use pose::Pose;
-pub use shape::{Shape, ShapeError};
+pub use shape::{Part, Shape, ShapeError};
 pub use signed_distance::{Distance, SignedDistance};
 pub use solid::Solid;
 pub use surface::{Surfaces, TriangleSurface};

@@ -8,8 +8,15 @@ use serde::{Deserialize, Serialize};
 pub struct Pose {
     /// Origin of the inner frame in the outer frame, mm.
     pub position_mm: DVec3,
-    /// Rotation from the inner to the outer frame, a unit quaternion.
+    /// Rotation from the inner to the outer frame, a unit quaternion `[x, y, z, w]`.
+    #[serde(default)]
     pub rotation: DQuat,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
 }
 
 impl Pose {

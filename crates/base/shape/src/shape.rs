@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::prism::{Placement, Prism};
 use crate::profile::Profile;
-use crate::{Distance, SignedDistance, Surfaces, TriangleSurface};
+use crate::union::Union;
+use crate::{Distance, Pose, SignedDistance, Surfaces, TriangleSurface};
 
 /// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp shape is
 /// made smaller by the radius and then grown by it in all directions. Prismatic shapes have their profile in
@@ -85,6 +86,22 @@ pub enum Shape {
         /// Path of the STL file.
         path: String,
     },
+    /// Several shapes held together, which may overlap. Their poses are in the frame of the whole, whose origin need not be its lowest point.
+    Union {
+        /// The shapes, at least one.
+        parts: Vec<Part>,
+    },
+}
+
+/// A shape as part of a [`Shape::Union`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// The part's shape.
+    pub shape: Shape,
+    /// Where it stands in the whole.
+    #[serde(default)]
+    pub whole_from_part: Pose,
 }
 
 /// A shape that can't be.
@@ -105,6 +122,14 @@ impl ShapeError {
             field: field.to_owned(),
             found: found.into(),
             expected: expected.into(),
+        }
+    }
+
+    /// The same error of a shape that stands in this field of another.
+    fn within(self, field: &str) -> Self {
+        Self {
+            field: format!("{field}.{}", self.field),
+            ..self
         }
     }
 }
@@ -233,6 +258,45 @@ impl Shape {
                 Err(ShapeError::new("path", "empty", "the path of an STL file"))
             }
             Self::Stl { .. } => Ok(()),
+            Self::Union { ref parts } if parts.is_empty() => {
+                Err(ShapeError::new("parts", "empty", "one shape or more"))
+            }
+            Self::Union { ref parts } => {
+                for (index, part) in parts.iter().enumerate() {
+                    part.validate()
+                        .map_err(|error| error.within(&format!("parts[{index}]")))?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Paths of the triangle surfaces that the shape is made of, each with its field.
+    #[must_use]
+    pub fn surface_paths(&self) -> Vec<(String, &str)> {
+        match self {
+            Self::Stl { path } => vec![("path".to_owned(), path)],
+            Self::Union { parts } => {
+                let mut paths = Vec::new();
+                for (index, part) in parts.iter().enumerate() {
+                    let of_part = part.shape.surface_paths().into_iter();
+                    paths
+                        .extend(of_part.map(|(field, path)| (format!("parts[{index}].shape.{field}"), path)));
+                }
+                paths
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Gives other names to the triangle surfaces that the shape is made of.
+    pub fn rename_surfaces(&mut self, rename: &dyn Fn(&str) -> String) {
+        match self {
+            Self::Stl { path } => *path = rename(path),
+            Self::Union { parts } => parts
+                .iter_mut()
+                .for_each(|part| part.shape.rename_surfaces(rename)),
+            _ => {}
         }
     }
 
@@ -337,7 +401,33 @@ impl Shape {
                     surface: Arc::clone(surface),
                 })
             }
+            Self::Union { ref parts } => {
+                let placed = parts.iter().map(|part| {
+                    let distance = part.shape.signed_distance_field(surfaces)?;
+                    Ok((part.whole_from_part, distance))
+                });
+                Box::new(Union::new(placed.collect::<Result<_, ShapeError>>()?))
+            }
         })
+    }
+}
+
+impl Part {
+    fn validate(&self) -> Result<(), ShapeError> {
+        self.shape.validate().map_err(|error| error.within("shape"))?;
+        let Pose {
+            position_mm,
+            rotation,
+        } = self.whole_from_part;
+        if !position_mm.is_finite() || !rotation.is_normalized() {
+            let found = format!("{position_mm} mm turned by {rotation}");
+            return Err(ShapeError::new(
+                "whole_from_part",
+                found,
+                "a finite place and a unit quaternion",
+            ));
+        }
+        Ok(())
     }
 }
 

@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use proptest::prelude::*;
-use twintac_shape::{Shape, SignedDistance, Surfaces};
+use twintac_shape::{Part, Pose, Shape, SignedDistance, Surfaces};
 
 fn field(shape: &Shape) -> Box<dyn SignedDistance> {
     shape.signed_distance_field(&Surfaces::new()).unwrap()
@@ -89,6 +89,9 @@ fn is_in(shape: &Shape, p: DVec3) -> bool {
             ..
         } => within(height_mm) && p.y.abs() <= 0.5 * length_mm && p.x.abs() <= p.z * (0.5 * angle_rad).tan(),
         Shape::Stl { .. } => false,
+        Shape::Union { ref parts } => parts
+            .iter()
+            .any(|part| is_in(&part.shape, part.whole_from_part.inverse_transform_point(p))),
     }
 }
 
@@ -311,6 +314,14 @@ fn impossible_shapes_name_the_field() {
     };
     assert_eq!(field(x), "length_mm");
     assert_eq!(field(Shape::Stl { path: String::new() }), "path");
+    assert_eq!(field(Shape::Union { parts: Vec::new() }), "parts");
+    assert_eq!(
+        field(whole(&[
+            Shape::Sphere { radius_mm: 1.0 },
+            Shape::Sphere { radius_mm: -1.0 }
+        ])),
+        "parts[1].shape.radius_mm"
+    );
     let missing = Shape::Stl {
         path: "tip.stl".into(),
     }
@@ -321,4 +332,33 @@ fn impossible_shapes_name_the_field() {
         missing.to_string().contains("`tip.stl`, which is not loaded"),
         "{missing}"
     );
+}
+
+/// Shapes beside each other, each turned and tilted.
+fn whole(shapes: &[Shape]) -> Shape {
+    let at = |(index, shape): (usize, &Shape)| Part {
+        shape: shape.clone(),
+        whole_from_part: Pose {
+            position_mm: DVec3::new(4.0 * index as f64 - 6.0, 2.0, 1.0),
+            rotation: DQuat::from_rotation_y(0.3) * DQuat::from_rotation_z(index as f64),
+        },
+    };
+    Shape::Union {
+        parts: shapes.iter().enumerate().map(at).collect(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_point_is_in_a_union_if_it_is_in_a_part(p in near()) {
+        let union = whole(&shapes(0.0));
+        let found = field(&union).signed_distance(p);
+        prop_assert!((found.gradient.length() - 1.0).abs() < 1e-9);
+        prop_assert!(found.distance_mm.abs() < 1e-9 || is_in(&union, p) == (found.distance_mm < 0.0));
+        let (low, high) = field(&union).bounds_mm();
+        let nearest = p.clamp(low, high);
+        prop_assert!(found.distance_mm.max(0.0) + 1e-9 >= p.distance(nearest), "nothing is beyond the bounds");
+    }
 }

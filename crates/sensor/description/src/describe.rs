@@ -238,5 +238,9 @@ fn shape_in_words(shape: &Shape) -> String {
             edges(*edge_radius_mm)
         ),
         Shape::Stl { path } => format!("triangle surface `{path}`"),
+        Shape::Union { parts } => {
+            let parts: Vec<String> = parts.iter().map(|part| shape_in_words(&part.shape)).collect();
+            parts.join(" with ")
+        }
     }
 }

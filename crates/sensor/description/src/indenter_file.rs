@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use twintac_shape::{Shape, Surfaces};
+use twintac_shape::Surfaces;
 
 use crate::load::load_surface;
 use crate::{Indenter, Sensor, SensorError};
@@ -32,14 +32,15 @@ impl IndenterFile {
         let mut indenter = document.value.clone();
         indenter.check(&document, "")?;
         let mut surfaces = Surfaces::new();
-        if let Shape::Stl { path: surface } = &mut indenter.shape {
-            let file = path.parent().unwrap_or(Path::new("")).join(&*surface);
-            let load = |_: &str| std::fs::read(&file);
-            let loaded = load_surface(&document, "shape.path", surface, &load)?;
-            // The sensor may have another surface of this name.
-            *surface = file.display().to_string();
-            surfaces.insert(surface.clone(), Arc::new(loaded));
+        let in_folder = |surface: &str| path.parent().unwrap_or(Path::new("")).join(surface);
+        // The sensor may have another surface of the same name.
+        let name = |surface: &str| in_folder(surface).display().to_string();
+        for (field, surface) in indenter.shape.surface_paths() {
+            let load = |surface: &str| std::fs::read(in_folder(surface));
+            let loaded = load_surface(&document, &format!("shape.{field}"), surface, &load)?;
+            surfaces.insert(name(surface), Arc::new(loaded));
         }
+        indenter.shape.rename_surfaces(&name);
         Ok(Self { indenter, surfaces })
     }
 
@@ -58,6 +59,8 @@ impl IndenterFile {
 
 #[cfg(test)]
 mod tests {
+    use twintac_shape::Shape;
+
     use super::*;
     use crate::SensorFile;
 
@@ -74,6 +77,33 @@ mod tests {
             let found = &sensor.indenter(name).unwrap().shape;
             assert!(matches!(found, Shape::Sphere { radius_mm } if *radius_mm == 4.0));
         }
+    }
+
+    #[test]
+    fn a_union_is_read_with_the_surfaces_of_its_parts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("indenter.toml");
+        let text = r#"
+            name = "two"
+            shape.kind = "union"
+            [[shape.parts]]
+            shape = { kind = "sphere", radius_mm = 3.0 }
+            whole_from_part = { position_mm = [4.0, 0.0, 0.5] }
+            [[shape.parts]]
+            shape = { kind = "stl", path = "absent.stl" }
+        "#;
+        std::fs::write(&path, text).unwrap();
+        let error = IndenterFile::read(&path).unwrap_err().to_string();
+        assert!(error.contains("`shape.parts[1].shape.path`"), "{error}");
+        std::fs::write(
+            &path,
+            text.replace("\"stl\", path = \"absent.stl\"", "\"sphere\", radius_mm = 1.0"),
+        )
+        .unwrap();
+        let Shape::Union { parts } = IndenterFile::read(&path).unwrap().indenter.shape else {
+            panic!("no union")
+        };
+        assert_eq!(parts[0].whole_from_part.position_mm.x, 4.0);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use toml::{Table, Value};
 use twintac_config::Document;
-use twintac_shape::{Shape, Solid, Surfaces, TriangleSurface};
+use twintac_shape::{Solid, Surfaces, TriangleSurface};
 
 use crate::file::SensorToml;
 use crate::material_table::material;
@@ -124,24 +124,20 @@ fn load_surfaces(
 ) -> Result<Surfaces, SensorError> {
     let file = &document.value;
     let of_gel = match &file.gel.solid {
-        Solid::Stl { path } => Some(("gel.solid.path".to_owned(), path)),
+        Solid::Stl { path } => Some(("gel.solid.path".to_owned(), path.as_str())),
         _ => None,
     };
-    let of_indenters =
-        file.indenters
-            .iter()
-            .enumerate()
-            .filter_map(|(index, indenter)| match &indenter.shape {
-                Shape::Stl { path } => Some((format!("indenters[{index}].shape.path"), path)),
-                _ => None,
-            });
+    let of_indenters = file.indenters.iter().enumerate().flat_map(|(index, indenter)| {
+        let paths = indenter.shape.surface_paths().into_iter();
+        paths.map(move |(field, path)| (format!("indenters[{index}].shape.{field}"), path))
+    });
     let mut surfaces = Surfaces::new();
     for (field, path) in of_gel.into_iter().chain(of_indenters) {
         if surfaces.contains_key(path) {
             continue;
         }
         let surface = load_surface(document, &field, path, load)?;
-        surfaces.insert(path.clone(), Arc::new(surface));
+        surfaces.insert(path.to_owned(), Arc::new(surface));
     }
     Ok(surfaces)
 }
