@@ -66,6 +66,7 @@ impl RunSettings {
         for (field, value) in [
             ("edges_per_height", simulate.edges_per_height),
             ("edges_per_contact_radius", simulate.edges_per_contact_radius),
+            ("contact_edge_mm", simulate.contact_edge_mm.unwrap_or(1.0)),
             ("edges_per_rounding", simulate.edges_per_rounding),
             ("depth_step_mm", simulate.depth_step_mm),
         ] {

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 /// Rows and columns of a product that are summed up side by side.
 const TILE: [usize; 2] = [4, 8];
@@ -11,7 +12,7 @@ const TILE: [usize; 2] = [4, 8];
 const BLOCK: usize = 512;
 
 /// A matrix, stored row by row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Matrix {
     /// `[n_rows * n_columns]`
     pub values: Vec<f32>,

@@ -223,7 +223,9 @@ impl Gel {
         let (touch, touched) = self.first_touch(indenter.as_ref(), above)?;
         let radius_mm = contact_radius_mm(indenter.as_ref(), &touch, touched, CONTACT_DEPTH * depth_mm);
         let coarse_mm = self.height_mm() / self.settings.edges_per_height;
-        let fine_mm = (radius_mm / self.settings.edges_per_contact_radius).min(coarse_mm);
+        let contact_edge_mm = self.settings.contact_edge_mm;
+        let fine_mm = contact_edge_mm.unwrap_or(radius_mm / self.settings.edges_per_contact_radius);
+        let fine_mm = fine_mm.min(coarse_mm);
         let inclusions: Vec<Cuboid> = sensor
             .inclusions
             .iter()

@@ -11,6 +11,9 @@ pub struct SimulateSettings {
     pub edges_per_height: f64,
     /// Edges across the radius of the contact at full depth; never longer than away from the indenter. The pressure has half as many.
     pub edges_per_contact_radius: f64,
+    /// Length of the edges under the indenter, mm, instead of `edges_per_contact_radius`; never longer than away from it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_edge_mm: Option<f64>,
     /// Largest number of nodes of the mesh for a table. If the requested edges give more, all edges are made longer.
     pub max_nodes: usize,
     /// Number of nodes of the mesh for a path, which bounds its computing time: edges are made shorter or longer than requested to come close
@@ -50,6 +53,7 @@ impl Default for SimulateSettings {
         Self {
             edges_per_height: 6.0,
             edges_per_contact_radius: 6.0,
+            contact_edge_mm: None,
             max_nodes: 16_000,
             max_path_nodes: 20_000,
             edges_per_rounding: 2.0,

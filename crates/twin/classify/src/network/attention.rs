@@ -1,9 +1,8 @@
 //! Attention of each sample of a series to all of them, in several heads (Vaswani et al., arXiv 1706.03762, section 3.2).
 
-use twintac_learn::Matrix;
+use twintac_learn::{Linear, Matrix};
 use twintac_random::RandomStream;
 
-use super::linear::Linear;
 use crate::series::N_SAMPLES;
 
 /// Queries, keys and values, and what is made of the heads.
@@ -96,7 +95,7 @@ impl Attention {
             (&self.key, &key_slope, &mut slopes.key),
             (&self.value, &value_slope, &mut slopes.value),
         ] {
-            super::linear::add(
+            twintac_learn::add(
                 &mut input_slope.values,
                 &linear.backward(input, slope, own).values,
             );

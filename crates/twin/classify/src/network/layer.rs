@@ -1,10 +1,9 @@
 //! One encoder layer: attention, then a perceptron for each sample, each of normalized values and added to what came in.
 
-use twintac_learn::Matrix;
+use twintac_learn::{Linear, Matrix, add};
 use twintac_random::RandomStream;
 
 use super::attention::{Attended, Attention};
-use super::linear::{Linear, add};
 use super::norm::{Norm, Normed};
 
 #[derive(Clone, Debug, PartialEq)]

@@ -2,16 +2,14 @@
 
 mod attention;
 mod layer;
-mod linear;
 mod norm;
 
-use twintac_learn::Matrix;
+use twintac_learn::{Linear, Matrix, add};
 use twintac_random::{RandomStream, normal};
 
 use crate::TrainSettings;
 use crate::series::N_SAMPLES;
 use layer::Layer;
-use linear::{Linear, add};
 use norm::Norm;
 
 /// Deviation of the places in time at first.

@@ -1,8 +1,6 @@
 //! Layer normalization (Ba, Kiros and Hinton, arXiv 1607.06450).
 
-use twintac_learn::Matrix;
-
-use super::linear::add;
+use twintac_learn::{Matrix, add};
 
 /// Keeps rows without variation finite.
 const EPSILON: f32 = 1e-5;

@@ -1,20 +1,23 @@
 //! A linear map with an offset.
 
-use twintac_learn::Matrix;
+use serde::{Deserialize, Serialize};
 use twintac_random::{RandomStream, normal};
 
+use crate::Matrix;
+
 /// `y = x w + b`
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Linear {
-    /// `[n_inputs][n_outputs]`
-    weight: Matrix,
-    /// `[n_outputs]`
-    bias: Vec<f32>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Linear {
+    /// `w`; `[n_inputs][n_outputs]`
+    pub weight: Matrix,
+    /// `b`; `[n_outputs]`
+    pub bias: Vec<f32>,
 }
 
 impl Linear {
     /// Random weights that keep the size of what goes through, and no offset.
-    pub(super) fn new(n_inputs: usize, n_outputs: usize, random: &mut RandomStream) -> Self {
+    #[must_use]
+    pub fn new(n_inputs: usize, n_outputs: usize, random: &mut RandomStream) -> Self {
         let mut weight = Matrix::zeros(n_inputs, n_outputs);
         let deviation = (n_inputs as f64).sqrt().recip();
         for value in &mut weight.values {
@@ -26,7 +29,9 @@ impl Linear {
         }
     }
 
-    pub(super) fn forward(&self, input: &Matrix) -> Matrix {
+    /// The outputs of each row of inputs. `[n][n_inputs]` to `[n][n_outputs]`
+    #[must_use]
+    pub fn forward(&self, input: &Matrix) -> Matrix {
         let mut output = input.times(&self.weight);
         for row in output.rows_mut() {
             row.iter_mut()
@@ -37,7 +42,7 @@ impl Linear {
     }
 
     /// The slope of the input; adds those of the parameters to `slopes`.
-    pub(super) fn backward(&self, input: &Matrix, output_slope: &Matrix, slopes: &mut Self) -> Matrix {
+    pub fn backward(&self, input: &Matrix, output_slope: &Matrix, slopes: &mut Self) -> Matrix {
         add(
             &mut slopes.weight.values,
             &input.transposed_times(output_slope).values,
@@ -46,15 +51,19 @@ impl Linear {
         output_slope.times(&self.weight.transposed())
     }
 
-    pub(super) fn arrays(&self) -> [&Vec<f32>; 2] {
+    /// The parameters: weights, then offsets.
+    #[must_use]
+    pub fn arrays(&self) -> [&Vec<f32>; 2] {
         [&self.weight.values, &self.bias]
     }
 
-    pub(super) fn arrays_mut(&mut self) -> [&mut Vec<f32>; 2] {
+    /// The same, to be changed.
+    pub fn arrays_mut(&mut self) -> [&mut Vec<f32>; 2] {
         [&mut self.weight.values, &mut self.bias]
     }
 }
 
-pub(super) fn add(to: &mut [f32], values: &[f32]) {
+/// Adds values to others, one by one.
+pub fn add(to: &mut [f32], values: &[f32]) {
     to.iter_mut().zip(values).for_each(|(to, value)| *to += value);
 }

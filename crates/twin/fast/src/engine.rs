@@ -1,0 +1,267 @@
+//! The networks as they are evaluated: only what touches is multiplied.
+
+use glam::DVec2;
+use pulp::{Arch, Simd, WithSimd};
+use twintac_learn::Linear;
+
+use crate::contact::N_CHANNELS;
+use crate::model::{FastGel, Layout, PRESSURE_KPA, WRENCH};
+use crate::network::{Perceptron, Turn};
+
+/// Hidden units that are summed up side by side.
+const LANES: usize = 32;
+
+/// A network whose inputs are mostly zero.
+#[derive(Clone, Debug)]
+struct Sparse {
+    /// What the first layer adds for each unit of an input. `[n_rows][n_hidden]`
+    rows: Vec<f32>,
+    /// Of the first layer, rounded up to whole lanes.
+    n_hidden: usize,
+    /// The layers after the first.
+    rest: Vec<Linear>,
+}
+
+/// One output of a sparse network: which of its rows the inputs have, and what does not change.
+#[derive(Clone, Debug)]
+struct Port {
+    /// The first row of each point of the grid; [`NOWHERE`] if it is out of reach.
+    rows: Vec<u32>,
+    /// `[n_hidden]`
+    bias: Vec<f32>,
+}
+
+const NOWHERE: u32 = u32::MAX;
+
+/// The networks of a fast gel, laid out for speed.
+#[derive(Clone, Debug)]
+pub(crate) struct Engine {
+    pressure: Sparse,
+    ports: Vec<Port>,
+    wrench: Sparse,
+    anywhere: Port,
+    n_points: usize,
+}
+
+/// What an evaluation writes to.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch {
+    /// The numbers of points that something is near, and their inputs.
+    near: Vec<(u32, [f32; N_CHANNELS])>,
+    /// Rows and what they are multiplied by.
+    terms: Vec<(u32, f32)>,
+    hidden: [Vec<f32>; 2],
+}
+
+impl Sparse {
+    fn of(network: &Perceptron) -> Self {
+        let first = &network.layers[0];
+        let n_hidden = first.bias.len().next_multiple_of(LANES);
+        let mut rows = Vec::with_capacity(first.weight.n_rows() * n_hidden);
+        for row in first.weight.rows() {
+            rows.extend(padded(row, n_hidden));
+        }
+        Self {
+            rows,
+            n_hidden,
+            rest: network.layers[1..].to_vec(),
+        }
+    }
+}
+
+fn padded(row: &[f32], n: usize) -> impl Iterator<Item = f32> {
+    row.iter().copied().chain(std::iter::repeat(0.0)).take(n)
+}
+
+impl Engine {
+    pub(crate) fn of(gel: &FastGel) -> Self {
+        let layout = &gel.layout;
+        let n_points = layout.grid.len();
+        let mut pressure = Sparse::of(&gel.networks.pressure);
+        let first = &gel.networks.pressure.layers[0];
+        let ports = gel.ports_mm.iter().map(|at| pressure.port(first, layout, *at));
+        let ports = ports.collect();
+        let wrench = Sparse::of(&gel.networks.wrench);
+        let anywhere = Port {
+            rows: (0..n_points).map(|point| (point * N_CHANNELS) as u32).collect(),
+            bias: padded(&gel.networks.wrench.layers[0].bias, wrench.n_hidden).collect(),
+        };
+        Self {
+            pressure,
+            ports,
+            wrench,
+            anywhere,
+            n_points,
+        }
+    }
+
+    pub(crate) fn scratch(&self) -> Scratch {
+        let layers = self.pressure.rest.iter().chain(&self.wrench.rest);
+        let widest = layers
+            .map(|layer| layer.weight.n_rows().max(layer.bias.len()))
+            .max();
+        let widest = widest
+            .unwrap_or(0)
+            .max(self.pressure.n_hidden)
+            .max(self.wrench.n_hidden);
+        Scratch {
+            near: Vec::with_capacity(self.n_points),
+            terms: Vec::with_capacity(self.n_points * N_CHANNELS),
+            hidden: [(); 2].map(|()| vec![0.0; widest]),
+        }
+    }
+
+    /// From what touches to the pressure at each port, kPa, and force and torque. `[n_points * N_CHANNELS]` to `[n_taxels]` and 6.
+    pub(crate) fn read(
+        &self,
+        inputs: &[f32],
+        scratch: &mut Scratch,
+        pressure_kpa: &mut [f32],
+        wrench: &mut [f32; 6],
+    ) {
+        Arch::new().dispatch(Reading {
+            engine: self,
+            inputs,
+            scratch,
+            pressure_kpa,
+            wrench,
+        });
+    }
+}
+
+impl Sparse {
+    /// A port, with rows of its own where it is not on the grid: the inputs between the grid's points are linear.
+    fn port(&mut self, first: &Linear, layout: &Layout, at: DVec2) -> Port {
+        let (grid, n_hidden) = (&layout.grid, self.n_hidden);
+        let (cell, part) = grid.cell(at);
+        let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|corner: [i32; 2]| {
+            let along = |axis: usize| {
+                if corner[axis] == 1 {
+                    part[axis]
+                } else {
+                    1.0 - part[axis]
+                }
+            };
+            (corner, along(0) * along(1))
+        });
+        let is_on_grid = corners[0].1 > 1.0 - 1e-6;
+        let mut rows = vec![NOWHERE; grid.len()];
+        for (point, row) in rows.iter_mut().enumerate() {
+            let of_point = [point % grid.n[0], point / grid.n[0]].map(|index| index as i32);
+            let own = self.rows.len() / n_hidden;
+            let mut sum = vec![0.0; N_CHANNELS * n_hidden];
+            let mut is_near = false;
+            for (corner, share) in &corners {
+                let offset = [0, 1].map(|axis| of_point[axis] - cell[axis] - corner[axis]);
+                let Some(index) = layout.patch.offsets.iter().position(|known| *known == offset) else {
+                    continue;
+                };
+                if *share < 1e-6 {
+                    continue;
+                }
+                is_near = true;
+                *row = (index * N_CHANNELS) as u32;
+                let from = index * N_CHANNELS * n_hidden;
+                for (sum, weight) in sum.iter_mut().zip(&self.rows[from..from + N_CHANNELS * n_hidden]) {
+                    *sum += *share as f32 * weight;
+                }
+            }
+            if is_near && !is_on_grid {
+                *row = own as u32;
+                self.rows.extend(sum);
+            }
+        }
+        // What describes the place does not change, nor does the finest mesh.
+        let mut place = Vec::new();
+        layout.surroundings.describe(grid, at, Turn::NONE, &mut place);
+        let mut bias: Vec<f32> = padded(&first.bias, n_hidden).collect();
+        let from = layout.patch.offsets.len() * N_CHANNELS;
+        for (value, weights) in place.iter().zip(first.weight.rows().skip(from)) {
+            for (bias, weight) in bias.iter_mut().zip(weights) {
+                *bias += value * weight;
+            }
+        }
+        Port { rows, bias }
+    }
+}
+
+/// One evaluation, compiled for each instruction set.
+struct Reading<'a> {
+    engine: &'a Engine,
+    inputs: &'a [f32],
+    scratch: &'a mut Scratch,
+    pressure_kpa: &'a mut [f32],
+    wrench: &'a mut [f32; 6],
+}
+
+impl WithSimd for Reading<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Scratch { near, terms, hidden } = self.scratch;
+        near.clear();
+        for (point, inputs) in self.inputs.as_chunks::<N_CHANNELS>().0.iter().enumerate() {
+            if inputs[0] > 0.0 || inputs[N_CHANNELS - 1] > 0.0 {
+                near.push((point as u32, *inputs));
+            }
+        }
+        let engine = self.engine;
+        for (port, pressure_kpa) in engine.ports.iter().zip(self.pressure_kpa) {
+            let output = engine.pressure.evaluate(port, near, terms, hidden);
+            *pressure_kpa = PRESSURE_KPA * output[0];
+        }
+        let output = engine.wrench.evaluate(&engine.anywhere, near, terms, hidden);
+        for ((wrench, output), unit) in self.wrench.iter_mut().zip(output).zip(WRENCH) {
+            *wrench = unit * output;
+        }
+    }
+}
+
+impl Sparse {
+    #[inline(always)]
+    fn evaluate<'a>(
+        &self,
+        port: &Port,
+        near: &[(u32, [f32; N_CHANNELS])],
+        terms: &mut Vec<(u32, f32)>,
+        [hidden, next]: &'a mut [Vec<f32>; 2],
+    ) -> &'a [f32] {
+        terms.clear();
+        for (point, inputs) in near {
+            let row = port.rows[*point as usize];
+            if row == NOWHERE {
+                continue;
+            }
+            for (channel, input) in inputs.iter().enumerate() {
+                if *input > 0.0 {
+                    terms.push(((row as usize + channel) as u32, *input));
+                }
+            }
+        }
+        for (block, bias) in port.bias.as_chunks::<LANES>().0.iter().enumerate() {
+            let mut sums = *bias;
+            for (row, input) in terms.iter() {
+                let from = *row as usize * self.n_hidden + block * LANES;
+                let weights = &self.rows[from..from + LANES];
+                for (sum, weight) in sums.iter_mut().zip(weights) {
+                    *sum = input.mul_add(*weight, *sum);
+                }
+            }
+            hidden[block * LANES..(block + 1) * LANES].copy_from_slice(&sums);
+        }
+        let (mut hidden, mut next) = (hidden, next);
+        for layer in &self.rest {
+            let n_outputs = layer.bias.len();
+            next[..n_outputs].copy_from_slice(&layer.bias);
+            for (value, weights) in hidden.iter().zip(layer.weight.rows()) {
+                let value = value.max(0.0);
+                for (sum, weight) in next[..n_outputs].iter_mut().zip(weights) {
+                    *sum = value.mul_add(*weight, *sum);
+                }
+            }
+            (hidden, next) = (next, hidden);
+        }
+        &hidden[..]
+    }
+}

@@ -1,0 +1,40 @@
+//! What the fast twin learns from: presses of a gel that was solved.
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+use twintac_sensor::Sensor;
+use twintac_shape::{Pose, Shape};
+
+use crate::surface::SurfaceGrid;
+
+/// One press of a solved gel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lesson {
+    /// What pressed.
+    pub shape: Shape,
+    /// Length of the mesh's edges under it, mm. Coarse meshes read too little: the network is told how coarse.
+    pub edge_mm: f64,
+    /// The gel at increasing depths.
+    pub frames: Vec<LessonFrame>,
+}
+
+/// A moment of a press.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LessonFrame {
+    /// Where the shape was.
+    pub gel_from_indenter: Pose,
+    /// Force on the gel, N.
+    pub force_n: DVec3,
+    /// Torque on the gel about the origin of its frame, N mm.
+    pub torque_n_mm: DVec3,
+    /// Hydrostatic pressure over a disc as large as a port at each of the lesson plan's places, kPa. `[n_places]`
+    pub floor_kpa: Vec<f32>,
+}
+
+/// Where lessons read the floor of a sensor's gel, in its plane, mm: at each taxel, then all over.
+#[must_use]
+pub fn lesson_places_mm(sensor: &Sensor) -> Vec<DVec2> {
+    let taxels = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
+    let all_over = SurfaceGrid::of(sensor).floor(sensor, sensor.taxels[0].port_radius_mm);
+    taxels.chain(all_over).collect()
+}

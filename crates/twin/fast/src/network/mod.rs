@@ -1,0 +1,7 @@
+//! The two networks: one reads a place of the floor from what touches around it, the other the force from what touches anywhere.
+
+mod patch;
+mod perceptron;
+
+pub(crate) use patch::{Patch, Surroundings, Turn};
+pub(crate) use perceptron::Perceptron;

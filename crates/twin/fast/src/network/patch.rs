@@ -1,0 +1,137 @@
+//! The part of the grid around a place of the floor, and the place itself, as inputs of a network.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use twintac_sensor::Sensor;
+
+use crate::contact::N_CHANNELS;
+use crate::surface::SurfaceGrid;
+
+/// How far a patch reaches, points of the grid.
+const REACH: i32 = 6;
+
+/// What the gel's edges do falls by e over this share of its height.
+const EDGE_DECAY: f64 = 0.5;
+
+/// Numbers that describe a place.
+const N_PLACE: usize = 13;
+
+/// Offsets of a patch's points from its place, in points of the grid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Patch {
+    pub(crate) offsets: Vec<[i32; 2]>,
+}
+
+/// A way to turn or mirror a square: axes swapped or not, then each mirrored or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turn {
+    pub(crate) swapped: bool,
+    pub(crate) mirrored: [bool; 2],
+}
+
+impl Patch {
+    /// All points within reach.
+    pub(crate) fn round() -> Self {
+        let within = |[i, j]: &[i32; 2]| i * i + j * j <= REACH * REACH + 1;
+        let all = (-REACH..=REACH).flat_map(|j| (-REACH..=REACH).map(move |i| [i, j]));
+        Self {
+            offsets: all.filter(within).collect(),
+        }
+    }
+
+    /// Numbers that a network is shown: the patch, the place, and how coarse the mesh was.
+    pub(crate) fn n_inputs(&self) -> usize {
+        self.offsets.len() * N_CHANNELS + N_PLACE + 1
+    }
+
+    /// For each offset, the point of the grid there, seen from a place on the grid, turned; `None` beside the grid.
+    pub(crate) fn points<'a>(
+        &'a self,
+        grid: &'a SurfaceGrid,
+        place: [i32; 2],
+        turn: Turn,
+    ) -> impl Iterator<Item = Option<usize>> + 'a {
+        self.offsets.iter().map(move |offset| {
+            let offset = turn.apply(*offset);
+            grid.point([place[0] + offset[0], place[1] + offset[1]])
+        })
+    }
+}
+
+impl Turn {
+    /// As things are.
+    pub(crate) const NONE: Self = Self {
+        swapped: false,
+        mirrored: [false; 2],
+    };
+
+    /// The turn of a number from 0 to 7.
+    pub(crate) fn number(number: u32) -> Self {
+        Self {
+            swapped: number & 4 != 0,
+            mirrored: [number & 1 != 0, number & 2 != 0],
+        }
+    }
+
+    /// Where an offset of the turned patch is in the gel.
+    fn apply(self, [i, j]: [i32; 2]) -> [i32; 2] {
+        let [mut i, mut j] = if self.swapped { [j, i] } else { [i, j] };
+        if self.mirrored[0] {
+            i = -i;
+        }
+        if self.mirrored[1] {
+            j = -j;
+        }
+        [i, j]
+    }
+}
+
+/// The gel around places of its floor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Surroundings {
+    low_mm: DVec2,
+    high_mm: DVec2,
+    height_mm: f64,
+}
+
+impl Surroundings {
+    pub(crate) fn of(sensor: &Sensor) -> Self {
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        Self {
+            low_mm: low.truncate(),
+            high_mm: high.truncate(),
+            height_mm: high.z - low.z,
+        }
+    }
+
+    /// The gel's lowest corner in plan, mm.
+    pub(crate) fn low_mm(&self) -> DVec2 {
+        self.low_mm
+    }
+
+    /// Appends what describes a place of the floor, seen from a turned patch: how close each edge of the gel is, and how much lower the gel is
+    /// than at its highest, above the place and to each side.
+    pub(crate) fn describe(&self, grid: &SurfaceGrid, at: DVec2, turn: Turn, inputs: &mut Vec<f32>) {
+        let lower = |at: DVec2| 1.0 - grid.height_mm_at(at) / self.height_mm;
+        let mut near = Vec::with_capacity(4);
+        let mut sides = Vec::with_capacity(4);
+        for axis in 0..2 {
+            let from = if turn.swapped { 1 - axis } else { axis };
+            for is_high in [turn.mirrored[from], !turn.mirrored[from]] {
+                let (distance_mm, way) = if is_high {
+                    (self.high_mm[from] - at[from], 1.0)
+                } else {
+                    (at[from] - self.low_mm[from], -1.0)
+                };
+                near.push((-distance_mm.max(0.0) / (EDGE_DECAY * self.height_mm)).exp() as f32);
+                let mut side = at;
+                side[from] += way * EDGE_DECAY * self.height_mm;
+                sides.push(lower(side) as f32);
+            }
+        }
+        inputs.extend(&near);
+        inputs.extend(near.iter().map(|near| near * near));
+        inputs.push(lower(at) as f32);
+        inputs.extend(sides);
+    }
+}

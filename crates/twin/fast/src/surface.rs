@@ -1,0 +1,101 @@
+//! Where the distance to what touches is sampled: a grid over the gel's surface.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use twintac_sensor::Sensor;
+
+/// Distance of the grid's points along x and along y, mm.
+const SPACING_MM: f64 = 2.0;
+
+/// A grid of points on the undeformed gel's surface, row by row along x.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SurfaceGrid {
+    /// Place of the first point in the gel's plane, mm.
+    pub(crate) first_mm: [f64; 2],
+    /// Distance of the points, mm.
+    pub(crate) spacing_mm: f64,
+    /// Points along x and along y.
+    pub(crate) n: [usize; 2],
+    /// Height of the surface at each point, mm; beside the gel that of its nearest point.
+    pub(crate) height_mm: Vec<f64>,
+}
+
+impl SurfaceGrid {
+    /// A grid over a sensor's gel with one of its points above the first taxel.
+    pub(crate) fn of(sensor: &Sensor) -> Self {
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let anchor = sensor.taxels[0].position_mm;
+        let axis = |axis: usize| {
+            let before = ((anchor[axis] - low[axis]) / SPACING_MM).floor();
+            let after = ((high[axis] - anchor[axis]) / SPACING_MM).floor();
+            (anchor[axis] - before * SPACING_MM, (before + after) as usize + 1)
+        };
+        let [(x_mm, n_x), (y_mm, n_y)] = [axis(0), axis(1)];
+        let mut grid = Self {
+            first_mm: [x_mm, y_mm],
+            spacing_mm: SPACING_MM,
+            n: [n_x, n_y],
+            height_mm: Vec::new(),
+        };
+        let top_mm = |at: DVec2| sensor.gel.solid.top_height_mm(at.x, at.y, &sensor.surfaces);
+        grid.height_mm = grid.places().map(|at| top_mm(at).unwrap_or(high.z)).collect();
+        grid
+    }
+
+    /// The points' places in the gel's plane, mm.
+    pub(crate) fn places(&self) -> impl Iterator<Item = DVec2> + '_ {
+        let [n_x, n_y] = self.n;
+        (0..n_y).flat_map(move |j| (0..n_x).map(move |i| self.place(i, j)))
+    }
+
+    /// Places on the gel's floor at which a disc of this radius is on the gel, mm.
+    pub(crate) fn floor(&self, sensor: &Sensor, radius_mm: f64) -> Vec<DVec2> {
+        let (low, _) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let is_gel = |at: DVec2| {
+            sensor
+                .gel
+                .solid
+                .contains(at.extend(low.z), 1e-6, &sensor.surfaces)
+        };
+        let around = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y].map(|way| radius_mm * way);
+        let places = self.places();
+        places
+            .filter(|at| around.iter().all(|way| is_gel(*at + *way)))
+            .collect()
+    }
+
+    fn place(&self, i: usize, j: usize) -> DVec2 {
+        DVec2::from(self.first_mm) + self.spacing_mm * DVec2::new(i as f64, j as f64)
+    }
+
+    /// Number of the point at a column and a row, if there is one.
+    pub(crate) fn point(&self, [i, j]: [i32; 2]) -> Option<usize> {
+        let [n_x, n_y] = self.n;
+        let is_there = (0..n_x as i32).contains(&i) && (0..n_y as i32).contains(&j);
+        is_there.then(|| j as usize * n_x + i as usize)
+    }
+
+    /// Column and row of a place, and how far behind them it lies in shares of the spacing.
+    pub(crate) fn cell(&self, at: DVec2) -> ([i32; 2], DVec2) {
+        // Places on the grid stay there in spite of rounding.
+        let cells = (at - DVec2::from(self.first_mm)) / self.spacing_mm + 1e-9;
+        let cell = cells.floor();
+        ([cell.x as i32, cell.y as i32], cells - cell)
+    }
+
+    /// Height of the gel at a place, linear between points; beside the grid that of its border, mm.
+    pub(crate) fn height_mm_at(&self, at: DVec2) -> f64 {
+        let ([i, j], part) = self.cell(at);
+        let height_mm = |i: i32, j: i32| {
+            let clamped = [(i, self.n[0]), (j, self.n[1])].map(|(index, n)| index.clamp(0, n as i32 - 1));
+            self.point(clamped).map_or(0.0, |point| self.height_mm[point])
+        };
+        let row = |j: i32| height_mm(i, j) + part.x * (height_mm(i + 1, j) - height_mm(i, j));
+        row(j) + part.y * (row(j + 1) - row(j))
+    }
+
+    /// Number of points.
+    pub(crate) fn len(&self) -> usize {
+        self.height_mm.len()
+    }
+}

@@ -1,0 +1,81 @@
+//! Random frames and places, turned at random.
+
+use rand::Rng;
+use twintac_learn::Matrix;
+use twintac_random::RandomStream;
+
+use super::Frames;
+use crate::contact::N_CHANNELS;
+use crate::model::Layout;
+use crate::network::Turn;
+
+/// What one step learns from.
+pub(super) struct Batch {
+    /// What touches around places of the floor. `[n_frames * n_places][n_patch_inputs]`
+    pub(super) patches: Matrix,
+    /// The pressure there, over the largest of the press. `[n_frames * n_places]`
+    pub(super) pressure: Vec<f32>,
+    /// The largest pressure of each row's press, kPa.
+    pub(super) largest_kpa: Vec<f32>,
+    /// What touches anywhere. `[n_frames][n_inputs + 1]`
+    pub(super) fields: Matrix,
+    /// `[n_frames]`
+    pub(super) wrench: Vec<[f32; 6]>,
+    /// The largest force of each press, N. `[n_frames]`
+    pub(super) largest_n: Vec<f32>,
+}
+
+impl Batch {
+    pub(super) fn draw(
+        frames: &Frames,
+        layout: &Layout,
+        [n_frames, n_places]: [usize; 2],
+        is_symmetric: bool,
+        random: &mut RandomStream,
+    ) -> Self {
+        let mut batch = Self {
+            patches: Matrix::zeros(0, layout.patch.n_inputs()),
+            pressure: Vec::with_capacity(n_frames * n_places),
+            largest_kpa: Vec::with_capacity(n_frames * n_places),
+            fields: Matrix::zeros(0, layout.n_field_inputs()),
+            wrench: Vec::with_capacity(n_frames),
+            largest_n: Vec::with_capacity(n_frames),
+        };
+        batch
+            .patches
+            .values
+            .reserve(n_frames * n_places * layout.patch.n_inputs());
+        batch.fields.values.reserve(n_frames * layout.n_field_inputs());
+        for _ in 0..n_frames {
+            let frame = &frames.frames[random.random_range(0..frames.frames.len())];
+            for _ in 0..n_places {
+                let (number, cell, at) = frames.places[random.random_range(0..frames.places.len())];
+                let turn = Turn::number(random.random_range(0..8));
+                layout.put_patch(
+                    &frame.inputs,
+                    cell,
+                    at,
+                    frame.edge_mm,
+                    turn,
+                    &mut batch.patches.values,
+                );
+                batch.pressure.push(frame.floor_kpa[number] / frame.largest_kpa);
+                batch.largest_kpa.push(frame.largest_kpa);
+            }
+            let mirrored = [0, 1].map(|_| is_symmetric && random.random_bool(0.5));
+            layout.put_field(&frame.inputs, frame.edge_mm, mirrored, &mut batch.fields.values);
+            batch.wrench.push(mirror_wrench(frame.wrench, mirrored));
+            batch.largest_n.push(frame.largest_n);
+        }
+        debug_assert_eq!(batch.fields.n_rows(), n_frames);
+        debug_assert!(N_CHANNELS > 0);
+        batch
+    }
+}
+
+/// A force and a torque seen in mirrors across x and across y.
+fn mirror_wrench([fx, fy, fz, tx, ty, tz]: [f32; 6], mirrored: [bool; 2]) -> [f32; 6] {
+    let [x, y] = mirrored.map(|is_mirrored| if is_mirrored { -1.0 } else { 1.0 });
+    // A torque turns the other way in a mirror, but for its component across the mirror.
+    [x * fx, y * fy, fz, y * tx, x * ty, x * y * tz]
+}

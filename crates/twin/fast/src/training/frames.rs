@@ -1,0 +1,72 @@
+//! Lessons as a network sees them.
+
+use glam::{DVec2, DVec3};
+use twintac_shape::{ShapeError, Surfaces};
+
+use crate::contact::ContactGrid;
+use crate::surface::SurfaceGrid;
+use crate::{Body, Lesson};
+
+/// One moment of a lesson.
+pub(crate) struct TaughtFrame {
+    /// `[n_points * N_CHANNELS]`
+    pub(crate) inputs: Vec<f32>,
+    /// Length of the mesh's edges, mm.
+    pub(crate) edge_mm: f32,
+    /// Pressure at each place, kPa.
+    pub(crate) floor_kpa: Vec<f32>,
+    /// Force, N, and torque about the top of the gel's middle, N mm.
+    pub(crate) wrench: [f32; 6],
+    /// Largest pressure of the whole press, kPa.
+    pub(crate) largest_kpa: f32,
+    /// Largest force of the whole press, N.
+    pub(crate) largest_n: f32,
+}
+
+/// Lessons of one sensor.
+pub(crate) struct Frames {
+    pub(crate) frames: Vec<TaughtFrame>,
+    /// Places whose pressure is taught that lie on the grid: the number of the place, its column and row, and where it is, mm.
+    pub(crate) places: Vec<(usize, [i32; 2], DVec2)>,
+}
+
+impl Frames {
+    pub(crate) fn of(
+        lessons: &[Lesson],
+        grid: &SurfaceGrid,
+        places_mm: &[DVec2],
+        center_mm: DVec3,
+    ) -> Result<Self, ShapeError> {
+        let contact = ContactGrid::new(grid);
+        let mut frames = Vec::new();
+        for lesson in lessons {
+            let body = Body::new(&lesson.shape, &Surfaces::new())?;
+            let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa);
+            let largest_kpa = floor.copied().fold(f32::MIN_POSITIVE, f32::max);
+            let forces = lesson.frames.iter().map(|frame| frame.force_n.length() as f32);
+            let largest_n = forces.fold(f32::MIN_POSITIVE, f32::max);
+            for frame in &lesson.frames {
+                let mut inputs = vec![0.0; contact.n_inputs()];
+                contact.fill(&[(&body, frame.gel_from_indenter)], &mut inputs);
+                let torque = frame.torque_n_mm - center_mm.cross(frame.force_n);
+                let [fx, fy, fz] = frame.force_n.to_array();
+                frames.push(TaughtFrame {
+                    inputs,
+                    edge_mm: lesson.edge_mm as f32,
+                    floor_kpa: frame.floor_kpa.clone(),
+                    wrench: [fx, fy, fz, torque.x, torque.y, torque.z].map(|value| value as f32),
+                    largest_kpa,
+                    largest_n,
+                });
+            }
+        }
+        let on_grid = places_mm.iter().enumerate().filter_map(|(number, at)| {
+            let (cell, part) = grid.cell(*at);
+            (part.length() < 1e-6).then_some((number, cell, *at))
+        });
+        Ok(Self {
+            places: on_grid.collect(),
+            frames,
+        })
+    }
+}

@@ -1,0 +1,9 @@
+//! Training on lessons.
+
+mod batch;
+mod frames;
+mod train;
+
+pub(crate) use frames::Frames;
+pub(crate) use train::train;
+pub use train::{TrainProgress, TrainSettings};

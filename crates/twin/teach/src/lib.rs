@@ -1,0 +1,9 @@
+//! Random presses of a sensor's gel, for the fast twin to learn from.
+//!
+//! The pressure is read at places all over the floor, not only at the ports: what a shape does there depends on where it presses *relative* to
+//! the place, so each press teaches as much as a hundred with eight ports alone.
+
+mod draw;
+mod press;
+
+pub use press::{TeachError, Teacher};
