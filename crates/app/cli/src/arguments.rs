@@ -54,8 +54,44 @@ pub(crate) enum Command {
     CrossValidate(CrossValidate),
     /// Print what a sensor would read along a path or a protocol, by its trained twin.
     Predict(Predict),
+    /// The twin without finite elements: touch at the rate of reinforcement learning.
+    #[command(subcommand)]
+    Fast(FastCommand),
     /// Write the report of a run.
     Report(Report),
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum FastCommand {
+    /// Train a fast twin from a sensor's description alone: about two hours on two cores.
+    Train(FastTrain),
+}
+
+/// The gel is pressed at random with finite elements, and networks learn from that. Then they are judged on presses that taught nothing. Presses that are solved are
+/// kept: a killed run goes on.
+#[derive(Args, Debug)]
+pub(crate) struct FastTrain {
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: PathBuf,
+    /// Folder of the solved presses, the fast twin and its judgement.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Presses to learn from [default: 4000].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(20..))]
+    pub(crate) lessons: Option<u64>,
+    /// Presses of shapes that are not taught, to be judged on [default: 120].
+    #[arg(long, value_name = "N")]
+    pub(crate) exams: Option<u64>,
+    /// Steps of the training [default: 60000].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) steps: Option<u64>,
+    /// Seed of all random choices.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Print the judgement as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -95,7 +131,7 @@ pub(crate) struct Recorded {
 
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: less than an hour.
+    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: about an hour.
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.

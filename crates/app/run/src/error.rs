@@ -107,6 +107,15 @@ pub enum RunError {
     /// Shapes cannot be learned.
     #[error(transparent)]
     Classify(#[from] twintac_classify::ClassifyError),
+    /// A shape can't be.
+    #[error(transparent)]
+    Shape(#[from] twintac_shape::ShapeError),
+    /// The fast twin had no lesson.
+    #[error(transparent)]
+    Teach(#[from] twintac_teach::TeachError),
+    /// A fast twin could not be read or written.
+    #[error(transparent)]
+    Fast(#[from] twintac_fast::FastFileError),
     /// A twin could not be made or judged.
     #[error(transparent)]
     Twin(#[from] digitac::DigitacError),

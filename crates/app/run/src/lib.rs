@@ -51,6 +51,7 @@ mod depth_tables;
 mod doubtful;
 mod error;
 pub mod export;
+pub mod fast;
 mod files;
 pub mod mesh;
 mod metrics;

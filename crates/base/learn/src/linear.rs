@@ -1,12 +1,11 @@
 //! A linear map with an offset.
 
-use serde::{Deserialize, Serialize};
 use twintac_random::{RandomStream, normal};
 
 use crate::Matrix;
 
 /// `y = x w + b`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Linear {
     /// `w`; `[n_inputs][n_outputs]`
     pub weight: Matrix,

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
-use serde::{Deserialize, Serialize};
 
 /// Rows and columns of a product that are summed up side by side.
 const TILE: [usize; 2] = [4, 8];
@@ -12,7 +11,7 @@ const TILE: [usize; 2] = [4, 8];
 const BLOCK: usize = 512;
 
 /// A matrix, stored row by row.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Matrix {
     /// `[n_rows * n_columns]`
     pub values: Vec<f32>,

@@ -1,6 +1,7 @@
 //! What the gel is touched by: for each point of the grid, how far inside a body it lies, or how close to one.
 
 use glam::{Mat3, Vec3};
+use pulp::{Arch, Simd, WithSimd};
 use twintac_shape::Pose;
 
 use crate::distance::{Body, Form, REACH_MM};
@@ -49,12 +50,14 @@ impl ContactGrid {
     /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its
     /// surface, more inside. `[n_points * N_CHANNELS]`
     pub(crate) fn fill(&self, bodies: &[(&Body, Pose)], inputs: &mut [f32]) {
-        inputs.fill(0.0);
-        for (body, gel_from_body) in bodies {
-            self.add(body, gel_from_body, inputs);
-        }
+        Arch::new().dispatch(Filling {
+            grid: self,
+            bodies,
+            inputs,
+        });
     }
 
+    #[inline(always)]
     fn add(&self, body: &Body, gel_from_body: &Pose, inputs: &mut [f32]) {
         let rotation = gel_from_body.rotation.as_quat();
         let body_from_gel = Mat3::from_quat(rotation.inverse());
@@ -68,7 +71,7 @@ impl ContactGrid {
             let cells = |mm: f32| (mm - self.first_mm[axis]) / self.spacing_mm;
             let from = cells(low[axis]).ceil().max(0.0) as usize;
             let to = (cells(high[axis]).floor() + 1.0).clamp(0.0, self.n[axis] as f32) as usize;
-            from..to.max(from)
+            from.min(to)..to
         };
         let (columns, rows) = (range(0), range(1));
         debug_assert!(columns.end <= n_x && rows.end <= n_y);
@@ -99,6 +102,25 @@ impl ContactGrid {
         );
         let around = abs * half + Vec3::splat(REACH_MM);
         [middle - around, middle + around]
+    }
+}
+
+/// [`ContactGrid::fill`], compiled for each instruction set.
+struct Filling<'a> {
+    grid: &'a ContactGrid,
+    bodies: &'a [(&'a Body, Pose)],
+    inputs: &'a mut [f32],
+}
+
+impl WithSimd for Filling<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.inputs.fill(0.0);
+        for (body, gel_from_body) in self.bodies {
+            self.grid.add(body, gel_from_body, self.inputs);
+        }
     }
 }
 

@@ -95,7 +95,7 @@ impl Samples {
             return REACH_MM;
         }
         let [i, j, k] = cells.to_array().map(|cell| cell as usize);
-        let part = cells - cells.floor();
+        let part = cells - Vec3::new(i as f32, j as f32, k as f32);
         let first = (k * n_y + j) * n_x + i;
         let line = |from: usize| {
             let [low, high] = [self.distance_mm[from], self.distance_mm[from + 1]];

@@ -6,7 +6,7 @@ use twintac_learn::Linear;
 
 use crate::contact::N_CHANNELS;
 use crate::model::{FastGel, Layout, PRESSURE_KPA, WRENCH};
-use crate::network::{Perceptron, Turn};
+use crate::network::{Perceptron, Turn, silu};
 
 /// Hidden units that are summed up side by side.
 const LANES: usize = 32;
@@ -206,6 +206,11 @@ impl WithSimd for Reading<'_> {
                 near.push((point as u32, *inputs));
             }
         }
+        if near.is_empty() {
+            self.pressure_kpa.fill(0.0);
+            *self.wrench = [0.0; 6];
+            return;
+        }
         let engine = self.engine;
         for (port, pressure_kpa) in engine.ports.iter().zip(self.pressure_kpa) {
             let output = engine.pressure.evaluate(port, near, terms, hidden);
@@ -252,10 +257,12 @@ impl Sparse {
         }
         let (mut hidden, mut next) = (hidden, next);
         for layer in &self.rest {
+            hidden[..layer.weight.n_rows()]
+                .iter_mut()
+                .for_each(|value| *value = silu(*value));
             let n_outputs = layer.bias.len();
             next[..n_outputs].copy_from_slice(&layer.bias);
             for (value, weights) in hidden.iter().zip(layer.weight.rows()) {
-                let value = value.max(0.0);
                 for (sum, weight) in next[..n_outputs].iter_mut().zip(weights) {
                     *sum = value.mul_add(*weight, *sum);
                 }

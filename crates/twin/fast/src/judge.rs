@@ -60,11 +60,17 @@ impl FastGel {
             for frame in &frames {
                 groups.entry(key(frame)).or_default().push(frame);
             }
-            groups.into_iter().map(|(key, frames)| (key, mean(&frames))).collect()
+            groups
+                .into_iter()
+                .map(|(key, frames)| (key, mean(&frames)))
+                .collect()
         };
         let mut by_depth: BTreeMap<u32, Vec<&FrameErrors>> = BTreeMap::new();
         for frame in &frames {
-            by_depth.entry(frame.depth_mm.max(0.0) as u32).or_default().push(frame);
+            by_depth
+                .entry(frame.depth_mm.max(0.0) as u32)
+                .or_default()
+                .push(frame);
         }
         let quarter = |frame: &FrameErrors| {
             let quarter = (4.0 * frame.from_middle).min(3.0).floor();
@@ -73,7 +79,10 @@ impl FastGel {
         Ok(Judgement {
             overall: mean(&frames.iter().collect::<Vec<_>>()),
             by_shape: grouped(&|frame| frame.shape.to_owned()),
-            by_depth_mm: by_depth.into_iter().map(|(depth, frames)| (depth, mean(&frames))).collect(),
+            by_depth_mm: by_depth
+                .into_iter()
+                .map(|(depth, frames)| (depth, mean(&frames)))
+                .collect(),
             by_place: grouped(&quarter),
         })
     }

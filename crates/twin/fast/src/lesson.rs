@@ -14,7 +14,7 @@ pub struct Lesson {
     pub shape: Shape,
     /// Length of the mesh's edges under it, mm. Coarse meshes read too little: the network is told how coarse.
     pub edge_mm: f64,
-    /// The gel at increasing depths.
+    /// The gel at increasing depths, evenly from first touch on.
     pub frames: Vec<LessonFrame>,
 }
 
@@ -29,6 +29,20 @@ pub struct LessonFrame {
     pub torque_n_mm: DVec3,
     /// Hydrostatic pressure over a disc as large as a port at each of the lesson plan's places, kPa. `[n_places]`
     pub floor_kpa: Vec<f32>,
+}
+
+impl Lesson {
+    /// The shape's pose at first touch: frames follow each other straight down at even distances. `None` for a lesson of fewer than two.
+    pub(crate) fn touch(&self) -> Option<Pose> {
+        let [first, second, ..] = &self.frames[..] else {
+            return None;
+        };
+        let (first, second) = (first.gel_from_indenter, second.gel_from_indenter);
+        Some(Pose {
+            position_mm: 2.0 * first.position_mm - second.position_mm,
+            ..first
+        })
+    }
 }
 
 /// Where lessons read the floor of a sensor's gel, in its plane, mm: at each taxel, then all over.

@@ -3,6 +3,7 @@
 mod contact;
 mod distance;
 mod engine;
+mod file;
 mod judge;
 mod lesson;
 mod model;
@@ -12,8 +13,9 @@ mod surface;
 mod training;
 
 pub use distance::Body;
+pub use file::FastFileError;
 pub use judge::{GroupErrors, Judgement};
 pub use lesson::{Lesson, LessonFrame, lesson_places_mm};
 pub use model::FastGel;
 pub use read::FastReader;
-pub use training::{TrainProgress, TrainSettings};
+pub use training::{REPORT_STEPS, TrainProgress, TrainSettings};

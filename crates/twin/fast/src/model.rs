@@ -30,7 +30,7 @@ pub(crate) struct Layout {
 }
 
 /// The two trained networks.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Networks {
     /// From a patch to the pressure at its place.
     pub(crate) pressure: Perceptron,
@@ -39,7 +39,7 @@ pub(crate) struct Networks {
 }
 
 /// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FastGel {
     pub(crate) sensor: String,
     pub(crate) layout: Layout,
@@ -84,6 +84,14 @@ impl FastGel {
             center_mm,
             networks,
         })
+    }
+}
+
+impl FastGel {
+    /// Name of the sensor.
+    #[must_use]
+    pub fn sensor(&self) -> &str {
+        &self.sensor
     }
 }
 

@@ -5,6 +5,7 @@ mod characterize;
 mod cross_validate;
 mod demo;
 mod export;
+mod fast;
 mod files;
 mod follow;
 mod mesh;
@@ -19,7 +20,7 @@ mod stream;
 
 use anyhow::Result;
 
-use crate::arguments::{Command, SensorCommand};
+use crate::arguments::{Command, FastCommand, SensorCommand};
 
 pub(crate) use record::Stopped;
 
@@ -42,6 +43,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Evaluate(arguments) => stages::evaluate(&arguments),
         Command::CrossValidate(arguments) => cross_validate::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
+        Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments),
         Command::Report(arguments) => stages::report(&arguments),
     }
 }

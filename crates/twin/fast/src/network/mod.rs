@@ -2,6 +2,8 @@
 
 mod patch;
 mod perceptron;
+mod silu;
 
 pub(crate) use patch::{Patch, Surroundings, Turn};
 pub(crate) use perceptron::Perceptron;
+pub(crate) use silu::silu;

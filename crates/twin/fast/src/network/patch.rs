@@ -8,7 +8,7 @@ use crate::contact::N_CHANNELS;
 use crate::surface::SurfaceGrid;
 
 /// How far a patch reaches, points of the grid.
-const REACH: i32 = 6;
+const REACH: i32 = 4;
 
 /// What the gel's edges do falls by e over this share of its height.
 const EDGE_DECAY: f64 = 0.5;

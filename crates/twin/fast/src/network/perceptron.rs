@@ -1,17 +1,23 @@
-//! Linear layers with rectifiers between them.
+//! Linear layers with sigmoid linear units between them.
 
-use serde::{Deserialize, Serialize};
 use twintac_learn::{Linear, Matrix};
 use twintac_random::RandomStream;
 
+use super::silu;
+
 /// A perceptron, or a slope of each of its parameters.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Perceptron {
     pub(crate) layers: Vec<Linear>,
 }
 
-/// What the way back needs: what went into each layer.
-pub(crate) struct Kept(Vec<Matrix>);
+/// What the way back needs.
+pub(crate) struct Kept {
+    /// What went into each layer.
+    inputs: Vec<Matrix>,
+    /// What came out of each layer but the last.
+    outputs: Vec<Matrix>,
+}
 
 impl Perceptron {
     /// Random weights. `sizes` counts inputs, hidden units of each layer, and outputs.
@@ -20,7 +26,7 @@ impl Perceptron {
             .windows(2)
             .map(|pair| Linear::new(pair[0], pair[1], random))
             .collect();
-        // A rectifier lets half of it through (He et al., arXiv 1502.01852).
+        // A unit lets half of it through (He et al., arXiv 1502.01852).
         let last = layers.len() - 1;
         for layer in &mut layers[..last] {
             layer
@@ -41,37 +47,36 @@ impl Perceptron {
 
     /// Outputs of each row of inputs.
     pub(crate) fn forward(&self, input: Matrix) -> (Matrix, Kept) {
-        let mut kept = Vec::with_capacity(self.layers.len());
-        let mut values = input;
-        for (index, layer) in self.layers.iter().enumerate() {
-            if index > 0 {
-                values.values.iter_mut().for_each(|value| *value = value.max(0.0));
-            }
-            let output = layer.forward(&values);
-            kept.push(std::mem::replace(&mut values, output));
+        let mut kept = Kept {
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+        };
+        let mut output = self.layers[0].forward(&input);
+        kept.inputs.push(input);
+        for layer in &self.layers[1..] {
+            let mut input = output.clone();
+            silu::apply(&mut input.values);
+            kept.outputs
+                .push(std::mem::replace(&mut output, layer.forward(&input)));
+            kept.inputs.push(input);
         }
-        (values, Kept(kept))
+        (output, kept)
     }
 
     /// Adds the slopes of the parameters to `slopes`.
     pub(crate) fn backward(&self, kept: &Kept, output_slope: Matrix, slopes: &mut Self) {
         let mut slope = output_slope;
-        for (index, layer) in self.layers.iter().enumerate().rev() {
-            let input = &kept.0[index];
-            let into = &mut slopes.layers[index];
-            if index == 0 {
-                // Nobody asks for the slope of the inputs.
-                twintac_learn::add(&mut into.weight.values, &input.transposed_times(&slope).values);
-                twintac_learn::add(&mut into.bias, &slope.column_sums());
-                return;
-            }
-            slope = layer.backward(input, &slope, into);
-            for (slope, value) in slope.values.iter_mut().zip(&input.values) {
-                if *value <= 0.0 {
-                    *slope = 0.0;
-                }
-            }
+        for index in (1..self.layers.len()).rev() {
+            slope = self.layers[index].backward(&kept.inputs[index], &slope, &mut slopes.layers[index]);
+            silu::times_slope(&mut slope.values, &kept.outputs[index - 1].values);
         }
+        // Nobody asks for the slope of the inputs.
+        let first = &mut slopes.layers[0];
+        twintac_learn::add(
+            &mut first.weight.values,
+            &kept.inputs[0].transposed_times(&slope).values,
+        );
+        twintac_learn::add(&mut first.bias, &slope.column_sums());
     }
 
     pub(crate) fn arrays(&self) -> impl Iterator<Item = &Vec<f32>> + Clone {

@@ -1,11 +1,14 @@
 //! Lessons as a network sees them.
 
 use glam::{DVec2, DVec3};
-use twintac_shape::{ShapeError, Surfaces};
+use twintac_shape::{Pose, ShapeError, Surfaces};
 
 use crate::contact::ContactGrid;
 use crate::surface::SurfaceGrid;
 use crate::{Body, Lesson};
+
+/// Gaps between gel and shape at which nothing is felt, mm.
+const HOVER_MM: [f64; 2] = [0.0, 0.8];
 
 /// One moment of a lesson.
 pub(crate) struct TaughtFrame {
@@ -45,19 +48,35 @@ impl Frames {
             let largest_kpa = floor.copied().fold(f32::MIN_POSITIVE, f32::max);
             let forces = lesson.frames.iter().map(|frame| frame.force_n.length() as f32);
             let largest_n = forces.fold(f32::MIN_POSITIVE, f32::max);
-            for frame in &lesson.frames {
+            let mut teach = |gel_from_indenter: Pose, floor_kpa: Vec<f32>, wrench: [f32; 6]| {
                 let mut inputs = vec![0.0; contact.n_inputs()];
-                contact.fill(&[(&body, frame.gel_from_indenter)], &mut inputs);
-                let torque = frame.torque_n_mm - center_mm.cross(frame.force_n);
-                let [fx, fy, fz] = frame.force_n.to_array();
+                contact.fill(&[(&body, gel_from_indenter)], &mut inputs);
                 frames.push(TaughtFrame {
                     inputs,
                     edge_mm: lesson.edge_mm as f32,
-                    floor_kpa: frame.floor_kpa.clone(),
-                    wrench: [fx, fy, fz, torque.x, torque.y, torque.z].map(|value| value as f32),
+                    floor_kpa,
+                    wrench,
                     largest_kpa,
                     largest_n,
                 });
+            };
+            for frame in &lesson.frames {
+                let torque = frame.torque_n_mm - center_mm.cross(frame.force_n);
+                let [fx, fy, fz] = frame.force_n.to_array();
+                let wrench = [fx, fy, fz, torque.x, torque.y, torque.z].map(|value| value as f32);
+                teach(frame.gel_from_indenter, frame.floor_kpa.clone(), wrench);
+            }
+            // What only hovers is not felt.
+            for (touch, gap_mm) in lesson
+                .touch()
+                .into_iter()
+                .flat_map(|touch| HOVER_MM.map(|gap_mm| (touch, gap_mm)))
+            {
+                let hovering = Pose {
+                    position_mm: touch.position_mm + gap_mm * DVec3::Z,
+                    ..touch
+                };
+                teach(hovering, vec![0.0; places_mm.len()], [0.0; 6]);
             }
         }
         let on_grid = places_mm.iter().enumerate().filter_map(|(number, at)| {

@@ -6,4 +6,4 @@ mod train;
 
 pub(crate) use frames::Frames;
 pub(crate) use train::train;
-pub use train::{TrainProgress, TrainSettings};
+pub use train::{REPORT_STEPS, TrainProgress, TrainSettings};

@@ -41,13 +41,13 @@ pub struct TrainSettings {
 impl Default for TrainSettings {
     fn default() -> Self {
         Self {
-            n_steps: 40_000,
+            n_steps: 60_000,
             n_frames: 128,
             n_places: 8,
-            learning_rate: 3e-3,
+            learning_rate: 5e-3,
             weight_decay: 1e-3,
-            pressure_hidden: vec![64, 32],
-            wrench_hidden: vec![64, 32],
+            pressure_hidden: vec![64, 48, 32],
+            wrench_hidden: vec![64, 48, 32],
         }
     }
 }
@@ -66,7 +66,7 @@ pub struct TrainProgress {
 }
 
 /// Steps between reports.
-const REPORT: usize = 100;
+pub const REPORT_STEPS: usize = 100;
 
 /// Trains the networks.
 pub(crate) fn train(
@@ -124,8 +124,8 @@ pub(crate) fn train(
         networks.wrench.backward(&kept, slope, &mut slopes);
         optimizers[1].step(rate, networks.wrench.arrays_mut(), slopes.arrays());
 
-        if (step + 1) % REPORT == 0 {
-            let [pressure, wrench] = sums.map(|sum| sum / REPORT as f32);
+        if (step + 1) % REPORT_STEPS == 0 {
+            let [pressure, wrench] = sums.map(|sum| sum / REPORT_STEPS as f32);
             sums = [0.0; 2];
             progress(TrainProgress {
                 step: step + 1,

@@ -1,0 +1,64 @@
+//! `twintac fast`: the twin without finite elements.
+
+use anyhow::Result;
+use twintac_fast::{GroupErrors, Judgement};
+use twintac_run::SensorFile;
+use twintac_run::fast::{FAST_GEL, FastSettings, train_fast};
+
+use crate::arguments::FastTrain;
+use crate::output::print;
+use crate::progress::Bars;
+
+/// Trains, and prints how far the fast twin is from the solved gel.
+pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
+    let sensor = SensorFile::read(&arguments.sensor)?;
+    let mut settings = FastSettings::default();
+    settings.n_lessons = arguments.lessons.unwrap_or(settings.n_lessons);
+    settings.n_exams = arguments.exams.unwrap_or(settings.n_exams);
+    if let Some(steps) = arguments.steps {
+        settings.train.n_steps = steps as usize;
+    }
+    let found = train_fast(
+        &sensor,
+        &arguments.out,
+        &settings,
+        arguments.seed,
+        &Bars::default(),
+    )?;
+    if arguments.json {
+        return print(&serde_json::to_string_pretty(&found)?);
+    }
+    let path = arguments.out.join(FAST_GEL);
+    print(&format!(
+        "{}: {} presses taught; errors against the solved gel, % of each press's largest (simulated)",
+        path.display(),
+        found.n_taught
+    ))?;
+    print(&format!(
+        "{:<28} {:>7} {:>8} {:>7} {:>7}",
+        "", "frames", "nearest", "all", "force"
+    ))?;
+    print_group("held-out presses", &found.held_out.overall)?;
+    print_judgement("shapes never taught", &found.unseen_shapes)
+}
+
+fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
+    print_group(name, &found.overall)?;
+    for (shape, errors) in &found.by_shape {
+        print_group(&format!("  {shape}"), errors)?;
+    }
+    for (depth_mm, errors) in &found.by_depth_mm {
+        print_group(&format!("  {depth_mm} to {} mm deep", depth_mm + 1), errors)?;
+    }
+    for (place, errors) in &found.by_place {
+        print_group(&format!("  {place} of the way to a corner"), errors)?;
+    }
+    Ok(())
+}
+
+fn print_group(name: &str, errors: &GroupErrors) -> Result<()> {
+    print(&format!(
+        "{name:<28} {:>7} {:>8.2} {:>7.2} {:>7.2}",
+        errors.n_frames, errors.nearest_percent, errors.all_percent, errors.force_percent
+    ))
+}

@@ -1,0 +1,165 @@
+//! A fast twin, from a sensor's description alone: presses of the solved gel to learn from, training, and presses to be judged on.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use twintac_fast::{FastGel, Judgement, Lesson, TrainSettings, lesson_places_mm};
+use twintac_sensor::{Sensor, SensorFile};
+use twintac_shape::Surfaces;
+use twintac_teach::Teacher;
+
+use crate::error::At;
+use crate::files::{read_json, sha256, write_file, write_json};
+use crate::progress::Work;
+use crate::{Progress, RunError};
+
+/// File of the fast twin in its folder.
+pub const FAST_GEL: &str = "fast.safetensors";
+
+/// One lesson of so many is not taught but judged on.
+const ONE_HELD_OUT_OF: usize = 20;
+
+/// How much is learned from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FastSettings {
+    /// Presses of shapes that are taught.
+    pub n_lessons: u64,
+    /// Presses of shapes that are not.
+    pub n_exams: u64,
+    /// How the networks are trained.
+    pub train: TrainSettings,
+}
+
+impl Default for FastSettings {
+    fn default() -> Self {
+        Self {
+            n_lessons: 4000,
+            n_exams: 120,
+            train: TrainSettings::default(),
+        }
+    }
+}
+
+/// What became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FastResult {
+    /// The sensor.
+    pub sensor: String,
+    /// Presses that were taught.
+    pub n_taught: usize,
+    /// Errors against the solved gel on presses like those that were taught.
+    pub held_out: Judgement,
+    /// Errors against the solved gel on shapes that no lesson has.
+    pub unseen_shapes: Judgement,
+}
+
+/// What the lessons of a folder are of.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct LessonsOf {
+    /// Digest of what presses depend on: gel, shell, and ports.
+    gel_sha256: String,
+    seed: u64,
+}
+
+/// Teaches and judges a fast twin in a folder. Presses that are there already are not solved again.
+///
+/// # Errors
+/// A folder with lessons of another gel or seed, a gel that can't be pressed, files that cannot be written.
+pub fn train_fast(
+    sensor: &SensorFile,
+    folder: &Path,
+    settings: &FastSettings,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Result<FastResult, RunError> {
+    check_folder(&sensor.sensor, folder, seed)?;
+    let places_mm = lesson_places_mm(&sensor.sensor);
+    let teacher = Teacher::new(sensor.sensor.clone(), &places_mm);
+    let exams = presses("exams", settings.n_exams, folder, progress, &|number| {
+        teacher.exam(seed, number)
+    })?;
+    let lessons = presses("lessons", settings.n_lessons, folder, progress, &|number| {
+        teacher.lesson(seed, number)
+    })?;
+    let (mut taught, mut held_out) = (Vec::new(), Vec::new());
+    for (number, lesson) in lessons.into_iter().enumerate() {
+        let is_held_out = number % ONE_HELD_OUT_OF == 0;
+        if is_held_out { &mut held_out } else { &mut taught }.push(lesson);
+    }
+    let n_reports = settings.train.n_steps / twintac_fast::REPORT_STEPS;
+    let work = Work::start(progress, "training", n_reports);
+    let gel = FastGel::train(&sensor.sensor, &taught, &settings.train, seed, &mut |state| {
+        let [pressure, wrench] = [state.pressure, state.wrench].map(|error| 100.0 * error);
+        work.step(&format!("pressure {pressure:.2} %, force {wrench:.2} %"));
+    })?;
+    drop(work);
+    write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
+    let result = FastResult {
+        sensor: sensor.sensor.name.clone(),
+        n_taught: taught.len(),
+        held_out: gel.judge(&held_out, &Surfaces::new())?,
+        unseen_shapes: gel.judge(&exams, &Surfaces::new())?,
+    };
+    write_json(&folder.join("judgement.json"), &result)?;
+    Ok(result)
+}
+
+/// Refuses a folder whose lessons are of something else.
+fn check_folder(sensor: &Sensor, folder: &Path, seed: u64) -> Result<(), RunError> {
+    let gel = format!(
+        "{:?} {:?} {:?} {:?} {:?}",
+        sensor.gel,
+        sensor.shell,
+        sensor.inclusions,
+        sensor.limits,
+        lesson_places_mm(sensor)
+    );
+    let of = LessonsOf {
+        gel_sha256: sha256(gel.as_bytes()),
+        seed,
+    };
+    let path = folder.join("lessons.json");
+    if path.exists() {
+        let found: LessonsOf = read_json(&path)?;
+        if found != of {
+            let what = if found.seed == seed { "gel" } else { "seed" };
+            return Err(RunError::Input(format!(
+                "{} holds presses of another {what}: give another folder with --out",
+                folder.display()
+            )));
+        }
+        return Ok(());
+    }
+    write_json(&path, &of)
+}
+
+/// Presses from their files, or solved now.
+fn presses(
+    name: &str,
+    n: u64,
+    folder: &Path,
+    progress: &dyn Progress,
+    solve: &(dyn Fn(u64) -> Result<Lesson, twintac_teach::TeachError> + Sync),
+) -> Result<Vec<Lesson>, RunError> {
+    let work = Work::start(progress, name, n as usize);
+    let presses = (0..n as usize).into_par_iter().with_max_len(1).map(|number| {
+        let path = folder.join(name).join(format!("{number:06}.json"));
+        let press = match read_json(&path) {
+            Ok(press) => press,
+            Err(_) => {
+                let press = solve(number as u64).at(|| format!("{name}, press {number}"))?;
+                let bytes = serde_json::to_vec(&press).map_err(|source| RunError::Json {
+                    what: path.display().to_string(),
+                    source,
+                })?;
+                write_file(&path, &bytes)?;
+                press
+            }
+        };
+        work.step("");
+        Ok(press)
+    });
+    presses.collect()
+}

@@ -1,0 +1,154 @@
+//! A fast gel as one file: safetensors, with what is no tensor as JSON in its header.
+
+use std::collections::HashMap;
+
+use safetensors::SafeTensors;
+use safetensors::tensor::{Dtype, TensorView};
+use serde::{Deserialize, Serialize};
+use twintac_learn::{Linear, Matrix};
+
+use crate::FastGel;
+use crate::model::{Layout, Networks};
+use crate::network::Perceptron;
+
+/// The header's entry.
+const ENTRY: &str = "twintac-fast";
+
+/// Version of the file's layout.
+const VERSION: u32 = 1;
+
+/// Bytes that are no fast gel: what is wrong with them.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("this is not a fast twin that can be read: {0}")]
+pub struct FastFileError(String);
+
+impl FastFileError {
+    fn new(problem: impl std::fmt::Display) -> Self {
+        Self(problem.to_string())
+    }
+}
+
+/// What is no tensor.
+#[derive(Serialize, Deserialize)]
+struct Header {
+    version: u32,
+    sensor: String,
+    layout: Layout,
+    ports_mm: Vec<glam::DVec2>,
+    center_mm: glam::DVec3,
+}
+
+impl FastGel {
+    /// The gel as the bytes of a file.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, FastFileError> {
+        let header = Header {
+            version: VERSION,
+            sensor: self.sensor.clone(),
+            layout: self.layout.clone(),
+            ports_mm: self.ports_mm.clone(),
+            center_mm: self.center_mm,
+        };
+        let header = serde_json::to_string(&header).map_err(FastFileError::new)?;
+        let mut tensors = Vec::new();
+        for (network, perceptron) in [
+            ("pressure", &self.networks.pressure),
+            ("wrench", &self.networks.wrench),
+        ] {
+            for (index, Linear { weight, bias }) in perceptron.layers.iter().enumerate() {
+                let bytes = |values: &[f32]| {
+                    values
+                        .iter()
+                        .flat_map(|value| value.to_le_bytes())
+                        .collect::<Vec<u8>>()
+                };
+                let name = |part: &str| format!("{network}.{index}.{part}");
+                let shape = vec![weight.n_rows(), weight.n_columns];
+                tensors.push((name("weight"), shape, bytes(&weight.values)));
+                tensors.push((name("bias"), vec![bias.len()], bytes(bias)));
+            }
+        }
+        let views = tensors.iter().map(|(name, shape, bytes)| {
+            let view = TensorView::new(Dtype::F32, shape.clone(), bytes).map_err(FastFileError::new)?;
+            Ok((name.clone(), view))
+        });
+        let views = views.collect::<Result<Vec<_>, FastFileError>>()?;
+        let entries = HashMap::from([(ENTRY.to_owned(), header)]);
+        safetensors::serialize(views, Some(entries)).map_err(FastFileError::new)
+    }
+
+    /// Reads what [`Self::to_bytes`] made.
+    ///
+    /// # Errors
+    /// Bytes that are something else, and a newer version.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, FastFileError> {
+        let (_, entries) = SafeTensors::read_metadata(bytes).map_err(FastFileError::new)?;
+        let entries = entries.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
+        let header = entries.ok_or_else(|| FastFileError::new(format!("its header has no `{ENTRY}`")))?;
+        let header: Header = serde_json::from_str(header).map_err(FastFileError::new)?;
+        if header.version != VERSION {
+            let problem = format!("version {} where {VERSION} is expected", header.version);
+            return Err(FastFileError::new(problem));
+        }
+        let tensors = SafeTensors::deserialize(bytes).map_err(FastFileError::new)?;
+        let networks = Networks {
+            pressure: perceptron(&tensors, "pressure", header.layout.patch.n_inputs(), 1)?,
+            wrench: perceptron(&tensors, "wrench", header.layout.n_field_inputs(), 6)?,
+        };
+        Ok(Self {
+            sensor: header.sensor,
+            layout: header.layout,
+            ports_mm: header.ports_mm,
+            center_mm: header.center_mm,
+            networks,
+        })
+    }
+}
+
+/// A network whose layers fit each other, its inputs and its outputs.
+fn perceptron(
+    tensors: &SafeTensors<'_>,
+    network: &str,
+    n_inputs: usize,
+    n_outputs: usize,
+) -> Result<Perceptron, FastFileError> {
+    let mut layers: Vec<Linear> = Vec::new();
+    let mut n = n_inputs;
+    while let Ok(weight) = tensors.tensor(&format!("{network}.{}.weight", layers.len())) {
+        let name = format!("{network}.{}", layers.len());
+        let bias = tensors
+            .tensor(&format!("{name}.bias"))
+            .map_err(FastFileError::new)?;
+        let (weight_shape, bias_shape) = (weight.shape(), bias.shape());
+        let &[rows, columns] = weight_shape else {
+            return Err(FastFileError::new(format!("`{name}.weight` is no matrix")));
+        };
+        if rows != n || bias_shape != [columns] || weight.dtype() != Dtype::F32 || bias.dtype() != Dtype::F32
+        {
+            return Err(FastFileError::new(format!(
+                "`{name}` does not fit what is before it"
+            )));
+        }
+        n = columns;
+        layers.push(Linear {
+            weight: Matrix {
+                values: numbers(weight.data()),
+                n_columns: columns,
+            },
+            bias: numbers(bias.data()),
+        });
+    }
+    if layers.is_empty() || n != n_outputs {
+        return Err(FastFileError::new(format!(
+            "the network `{network}` is not complete"
+        )));
+    }
+    Ok(Perceptron { layers })
+}
+
+fn numbers(bytes: &[u8]) -> Vec<f32> {
+    let numbers = bytes.as_chunks::<4>().0.iter();
+    numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect()
+}

@@ -1,0 +1,98 @@
+//! The sigmoid linear unit `x / (1 + e⁻ˣ)` (Elfwing, Uchibe and Doya, arXiv 1702.03118): a rectifier without a kink.
+
+use pulp::{Arch, Simd, WithSimd};
+
+/// Beyond this, e⁻ˣ is taken as at it.
+const LARGEST: f32 = 30.0;
+
+/// Terms of the power series of eˣ, highest first; used for |x| ≤ ln 2 / 2.
+const SERIES: [f32; 6] = [1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0];
+
+/// The unit's value. It is made of single additions and multiplications, so that every processor gives the same bits.
+#[inline(always)]
+pub(crate) fn silu(x: f32) -> f32 {
+    x * sigmoid(x)
+}
+
+/// Replaces values by the unit's.
+pub(crate) fn apply(values: &mut [f32]) {
+    struct Apply<'a>(&'a mut [f32]);
+
+    impl WithSimd for Apply<'_> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) {
+            self.0.iter_mut().for_each(|value| *value = silu(*value));
+        }
+    }
+
+    Arch::new().dispatch(Apply(values));
+}
+
+/// Multiplies slopes of the unit's values by the unit's slope at what went in.
+pub(crate) fn times_slope(slopes: &mut [f32], values: &[f32]) {
+    struct Times<'a>(&'a mut [f32], &'a [f32]);
+
+    impl WithSimd for Times<'_> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) {
+            let pairs = self.0.iter_mut().zip(self.1);
+            pairs.for_each(|(slope, value)| *slope *= silu_slope(*value));
+        }
+    }
+
+    Arch::new().dispatch(Times(slopes, values));
+}
+
+/// The unit's slope.
+#[inline(always)]
+fn silu_slope(x: f32) -> f32 {
+    let sigmoid = sigmoid(x);
+    sigmoid * (1.0 + x * (1.0 - sigmoid))
+}
+
+#[inline(always)]
+fn sigmoid(x: f32) -> f32 {
+    1.0 / (1.0 + exp(-x))
+}
+
+/// eˣ to six digits.
+#[inline(always)]
+fn exp(x: f32) -> f32 {
+    /// Added and taken off again, it leaves a whole number in the last bits.
+    const ROUND: f32 = 12_582_912.0;
+    let x = x.clamp(-LARGEST, LARGEST);
+    let shifted = x.mul_add(std::f32::consts::LOG2_E, ROUND);
+    let whole = shifted - ROUND;
+    // ln 2 in two parts, the first of few bits.
+    let rest = whole.mul_add(-0.693_359_375, x);
+    let rest = whole.mul_add(2.121_944_4e-4, rest);
+    let mut series = SERIES[0];
+    for term in &SERIES[1..] {
+        series = series.mul_add(rest, *term);
+    }
+    let power = f32::from_bits(((shifted.to_bits() as i32).wrapping_sub(0x4b40_0000) + 127 << 23) as u32);
+    series * power
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_the_unit_and_its_slope() {
+        for step in -4000..4000 {
+            let x = step as f32 * 0.01;
+            let exact = f64::from(x) / (1.0 + (-f64::from(x)).exp());
+            assert!(
+                (f64::from(silu(x)) - exact).abs() < 2e-6 * (1.0 + exact.abs()),
+                "{x}"
+            );
+            let difference = (silu(x + 0.01) - silu(x - 0.01)) / 0.02;
+            assert!((silu_slope(x) - difference).abs() < 1e-3, "{x}");
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! A fast gel that learned a few invented lessons: what readings have to obey whatever was learned.
+
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
+use glam::{DQuat, DVec3};
+use twintac_fast::{Body, FastGel, Lesson, LessonFrame, TrainSettings, lesson_places_mm};
+use twintac_sensor::{Sensor, SensorFile};
+use twintac_shape::{Pose, Shape, Surfaces};
+
+/// A gel whose floor reads how deep a ball is, the less the further away.
+fn lessons(sensor: &Sensor) -> Vec<Lesson> {
+    let places = lesson_places_mm(sensor);
+    let lesson = |number: u32| {
+        let at = DVec3::new(
+            f64::from(number % 5) * 6.0 - 12.0,
+            f64::from(number % 3) * 5.0 - 5.0,
+            8.5,
+        );
+        let frame = |depth_mm: f64| {
+            let gel_from_indenter = Pose::from_position(at - DVec3::Z * depth_mm);
+            let falls = |place: &glam::DVec2| (-place.distance_squared(at.truncate()) / 30.0).exp();
+            LessonFrame {
+                gel_from_indenter,
+                force_n: DVec3::new(0.0, 0.0, -2.0 * depth_mm),
+                torque_n_mm: at.cross(DVec3::new(0.0, 0.0, -2.0 * depth_mm)),
+                floor_kpa: places
+                    .iter()
+                    .map(|place| (10.0 * depth_mm * falls(place)) as f32)
+                    .collect(),
+            }
+        };
+        Lesson {
+            shape: Shape::Sphere { radius_mm: 5.0 },
+            edge_mm: 0.7,
+            frames: [1.0, 2.0, 3.0].map(frame).to_vec(),
+        }
+    };
+    (0..15).map(lesson).collect()
+}
+
+fn gel(n_steps: usize) -> (FastGel, Vec<Lesson>) {
+    let sensor = SensorFile::phystac().unwrap().sensor;
+    let settings = TrainSettings {
+        n_steps,
+        n_frames: 16,
+        ..TrainSettings::default()
+    };
+    let lessons = lessons(&sensor);
+    let gel = FastGel::train(&sensor, &lessons, &settings, 1, &mut |_| ()).unwrap();
+    (gel, lessons)
+}
+
+fn read(gel: &FastGel, bodies: &[(&Body, Pose)]) -> ([f32; 8], [f32; 6]) {
+    let (mut pressure_kpa, mut wrench) = ([0.0; 8], [0.0; 6]);
+    gel.reader().read(bodies, &mut pressure_kpa, &mut wrench);
+    (pressure_kpa, wrench)
+}
+
+fn ball() -> Body {
+    Body::new(&Shape::Sphere { radius_mm: 5.0 }, &Surfaces::new()).unwrap()
+}
+
+#[test]
+fn lessons_are_learned() {
+    let (gel, lessons) = gel(400);
+    let judged = gel.judge(&lessons, &Surfaces::new()).unwrap();
+    assert!(judged.overall.nearest_percent < 12.0, "{judged:?}");
+    assert!(judged.overall.force_percent < 25.0, "{judged:?}");
+    assert_eq!(judged.by_shape.keys().collect::<Vec<_>>(), ["sphere"]);
+    assert_eq!(judged.overall.n_frames, 45);
+}
+
+#[test]
+fn a_file_reads_the_same_bits() {
+    let (gel, _) = gel(3);
+    let again = FastGel::from_bytes(&gel.to_bytes().unwrap()).unwrap();
+    assert_eq!(again, gel);
+    let (pose, ball) = (Pose::from_position(DVec3::new(-4.0, 4.0, 6.5)), ball());
+    assert_eq!(read(&again, &[(&ball, pose)]), read(&gel, &[(&ball, pose)]));
+}
+
+#[test]
+fn bytes_that_are_no_fast_gel_are_an_error() {
+    let (gel, _) = gel(1);
+    let bytes = gel.to_bytes().unwrap();
+    for broken in [&bytes[..0], &bytes[..100], &bytes[..bytes.len() - 4]] {
+        let error = FastGel::from_bytes(broken).unwrap_err().to_string();
+        assert!(error.contains("not a fast twin"), "{error}");
+    }
+}
+
+#[test]
+fn what_does_not_touch_is_not_felt() {
+    let (gel, _) = gel(3);
+    let ball = ball();
+    let nothing = read(&gel, &[]);
+    let far_above = Pose::from_position(DVec3::new(0.0, 0.0, 12.0));
+    assert_eq!(read(&gel, &[(&ball, far_above)]), nothing);
+    let beside = Pose::from_position(DVec3::new(40.0, 0.0, 6.0));
+    assert_eq!(read(&gel, &[(&ball, beside)]), nothing);
+}
+
+#[test]
+fn order_and_division_of_bodies_do_not_matter() {
+    let (gel, _) = gel(3);
+    let ball = ball();
+    let cube = Shape::Box {
+        size_mm: [8.0; 3],
+        edge_radius_mm: 1.0,
+    };
+    let cube = Body::new(&cube, &Surfaces::new()).unwrap();
+    let on_the_left = Pose::from_position(DVec3::new(-9.0, 0.0, 6.5));
+    let on_the_right = Pose {
+        position_mm: DVec3::new(9.0, 2.0, 7.0),
+        rotation: DQuat::from_rotation_z(0.5),
+    };
+    let there = [(&ball, on_the_left), (&cube, on_the_right)];
+    let back = [(&cube, on_the_right), (&ball, on_the_left)];
+    assert_eq!(read(&gel, &there), read(&gel, &back));
+}
