@@ -1,7 +1,5 @@
 //! A linear map with an offset.
 
-use twintac_random::{RandomStream, normal};
-
 use crate::Matrix;
 
 /// `y = x w + b`
@@ -14,13 +12,14 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// Random weights that keep the size of what goes through, and no offset.
+    /// Random weights that keep the size of what goes through, and no offset. `normal` gives numbers of the normal distribution about zero with the
+    /// deviation that it is given.
     #[must_use]
-    pub fn new(n_inputs: usize, n_outputs: usize, random: &mut RandomStream) -> Self {
+    pub fn new(n_inputs: usize, n_outputs: usize, normal: &mut dyn FnMut(f64) -> f64) -> Self {
         let mut weight = Matrix::zeros(n_inputs, n_outputs);
         let deviation = (n_inputs as f64).sqrt().recip();
         for value in &mut weight.values {
-            *value = normal(random, deviation) as f32;
+            *value = normal(deviation) as f32;
         }
         Self {
             weight,

@@ -305,6 +305,7 @@ impl Shape {
     ///
     /// # Errors
     /// Those of [`Shape::validate`], and an STL file that is not among the surfaces.
+    // long: a paragraph for each kind of shape
     pub fn signed_distance_field(&self, surfaces: &Surfaces) -> Result<Box<dyn SignedDistance>, ShapeError> {
         self.validate()?;
         let upright = |profile: Profile, height_mm: f64, radius_mm: f64| Prism {

@@ -49,7 +49,7 @@ impl ContactGrid {
 
     /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its
     /// surface, more inside. `[n_points * N_CHANNELS]`
-    pub(crate) fn fill(&self, bodies: &[(&Body, Pose)], inputs: &mut [f32]) {
+    pub(crate) fn fill<'a>(&self, bodies: impl Iterator<Item = (&'a Body, Pose)>, inputs: &mut [f32]) {
         Arch::new().dispatch(Filling {
             grid: self,
             bodies,
@@ -80,10 +80,10 @@ impl ContactGrid {
             for i in columns.clone() {
                 let x_mm = self.first_mm[0] + self.spacing_mm * i as f32;
                 let point = j * n_x + i;
-                for (channel, level_mm) in LEVELS_MM.iter().enumerate() {
-                    let at = Vec3::new(x_mm, y_mm, self.height_mm[point] + level_mm);
-                    let distance_mm = body.distance_mm(body_from_gel * (at - origin));
-                    let input = &mut inputs[point * N_CHANNELS + channel];
+                let at = body_from_gel * (Vec3::new(x_mm, y_mm, self.height_mm[point]) - origin);
+                let inputs = &mut inputs[point * N_CHANNELS..(point + 1) * N_CHANNELS];
+                for (level_mm, input) in LEVELS_MM.iter().zip(inputs) {
+                    let distance_mm = body.distance_mm(at + *level_mm * body_from_gel.z_axis);
                     *input = input.max((REACH_MM - distance_mm.max(-DEEPEST_MM)) * (1.0 / REACH_MM));
                 }
             }
@@ -106,20 +106,20 @@ impl ContactGrid {
 }
 
 /// [`ContactGrid::fill`], compiled for each instruction set.
-struct Filling<'a> {
+struct Filling<'a, B> {
     grid: &'a ContactGrid,
-    bodies: &'a [(&'a Body, Pose)],
+    bodies: B,
     inputs: &'a mut [f32],
 }
 
-impl WithSimd for Filling<'_> {
+impl<'b, B: Iterator<Item = (&'b Body, Pose)>> WithSimd for Filling<'_, B> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         self.inputs.fill(0.0);
         for (body, gel_from_body) in self.bodies {
-            self.grid.add(body, gel_from_body, self.inputs);
+            self.grid.add(body, &gel_from_body, self.inputs);
         }
     }
 }

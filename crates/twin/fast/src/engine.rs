@@ -4,21 +4,27 @@ use glam::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 use twintac_learn::Linear;
 
+use crate::FastGel;
 use crate::contact::N_CHANNELS;
-use crate::model::{FastGel, Layout, PRESSURE_KPA, WRENCH};
-use crate::network::{Perceptron, Turn, silu};
+use crate::layout::Layout;
+use crate::network::{LocalNetwork, Turn, silu};
+use crate::networks::{PRESSURE_KPA, WRENCH};
 
 /// Hidden units that are summed up side by side.
 const LANES: usize = 32;
 
-/// A network whose inputs are mostly zero.
+/// A network most of whose points have nothing near them.
 #[derive(Clone, Debug)]
 struct Sparse {
-    /// What the first layer adds for each unit of an input. `[n_rows][n_hidden]`
+    /// From the channels of a point to its features.
+    point: Linear,
+    /// Features of a point near which nothing is, which are taken off.
+    nothing: Vec<f32>,
+    /// What the layer after the points adds for each unit of a feature. `[n_rows][n_hidden]`
     rows: Vec<f32>,
-    /// Of the first layer, rounded up to whole lanes.
+    /// Its outputs, rounded up to whole lanes.
     n_hidden: usize,
-    /// The layers after the first.
+    /// The layers after that.
     rest: Vec<Linear>,
 }
 
@@ -46,25 +52,29 @@ pub(crate) struct Engine {
 /// What an evaluation writes to.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
-    /// The numbers of points that something is near, and their inputs.
-    near: Vec<(u32, [f32; N_CHANNELS])>,
+    /// The numbers of points that something is near.
+    near: Vec<u32>,
+    /// The features of these points, one after the other.
+    features: Vec<f32>,
     /// Rows and what they are multiplied by.
     terms: Vec<(u32, f32)>,
     hidden: [Vec<f32>; 2],
 }
 
 impl Sparse {
-    fn of(network: &Perceptron) -> Self {
-        let first = &network.layers[0];
+    fn of(network: &LocalNetwork) -> Self {
+        let first = &network.rest.layers[0];
         let n_hidden = first.bias.len().next_multiple_of(LANES);
         let mut rows = Vec::with_capacity(first.weight.n_rows() * n_hidden);
         for row in first.weight.rows() {
             rows.extend(padded(row, n_hidden));
         }
         Self {
+            point: network.point.clone(),
+            nothing: network.nothing(),
             rows,
             n_hidden,
-            rest: network.layers[1..].to_vec(),
+            rest: network.rest.layers[1..].to_vec(),
         }
     }
 }
@@ -78,13 +88,15 @@ impl Engine {
         let layout = &gel.layout;
         let n_points = layout.grid.len();
         let mut pressure = Sparse::of(&gel.networks.pressure);
-        let first = &gel.networks.pressure.layers[0];
+        let first = &gel.networks.pressure.rest.layers[0];
         let ports = gel.ports_mm.iter().map(|at| pressure.port(first, layout, *at));
         let ports = ports.collect();
         let wrench = Sparse::of(&gel.networks.wrench);
         let anywhere = Port {
-            rows: (0..n_points).map(|point| (point * N_CHANNELS) as u32).collect(),
-            bias: padded(&gel.networks.wrench.layers[0].bias, wrench.n_hidden).collect(),
+            rows: (0..n_points)
+                .map(|point| (point * wrench.nothing.len()) as u32)
+                .collect(),
+            bias: padded(&gel.networks.wrench.rest.layers[0].bias, wrench.n_hidden).collect(),
         };
         Self {
             pressure,
@@ -104,9 +116,11 @@ impl Engine {
             .unwrap_or(0)
             .max(self.pressure.n_hidden)
             .max(self.wrench.n_hidden);
+        let n_features = self.pressure.nothing.len().max(self.wrench.nothing.len());
         Scratch {
             near: Vec::with_capacity(self.n_points),
-            terms: Vec::with_capacity(self.n_points * N_CHANNELS),
+            features: Vec::with_capacity(self.n_points * n_features),
+            terms: Vec::with_capacity(self.n_points * n_features),
             hidden: [(); 2].map(|()| vec![0.0; widest]),
         }
     }
@@ -133,6 +147,7 @@ impl Sparse {
     /// A port, with rows of its own where it is not on the grid: the inputs between the grid's points are linear.
     fn port(&mut self, first: &Linear, layout: &Layout, at: DVec2) -> Port {
         let (grid, n_hidden) = (&layout.grid, self.n_hidden);
+        let n_features = self.nothing.len();
         let (cell, part) = grid.cell(at);
         let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|corner: [i32; 2]| {
             let along = |axis: usize| {
@@ -149,7 +164,7 @@ impl Sparse {
         for (point, row) in rows.iter_mut().enumerate() {
             let of_point = [point % grid.n[0], point / grid.n[0]].map(|index| index as i32);
             let own = self.rows.len() / n_hidden;
-            let mut sum = vec![0.0; N_CHANNELS * n_hidden];
+            let mut sum = vec![0.0; n_features * n_hidden];
             let mut is_near = false;
             for (corner, share) in &corners {
                 let offset = [0, 1].map(|axis| of_point[axis] - cell[axis] - corner[axis]);
@@ -160,9 +175,9 @@ impl Sparse {
                     continue;
                 }
                 is_near = true;
-                *row = (index * N_CHANNELS) as u32;
-                let from = index * N_CHANNELS * n_hidden;
-                for (sum, weight) in sum.iter_mut().zip(&self.rows[from..from + N_CHANNELS * n_hidden]) {
+                *row = (index * n_features) as u32;
+                let from = index * n_features * n_hidden;
+                for (sum, weight) in sum.iter_mut().zip(&self.rows[from..from + n_features * n_hidden]) {
                     *sum += *share as f32 * weight;
                 }
             }
@@ -175,7 +190,7 @@ impl Sparse {
         let mut place = Vec::new();
         layout.surroundings.describe(grid, at, Turn::NONE, &mut place);
         let mut bias: Vec<f32> = padded(&first.bias, n_hidden).collect();
-        let from = layout.patch.offsets.len() * N_CHANNELS;
+        let from = layout.patch.offsets.len() * n_features;
         for (value, weights) in place.iter().zip(first.weight.rows().skip(from)) {
             for (bias, weight) in bias.iter_mut().zip(weights) {
                 *bias += value * weight;
@@ -199,11 +214,17 @@ impl WithSimd for Reading<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Scratch { near, terms, hidden } = self.scratch;
+        let Scratch {
+            near,
+            features,
+            terms,
+            hidden,
+        } = self.scratch;
+        let points = self.inputs.as_chunks::<N_CHANNELS>().0;
         near.clear();
-        for (point, inputs) in self.inputs.as_chunks::<N_CHANNELS>().0.iter().enumerate() {
-            if inputs[0] > 0.0 || inputs[N_CHANNELS - 1] > 0.0 {
-                near.push((point as u32, *inputs));
+        for (number, channels) in points.iter().enumerate() {
+            if channels.iter().any(|channel| *channel > 0.0) {
+                near.push(number as u32);
             }
         }
         if near.is_empty() {
@@ -212,11 +233,15 @@ impl WithSimd for Reading<'_> {
             return;
         }
         let engine = self.engine;
+        engine.pressure.features(points, near, features);
         for (port, pressure_kpa) in engine.ports.iter().zip(self.pressure_kpa) {
-            let output = engine.pressure.evaluate(port, near, terms, hidden);
+            let output = engine.pressure.evaluate(port, near, features, terms, hidden);
             *pressure_kpa = PRESSURE_KPA * output[0];
         }
-        let output = engine.wrench.evaluate(&engine.anywhere, near, terms, hidden);
+        engine.wrench.features(points, near, features);
+        let output = engine
+            .wrench
+            .evaluate(&engine.anywhere, near, features, terms, hidden);
         for ((wrench, output), unit) in self.wrench.iter_mut().zip(output).zip(WRENCH) {
             *wrench = unit * output;
         }
@@ -224,25 +249,45 @@ impl WithSimd for Reading<'_> {
 }
 
 impl Sparse {
+    /// Features of the points that something is near.
+    #[inline(always)]
+    fn features(&self, points: &[[f32; N_CHANNELS]], near: &[u32], features: &mut Vec<f32>) {
+        features.clear();
+        for point in near {
+            let channels = &points[*point as usize];
+            let first = features.len();
+            features.extend_from_slice(&self.point.bias);
+            let own = &mut features[first..];
+            for (channel, weights) in channels.iter().zip(self.point.weight.rows()) {
+                for (feature, weight) in own.iter_mut().zip(weights) {
+                    *feature = channel.mul_add(*weight, *feature);
+                }
+            }
+        }
+        features.iter_mut().for_each(|feature| *feature = silu(*feature));
+        for own in features.chunks_exact_mut(self.nothing.len()) {
+            own.iter_mut()
+                .zip(&self.nothing)
+                .for_each(|(feature, nothing)| *feature -= nothing);
+        }
+    }
+
     #[inline(always)]
     fn evaluate<'a>(
         &self,
         port: &Port,
-        near: &[(u32, [f32; N_CHANNELS])],
+        near: &[u32],
+        features: &[f32],
         terms: &mut Vec<(u32, f32)>,
         [hidden, next]: &'a mut [Vec<f32>; 2],
     ) -> &'a [f32] {
         terms.clear();
-        for (point, inputs) in near {
+        for (point, features) in near.iter().zip(features.chunks_exact(self.nothing.len())) {
             let row = port.rows[*point as usize];
             if row == NOWHERE {
                 continue;
             }
-            for (channel, input) in inputs.iter().enumerate() {
-                if *input > 0.0 {
-                    terms.push(((row as usize + channel) as u32, *input));
-                }
-            }
+            terms.extend((row..).zip(features.iter().copied()));
         }
         for (block, bias) in port.bias.as_chunks::<LANES>().0.iter().enumerate() {
             let mut sums = *bias;

@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 use twintac_learn::{Linear, Matrix};
 
 use crate::FastGel;
-use crate::model::{Layout, Networks};
-use crate::network::Perceptron;
+use crate::contact::N_CHANNELS;
+use crate::layout::Layout;
+use crate::network::{LocalNetwork, Perceptron};
+use crate::networks::Networks;
 
 /// The header's entry.
 const ENTRY: &str = "twintac-fast";
@@ -53,21 +55,22 @@ impl FastGel {
         };
         let header = serde_json::to_string(&header).map_err(FastFileError::new)?;
         let mut tensors = Vec::new();
-        for (network, perceptron) in [
+        for (name, network) in [
             ("pressure", &self.networks.pressure),
             ("wrench", &self.networks.wrench),
         ] {
-            for (index, Linear { weight, bias }) in perceptron.layers.iter().enumerate() {
+            let layers = std::iter::once(&network.point).chain(&network.rest.layers);
+            for (index, Linear { weight, bias }) in layers.enumerate() {
                 let bytes = |values: &[f32]| {
                     values
                         .iter()
                         .flat_map(|value| value.to_le_bytes())
                         .collect::<Vec<u8>>()
                 };
-                let name = |part: &str| format!("{network}.{index}.{part}");
+                let tensor = |part: &str| format!("{name}.{index}.{part}");
                 let shape = vec![weight.n_rows(), weight.n_columns];
-                tensors.push((name("weight"), shape, bytes(&weight.values)));
-                tensors.push((name("bias"), vec![bias.len()], bytes(bias)));
+                tensors.push((tensor("weight"), shape, bytes(&weight.values)));
+                tensors.push((tensor("bias"), vec![bias.len()], bytes(bias)));
             }
         }
         let views = tensors.iter().map(|(name, shape, bytes)| {
@@ -93,9 +96,11 @@ impl FastGel {
             return Err(FastFileError::new(problem));
         }
         let tensors = SafeTensors::deserialize(bytes).map_err(FastFileError::new)?;
+        let (n_patch, n_grid) = (header.layout.patch.offsets.len(), header.layout.grid.len());
+        let n_inputs = [header.layout.patch.n_inputs(), header.layout.n_field_inputs()];
         let networks = Networks {
-            pressure: perceptron(&tensors, "pressure", header.layout.patch.n_inputs(), 1)?,
-            wrench: perceptron(&tensors, "wrench", header.layout.n_field_inputs(), 6)?,
+            pressure: network(&tensors, "pressure", [n_patch, n_inputs[0]], 1)?,
+            wrench: network(&tensors, "wrench", [n_grid, n_inputs[1]], 6)?,
         };
         Ok(Self {
             sensor: header.sensor,
@@ -108,44 +113,55 @@ impl FastGel {
 }
 
 /// A network whose layers fit each other, its inputs and its outputs.
-fn perceptron(
+fn network(
     tensors: &SafeTensors<'_>,
-    network: &str,
-    n_inputs: usize,
+    name: &str,
+    [n_points, n_inputs]: [usize; 2],
     n_outputs: usize,
-) -> Result<Perceptron, FastFileError> {
-    let mut layers: Vec<Linear> = Vec::new();
-    let mut n = n_inputs;
-    while let Ok(weight) = tensors.tensor(&format!("{network}.{}.weight", layers.len())) {
-        let name = format!("{network}.{}", layers.len());
-        let bias = tensors
-            .tensor(&format!("{name}.bias"))
-            .map_err(FastFileError::new)?;
-        let (weight_shape, bias_shape) = (weight.shape(), bias.shape());
-        let &[rows, columns] = weight_shape else {
-            return Err(FastFileError::new(format!("`{name}.weight` is no matrix")));
-        };
-        if rows != n || bias_shape != [columns] || weight.dtype() != Dtype::F32 || bias.dtype() != Dtype::F32
-        {
-            return Err(FastFileError::new(format!(
-                "`{name}` does not fit what is before it"
-            )));
-        }
-        n = columns;
-        layers.push(Linear {
-            weight: Matrix {
-                values: numbers(weight.data()),
-                n_columns: columns,
-            },
-            bias: numbers(bias.data()),
-        });
+) -> Result<LocalNetwork, FastFileError> {
+    let point = layer(tensors, &format!("{name}.0"), N_CHANNELS)?;
+    let mut n = n_points * point.bias.len() + n_inputs - n_points * N_CHANNELS;
+    let mut layers = Vec::new();
+    while tensors
+        .tensor(&format!("{name}.{}.weight", layers.len() + 1))
+        .is_ok()
+    {
+        let layer = layer(tensors, &format!("{name}.{}", layers.len() + 1), n)?;
+        n = layer.bias.len();
+        layers.push(layer);
     }
     if layers.is_empty() || n != n_outputs {
         return Err(FastFileError::new(format!(
-            "the network `{network}` is not complete"
+            "the network `{name}` is not complete"
         )));
     }
-    Ok(Perceptron { layers })
+    Ok(LocalNetwork {
+        point,
+        rest: Perceptron { layers },
+    })
+}
+
+/// A layer of so many inputs.
+fn layer(tensors: &SafeTensors<'_>, name: &str, n_inputs: usize) -> Result<Linear, FastFileError> {
+    let tensor = |part: &str| {
+        tensors
+            .tensor(&format!("{name}.{part}"))
+            .map_err(FastFileError::new)
+    };
+    let (weight, bias) = (tensor("weight")?, tensor("bias")?);
+    let is_single = weight.dtype() == Dtype::F32 && bias.dtype() == Dtype::F32;
+    match *weight.shape() {
+        [n, n_columns] if n == n_inputs && bias.shape() == [n_columns] && is_single => Ok(Linear {
+            weight: Matrix {
+                values: numbers(weight.data()),
+                n_columns,
+            },
+            bias: numbers(bias.data()),
+        }),
+        _ => Err(FastFileError::new(format!(
+            "`{name}` does not fit what is before it"
+        ))),
+    }
 }
 
 fn numbers(bytes: &[u8]) -> Vec<f32> {

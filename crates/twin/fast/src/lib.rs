@@ -1,21 +1,27 @@
 //! The twin without finite elements.
 
+mod batch;
 mod contact;
 mod distance;
 mod engine;
 mod file;
 mod judge;
+mod layout;
 mod lesson;
 mod model;
 mod network;
+mod networks;
 mod read;
 mod surface;
+mod touch;
 mod training;
 
+pub use batch::FastBatch;
 pub use distance::Body;
 pub use file::FastFileError;
 pub use judge::{GroupErrors, Judgement};
 pub use lesson::{Lesson, LessonFrame, lesson_places_mm};
 pub use model::FastGel;
 pub use read::FastReader;
+pub use touch::Touch;
 pub use training::{REPORT_STEPS, TrainProgress, TrainSettings};

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
 use glam::{DQuat, DVec3};
-use twintac_fast::{Body, FastGel, Lesson, LessonFrame, TrainSettings, lesson_places_mm};
+use twintac_fast::{Body, FastGel, Lesson, LessonFrame, Touch, TrainSettings, lesson_places_mm};
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::{Pose, Shape, Surfaces};
 
@@ -117,4 +117,42 @@ fn order_and_division_of_bodies_do_not_matter() {
     let there = [(&ball, on_the_left), (&cube, on_the_right)];
     let back = [(&cube, on_the_right), (&ball, on_the_left)];
     assert_eq!(read(&gel, &there), read(&gel, &back));
+}
+
+#[test]
+fn a_sensor_of_a_batch_reads_what_it_reads_alone() {
+    let (gel, _) = gel(3);
+    let bodies = [ball(), ball()];
+    let touch = |number: usize| Touch {
+        body: (number % 2) as u32,
+        gel_from_body: Pose::from_position(DVec3::new(
+            (number as f64 * 0.7).sin() * 15.0,
+            (number as f64 * 0.3).cos() * 7.0,
+            6.5,
+        )),
+    };
+    // The third of each five sensors is touched by nothing, the others by one or two bodies.
+    let of_sensor = |sensor: usize| if sensor % 5 == 2 { 0 } else { 1 + sensor % 2 };
+    let ends: Vec<usize> = (0..101)
+        .scan(0, |end, sensor| {
+            *end += of_sensor(sensor);
+            Some(*end)
+        })
+        .collect();
+    let touches: Vec<Touch> = (0..ends[100]).map(touch).collect();
+    for n_threads in [1, 2, 7, 200] {
+        let (mut pressure_kpa, mut wrench) = (vec![0.0; 8 * 101], vec![[0.0; 6]; 101]);
+        gel.batch(n_threads)
+            .read(&bodies, &touches, &ends, &mut pressure_kpa, &mut wrench);
+        for sensor in 0..101 {
+            let start = if sensor == 0 { 0 } else { ends[sensor - 1] };
+            let own: Vec<(&Body, Pose)> = touches[start..ends[sensor]]
+                .iter()
+                .map(|touch| (&bodies[touch.body as usize], touch.gel_from_body))
+                .collect();
+            let alone = read(&gel, &own);
+            assert_eq!(pressure_kpa[8 * sensor..8 * (sensor + 1)], alone.0);
+            assert_eq!(wrench[sensor], alone.1);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Attention of each sample of a series to all of them, in several heads (Vaswani et al., arXiv 1706.03762, section 3.2).
 
 use twintac_learn::{Linear, Matrix};
-use twintac_random::RandomStream;
+use twintac_random::{RandomStream, normal};
 
 use crate::series::N_SAMPLES;
 
@@ -28,7 +28,7 @@ pub(super) struct Attended {
 
 impl Attention {
     pub(super) fn new(width: usize, n_heads: usize, random: &mut RandomStream) -> Self {
-        let mut linear = || Linear::new(width, width, random);
+        let mut linear = || Linear::new(width, width, &mut |deviation| normal(random, deviation));
         Self {
             n_heads,
             query: linear(),

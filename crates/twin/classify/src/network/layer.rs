@@ -1,7 +1,7 @@
 //! One encoder layer: attention, then a perceptron for each sample, each of normalized values and added to what came in.
 
 use twintac_learn::{Linear, Matrix, add};
-use twintac_random::RandomStream;
+use twintac_random::{RandomStream, normal};
 
 use super::attention::{Attended, Attention};
 use super::norm::{Norm, Normed};
@@ -31,8 +31,8 @@ impl Layer {
             before_attention: Norm::new(width),
             attention: Attention::new(width, n_heads, random),
             before_perceptron: Norm::new(width),
-            widen: Linear::new(width, hidden, random),
-            narrow: Linear::new(hidden, width, random),
+            widen: Linear::new(width, hidden, &mut |deviation| normal(random, deviation)),
+            narrow: Linear::new(hidden, width, &mut |deviation| normal(random, deviation)),
         }
     }
 

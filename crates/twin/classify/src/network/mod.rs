@@ -34,7 +34,7 @@ impl Network {
         random: &mut RandomStream,
     ) -> Self {
         let width = settings.width;
-        let enter = Linear::new(n_inputs, width, random);
+        let enter = Linear::new(n_inputs, width, &mut |deviation| normal(random, deviation));
         let mut place = || normal(random, PLACE) as f32;
         let places = (0..N_SAMPLES * width).map(|_| place()).collect();
         let layer = |_| Layer::new(width, settings.n_heads, settings.hidden, random);
@@ -44,7 +44,9 @@ impl Network {
             places,
             layers,
             norm: Norm::new(width),
-            leave: Linear::new(N_SAMPLES * width, n_classes, random),
+            leave: Linear::new(N_SAMPLES * width, n_classes, &mut |deviation| {
+                normal(random, deviation)
+            }),
         }
     }
 

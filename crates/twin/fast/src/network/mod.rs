@@ -1,9 +1,11 @@
 //! The two networks: one reads a place of the floor from what touches around it, the other the force from what touches anywhere.
 
+mod local;
 mod patch;
 mod perceptron;
 mod silu;
 
+pub(crate) use local::LocalNetwork;
 pub(crate) use patch::{Patch, Surroundings, Turn};
 pub(crate) use perceptron::Perceptron;
 pub(crate) use silu::silu;

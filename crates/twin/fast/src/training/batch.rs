@@ -5,8 +5,7 @@ use twintac_learn::Matrix;
 use twintac_random::RandomStream;
 
 use super::Frames;
-use crate::contact::N_CHANNELS;
-use crate::model::Layout;
+use crate::layout::Layout;
 use crate::network::Turn;
 
 /// What one step learns from.
@@ -68,7 +67,6 @@ impl Batch {
             batch.largest_n.push(frame.largest_n);
         }
         debug_assert_eq!(batch.fields.n_rows(), n_frames);
-        debug_assert!(N_CHANNELS > 0);
         batch
     }
 }

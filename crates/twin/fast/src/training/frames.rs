@@ -10,6 +10,9 @@ use crate::{Body, Lesson};
 /// Gaps between gel and shape at which nothing is felt, mm.
 const HOVER_MM: [f64; 2] = [0.0, 0.8];
 
+/// Least share of the floor's largest pressure by which errors are weighed.
+const LEAST_SHARE: f32 = 0.3;
+
 /// One moment of a lesson.
 pub(crate) struct TaughtFrame {
     /// `[n_points * N_CHANNELS]`
@@ -20,7 +23,7 @@ pub(crate) struct TaughtFrame {
     pub(crate) floor_kpa: Vec<f32>,
     /// Force, N, and torque about the top of the gel's middle, N mm.
     pub(crate) wrench: [f32; 6],
-    /// Largest pressure of the whole press, kPa.
+    /// Largest pressure that ports read during the whole press, kPa.
     pub(crate) largest_kpa: f32,
     /// Largest force of the whole press, N.
     pub(crate) largest_n: f32,
@@ -37,20 +40,24 @@ impl Frames {
     pub(crate) fn of(
         lessons: &[Lesson],
         grid: &SurfaceGrid,
-        places_mm: &[DVec2],
+        (places_mm, n_taxels): (&[DVec2], usize),
         center_mm: DVec3,
     ) -> Result<Self, ShapeError> {
         let contact = ContactGrid::new(grid);
         let mut frames = Vec::new();
         for lesson in lessons {
             let body = Body::new(&lesson.shape, &Surfaces::new())?;
-            let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa);
-            let largest_kpa = floor.copied().fold(f32::MIN_POSITIVE, f32::max);
+            let largest = |n: usize| {
+                let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa[..n]);
+                floor.copied().fold(f32::MIN_POSITIVE, f32::max)
+            };
+            // A press far from all ports is judged by what they read, but not by next to nothing.
+            let largest_kpa = largest(n_taxels).max(LEAST_SHARE * largest(places_mm.len()));
             let forces = lesson.frames.iter().map(|frame| frame.force_n.length() as f32);
             let largest_n = forces.fold(f32::MIN_POSITIVE, f32::max);
             let mut teach = |gel_from_indenter: Pose, floor_kpa: Vec<f32>, wrench: [f32; 6]| {
                 let mut inputs = vec![0.0; contact.n_inputs()];
-                contact.fill(&[(&body, gel_from_indenter)], &mut inputs);
+                contact.fill([(&body, gel_from_indenter)].into_iter(), &mut inputs);
                 frames.push(TaughtFrame {
                     inputs,
                     edge_mm: lesson.edge_mm as f32,

@@ -6,14 +6,19 @@ use twintac_random::digest_stream;
 
 use super::Frames;
 use super::batch::Batch;
-use crate::model::{Layout, Networks, PRESSURE_KPA, WRENCH};
-use crate::network::Perceptron;
+use crate::contact::N_CHANNELS;
+use crate::layout::Layout;
+use crate::network::LocalNetwork;
+use crate::networks::{Networks, PRESSURE_KPA, WRENCH};
 
 /// Part of the steps over which the learning rate rises.
 const RISE: f64 = 0.02;
 
 /// Errors this small count by their square, larger ones by their size.
 const SMALL: f32 = 3e-3;
+
+/// What an error counts where there is no pressure, over what it counts where the pressure is the press's largest and as much.
+const QUIET: f32 = 0.2;
 
 /// Lever arm by which torques count as forces, mm.
 const ARM_MM: f32 = 8.0;
@@ -32,6 +37,8 @@ pub struct TrainSettings {
     pub learning_rate: f64,
     /// Decay of the weights.
     pub weight_decay: f64,
+    /// Features of each point of the grid.
+    pub n_features: usize,
     /// Hidden units for the pressure at a place.
     pub pressure_hidden: Vec<usize>,
     /// Hidden units for force and torque.
@@ -46,6 +53,7 @@ impl Default for TrainSettings {
             n_places: 8,
             learning_rate: 5e-3,
             weight_decay: 1e-3,
+            n_features: 6,
             pressure_hidden: vec![64, 48, 32],
             wrench_hidden: vec![64, 48, 32],
         }
@@ -78,17 +86,21 @@ pub(crate) fn train(
     progress: &mut dyn FnMut(TrainProgress),
 ) -> Networks {
     let mut random = digest_stream(seed, "fast twin");
-    let sizes = |n_inputs: usize, hidden: &[usize], n_outputs: usize| {
-        let mut sizes = vec![n_inputs];
-        sizes.extend(hidden);
-        sizes.push(n_outputs);
-        sizes
-    };
-    let pressure_sizes = sizes(layout.patch.n_inputs(), &settings.pressure_hidden, 1);
-    let wrench_sizes = sizes(layout.n_field_inputs(), &settings.wrench_hidden, 6);
+    let (n_patch, n_grid) = (layout.patch.offsets.len(), layout.grid.len());
+    let n_others = |n_inputs: usize, n_points: usize| n_inputs - n_points * N_CHANNELS;
+    let pressure = [
+        n_patch,
+        settings.n_features,
+        n_others(layout.patch.n_inputs(), n_patch),
+    ];
+    let wrench = [
+        n_grid,
+        settings.n_features,
+        n_others(layout.n_field_inputs(), n_grid),
+    ];
     let mut networks = Networks {
-        pressure: Perceptron::new(&pressure_sizes, &mut random),
-        wrench: Perceptron::new(&wrench_sizes, &mut random),
+        pressure: LocalNetwork::new(pressure, &settings.pressure_hidden, 1, &mut random),
+        wrench: LocalNetwork::new(wrench, &settings.wrench_hidden, 6, &mut random),
     };
     let optimizer_settings = AdamWSettings {
         weight_decay: settings.weight_decay as f32,
@@ -110,18 +122,18 @@ pub(crate) fn train(
             largest_n,
         } = batch;
 
-        let (output, kept) = networks.pressure.forward(patches);
+        let (output, kept) = networks.pressure.forward(&patches, n_patch);
         let (error, slope) = pressure_loss(&output, &pressure, &largest_kpa);
         sums[0] += error;
         let mut slopes = networks.pressure.zeros();
-        networks.pressure.backward(&kept, slope, &mut slopes);
+        networks.pressure.backward(&kept, slope, n_patch, &mut slopes);
         optimizers[0].step(rate, networks.pressure.arrays_mut(), slopes.arrays());
 
-        let (output, kept) = networks.wrench.forward(fields);
+        let (output, kept) = networks.wrench.forward(&fields, n_grid);
         let (error, slope) = wrench_loss(&output, &wrench, &largest_n);
         sums[1] += error;
         let mut slopes = networks.wrench.zeros();
-        networks.wrench.backward(&kept, slope, &mut slopes);
+        networks.wrench.backward(&kept, slope, n_grid, &mut slopes);
         optimizers[1].step(rate, networks.wrench.arrays_mut(), slopes.arrays());
 
         if (step + 1) % REPORT_STEPS == 0 {
@@ -160,7 +172,7 @@ fn pressure_loss(output: &Matrix, pressure: &[f32], largest_kpa: &[f32]) -> (f32
         let error = output.values[row] * scale - pressure;
         let (size, direction) = size(error);
         sum += size;
-        slope.values[row] = share * direction * scale;
+        slope.values[row] = share * direction * scale * (QUIET + pressure.max(0.0));
     }
     (sum * share, slope)
 }

@@ -1,0 +1,72 @@
+//! Many sensors read in one call.
+
+use rayon::prelude::*;
+
+use crate::{Body, FastGel, FastReader, Touch};
+
+/// Fast gels of many sensors of one kind. It owns all memory that readings need: reading allocates nothing.
+#[derive(Clone, Debug)]
+pub struct FastBatch {
+    /// One for each thread.
+    readers: Vec<FastReader>,
+    n_taxels: usize,
+}
+
+impl FastGel {
+    /// Prepares so many threads to read sensors.
+    #[must_use]
+    pub fn batch(&self, n_threads: usize) -> FastBatch {
+        FastBatch {
+            readers: vec![self.reader(); n_threads.max(1)],
+            n_taxels: self.n_taxels(),
+        }
+    }
+}
+
+impl FastBatch {
+    /// What the gels do under what touches each of them. A sensor's numbers do not depend on the other sensors, their number, or threads.
+    ///
+    /// - `bodies`: everything that touches; any number of sensors may share a body.
+    /// - `touches`: of the first sensor, then of the second, and so on.
+    /// - `ends`: where each sensor's touches end. `[n_sensors]`, the last is the number of touches.
+    /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_sensors * n_taxels]`
+    /// - `wrench`: is written; force, N, and torque about the top of the gel's middle, N mm. `[n_sensors]`
+    ///
+    /// # Panics
+    /// Slices of other lengths, ends that decrease, a body that is not there.
+    pub fn read(
+        &mut self,
+        bodies: &[Body],
+        touches: &[Touch],
+        ends: &[usize],
+        pressure_kpa: &mut [f32],
+        wrench: &mut [[f32; 6]],
+    ) {
+        let n_sensors = ends.len();
+        assert_eq!(
+            pressure_kpa.len(),
+            n_sensors * self.n_taxels,
+            "a pressure for each taxel of each sensor"
+        );
+        assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
+        assert_eq!(
+            ends.last().copied().unwrap_or(0),
+            touches.len(),
+            "the last end is the number of touches"
+        );
+        let of_thread = n_sensors.div_ceil(self.readers.len()).max(1);
+        let n_taxels = self.n_taxels;
+        let chunks = pressure_kpa
+            .par_chunks_mut(of_thread * n_taxels)
+            .zip(wrench.par_chunks_mut(of_thread));
+        let work = self.readers.par_iter_mut().zip(chunks).enumerate();
+        work.for_each(|(chunk, (reader, (pressure_kpa, wrench)))| {
+            let sensors = pressure_kpa.chunks_exact_mut(n_taxels).zip(wrench);
+            for (index, (pressure_kpa, wrench)) in sensors.enumerate() {
+                let sensor = chunk * of_thread + index;
+                let start = if sensor == 0 { 0 } else { ends[sensor - 1] };
+                reader.read_touches(bodies, &touches[start..ends[sensor]], pressure_kpa, wrench);
+            }
+        });
+    }
+}

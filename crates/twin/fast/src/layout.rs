@@ -1,0 +1,78 @@
+//! How what touches is laid out for the networks.
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+use twintac_sensor::Sensor;
+
+use crate::contact::N_CHANNELS;
+use crate::network::{Patch, Surroundings, Turn};
+use crate::surface::SurfaceGrid;
+
+/// Length of edges about which the networks are told, mm.
+const EDGE_MM: f32 = 0.6;
+
+/// How what touches is laid out for the networks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Layout {
+    pub(crate) grid: SurfaceGrid,
+    pub(crate) patch: Patch,
+    pub(crate) surroundings: Surroundings,
+}
+
+impl Layout {
+    /// The layout over a sensor's gel.
+    pub(crate) fn of(sensor: &Sensor) -> Self {
+        Self {
+            grid: SurfaceGrid::of(sensor),
+            patch: Patch::round(),
+            surroundings: Surroundings::of(sensor),
+        }
+    }
+
+    /// Inputs of the network of forces.
+    pub(crate) fn n_field_inputs(&self) -> usize {
+        self.grid.len() * N_CHANNELS + 1
+    }
+
+    /// Whether the grid is its own mirror image about a place.
+    pub(crate) fn is_symmetric(&self, center_mm: DVec3) -> bool {
+        (0..2).all(|axis| {
+            let last_mm = self.grid.first_mm[axis] + self.grid.spacing_mm * (self.grid.n[axis] - 1) as f64;
+            (0.5 * (self.grid.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6
+        })
+    }
+
+    /// Appends the inputs of the network of pressures for a place on the grid.
+    pub(crate) fn put_patch(
+        &self,
+        field: &[f32],
+        cell: [i32; 2],
+        at: DVec2,
+        edge_mm: f32,
+        turn: Turn,
+        inputs: &mut Vec<f32>,
+    ) {
+        for point in self.patch.points(&self.grid, cell, turn) {
+            match point {
+                Some(point) => inputs.extend(&field[point * N_CHANNELS..(point + 1) * N_CHANNELS]),
+                None => inputs.extend([0.0; N_CHANNELS]),
+            }
+        }
+        self.surroundings.describe(&self.grid, at, turn, inputs);
+        inputs.push(edge_mm - EDGE_MM);
+    }
+
+    /// Appends the inputs of the network of forces, mirrored across x and across y.
+    pub(crate) fn put_field(&self, field: &[f32], edge_mm: f32, mirrored: [bool; 2], inputs: &mut Vec<f32>) {
+        let [n_x, n_y] = self.grid.n;
+        for j in 0..n_y {
+            let j = if mirrored[1] { n_y - 1 - j } else { j };
+            for i in 0..n_x {
+                let i = if mirrored[0] { n_x - 1 - i } else { i };
+                let point = j * n_x + i;
+                inputs.extend(&field[point * N_CHANNELS..(point + 1) * N_CHANNELS]);
+            }
+        }
+        inputs.push(edge_mm - EDGE_MM);
+    }
+}
