@@ -22,6 +22,9 @@ const DEEPEST: f64 = 0.6;
 /// Height of the gel for which meshes have the edges below, mm: PhysTac's.
 const HEIGHT_MM: f64 = 8.5;
 
+/// The shortest edges under a shape, mm.
+const FINEST_MM: f64 = 0.6;
+
 /// A press to teach with.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Draw {
@@ -55,10 +58,10 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     };
     // Coarse presses are cheap, so that there are many; fine ones are right.
     let (edges_per_height, finest_mm, coarsest_mm) = match random.random_range(0..3) {
-        _ if purpose == Purpose::Exam => (7.0, 0.6, 0.7),
+        _ if purpose == Purpose::Exam => (7.0, FINEST_MM, FINEST_MM),
         0 => (6.0, 1.05, 1.4),
         1 => (7.0, 0.8, 1.05),
-        _ => (7.0, 0.6, 0.8),
+        _ => (7.0, FINEST_MM, 0.8),
     };
     let tilt = if random.random_bool(0.4) {
         0.0
@@ -72,7 +75,12 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         place_mm: low.truncate() + size_mm * DVec2::new(random.random(), random.random()),
         rotation: turned(tilt, random),
         depth_mm: deepest_mm * random.random_range(0.2..1.0),
-        edge_mm: height_mm / HEIGHT_MM * random.random_range(finest_mm..coarsest_mm),
+        edge_mm: height_mm / HEIGHT_MM
+            * if finest_mm < coarsest_mm {
+                random.random_range(finest_mm..coarsest_mm)
+            } else {
+                finest_mm
+            },
         edges_per_height,
     }
 }
@@ -126,7 +134,7 @@ fn unseen(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
     let mut between = |low: f64, high: f64| scale * random.random_range(low..high);
     let edge_radius_mm = between(0.6, 1.6);
     let height_mm = 14.0 * scale;
-    if kind % 2 == 0 {
+    if kind.is_multiple_of(2) {
         Shape::X {
             length_mm: between(10.0, 18.0),
             width_mm: between(3.3, 5.0),

@@ -64,17 +64,19 @@ fn sigmoid(x: f32) -> f32 {
 fn exp(x: f32) -> f32 {
     /// Added and taken off again, it leaves a whole number in the last bits.
     const ROUND: f32 = 12_582_912.0;
+    /// The first bits of ln 2, so that a product with a whole number is exact.
+    const LN_2_HIGH: f32 = 0.693_359_4;
     let x = x.clamp(-LARGEST, LARGEST);
     let shifted = x.mul_add(std::f32::consts::LOG2_E, ROUND);
     let whole = shifted - ROUND;
-    // ln 2 in two parts, the first of few bits.
-    let rest = whole.mul_add(-0.693_359_375, x);
-    let rest = whole.mul_add(2.121_944_4e-4, rest);
+    let rest = whole.mul_add(-LN_2_HIGH, x);
+    let rest = whole.mul_add(LN_2_HIGH - std::f32::consts::LN_2, rest);
     let mut series = SERIES[0];
     for term in &SERIES[1..] {
         series = series.mul_add(rest, *term);
     }
-    let power = f32::from_bits(((shifted.to_bits() as i32).wrapping_sub(0x4b40_0000) + 127 << 23) as u32);
+    let exponent = (shifted.to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32);
+    let power = f32::from_bits(((exponent + 127) << 23) as u32);
     series * power
 }
 
