@@ -63,7 +63,7 @@ pub(crate) enum Command {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum FastCommand {
-    /// Train a fast twin from a sensor's description alone: about two hours on two cores.
+    /// Train a fast twin from a sensor's description alone: less than an hour on two cores.
     Train(FastTrain),
 }
 
@@ -77,13 +77,13 @@ pub(crate) struct FastTrain {
     /// Folder of the solved presses, the fast twin and its judgement.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Presses to learn from [default: 4000].
+    /// Presses to learn from [default: 2000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(20..))]
     pub(crate) lessons: Option<u64>,
-    /// Presses of shapes that are not taught, to be judged on [default: 120].
+    /// Presses of shapes that are not taught, to be judged on [default: 100].
     #[arg(long, value_name = "N")]
     pub(crate) exams: Option<u64>,
-    /// Steps of the training [default: 60000].
+    /// Steps of the training [default: 40000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) steps: Option<u64>,
     /// Seed of all random choices.

@@ -35,8 +35,8 @@ pub struct FastSettings {
 impl Default for FastSettings {
     fn default() -> Self {
         Self {
-            n_lessons: 4000,
-            n_exams: 120,
+            n_lessons: 2000,
+            n_exams: 100,
             train: TrainSettings::default(),
         }
     }

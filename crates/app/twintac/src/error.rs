@@ -38,6 +38,13 @@ pub enum Error {
     #[cfg(feature = "twin")]
     #[error("the twin's settings of the simulation cannot be used")]
     TwinSettings(#[from] serde_json::Error),
+    /// A shape can't be.
+    #[error(transparent)]
+    Shape(#[from] twintac_shape::ShapeError),
+    /// A fast twin cannot be read.
+    #[cfg(feature = "fast")]
+    #[error(transparent)]
+    Fast(#[from] twintac_fast::FastFileError),
     /// A sensor cannot be read.
     #[cfg(feature = "live")]
     #[error(transparent)]

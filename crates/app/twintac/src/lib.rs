@@ -40,6 +40,7 @@
 //! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
+//! | [`FastGel`], [`FastBatch`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call | `fast` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
 //! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
@@ -107,6 +108,23 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
+//! Touch for learning, a few microseconds a reading, with any number of bodies of any shape:
+//!
+//! ```
+//! # #[cfg(feature = "fast")] {
+//! use twintac::{Body, FastGel, Pose, Shape};
+//!
+//! let cube = Shape::Box { size_mm: [10.0; 3], edge_radius_mm: 0.8 };
+//! let cube = Body::new(&cube, &Default::default())?;
+//! let mut reader = FastGel::phystac()?.reader();
+//! let (mut pressure_kpa, mut wrench) = ([0.0; 8], [0.0; 6]);
+//! let one_mm_deep = Pose::from_position([-4.0, 4.0, 7.5].into());
+//! reader.read(&[(&cube, one_mm_deep)], &mut pressure_kpa, &mut wrench);
+//! println!("{:.1} N, {pressure_kpa:.2?} kPa", -wrench[2]);
+//! # }
+//! # Ok::<(), twintac::Error>(())
+//! ```
+//!
 //! The folder `examples/` has these as programs, and one that trains a twin on CSV files of your own.
 //!
 //! # Features
@@ -115,11 +133,12 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
+//! | `fast` | touch for learning, without finite elements |
 //! | `map` | pressure maps and pictures |
 //! | `recording` | recorded presses: Parquet, CSV |
 //! | `live` | reading a sensor; brings `recording` |
 //! | `twin` | trained twins: a neural network; brings `recording` |
-//! | `run` | the pipeline from recordings to a judged twin; brings all of the above but `map` |
+//! | `run` | the pipeline from recordings to a judged twin; brings `twin` |
 //!
 //! What is below this crate has the details: `twintac-simulate` and `twintac-softbody` the finite elements, `digitac` the twin, `phystac` the
 //! `no_std` drivers, `twintac-run` the pipeline.
@@ -149,11 +168,12 @@ pub use twin::Twin;
 #[cfg(feature = "twin")]
 pub use digitac::{Prediction, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
+#[cfg(feature = "fast")]
+pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Touch};
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Import, Provenance, Recording};
 #[cfg(feature = "run")]
 pub use twintac_run::{Caller, Metrics, Outcome, Progress, Run, RunSettings, Silent};
 pub use twintac_sensor::SensorFile;
-#[cfg(feature = "twin")]
-pub use twintac_shape::Pose;
+pub use twintac_shape::{Pose, Shape};
 pub use twintac_simulate::SimulateSettings;

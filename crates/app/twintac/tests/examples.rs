@@ -11,6 +11,8 @@ mod press_a_ball;
 mod read_a_sensor;
 #[path = "../examples/step_a_twin.rs"]
 mod step_a_twin;
+#[path = "../examples/touch_for_learning.rs"]
+mod touch_for_learning;
 #[path = "../examples/train_from_csv.rs"]
 mod train_from_csv;
 
@@ -22,6 +24,15 @@ fn a_ball_is_pressed() {
 #[test]
 fn a_sensor_is_read() {
     read_a_sensor::read(None, None).unwrap();
+}
+
+#[test]
+fn a_thousand_sensors_feel_what_presses_them() {
+    let (pressure_kpa, _) = touch_for_learning::step(2).unwrap();
+    for readings_kpa in pressure_kpa.chunks_exact(8) {
+        let largest = readings_kpa.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        assert!((0.5..50.0).contains(&largest), "{readings_kpa:?}");
+    }
 }
 
 #[test]

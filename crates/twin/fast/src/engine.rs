@@ -10,8 +10,8 @@ use crate::layout::Layout;
 use crate::network::{LocalNetwork, Turn, silu};
 use crate::networks::{PRESSURE_KPA, WRENCH};
 
-/// Hidden units that are summed up side by side.
-const LANES: usize = 32;
+/// Units that are summed up side by side; layers are filled up with zeros to whole numbers of the second.
+const LANES: [usize; 2] = [64, 32];
 
 /// A network most of whose points have nothing near them.
 #[derive(Clone, Debug)]
@@ -25,7 +25,17 @@ struct Sparse {
     /// Its outputs, rounded up to whole lanes.
     n_hidden: usize,
     /// The layers after that.
-    rest: Vec<Linear>,
+    rest: Vec<Dense>,
+}
+
+/// A layer, filled up.
+#[derive(Clone, Debug)]
+struct Dense {
+    /// `[n_inputs][n_outputs]`
+    weights: Vec<f32>,
+    /// `[n_outputs]`
+    bias: Vec<f32>,
+    n_inputs: usize,
 }
 
 /// One output of a sparse network: which of its rows the inputs have, and what does not change.
@@ -64,7 +74,7 @@ pub(crate) struct Scratch {
 impl Sparse {
     fn of(network: &LocalNetwork) -> Self {
         let first = &network.rest.layers[0];
-        let n_hidden = first.bias.len().next_multiple_of(LANES);
+        let n_hidden = first.bias.len().next_multiple_of(LANES[1]);
         let mut rows = Vec::with_capacity(first.weight.n_rows() * n_hidden);
         for row in first.weight.rows() {
             rows.extend(padded(row, n_hidden));
@@ -74,7 +84,19 @@ impl Sparse {
             nothing: network.nothing(),
             rows,
             n_hidden,
-            rest: network.rest.layers[1..].to_vec(),
+            rest: network.rest.layers[1..].iter().map(Dense::of).collect(),
+        }
+    }
+}
+
+impl Dense {
+    fn of(layer: &Linear) -> Self {
+        let n_outputs = layer.bias.len().next_multiple_of(LANES[1]);
+        let rows = layer.weight.rows();
+        Self {
+            weights: rows.flat_map(|row| padded(row, n_outputs)).collect(),
+            bias: padded(&layer.bias, n_outputs).collect(),
+            n_inputs: layer.weight.n_rows(),
         }
     }
 }
@@ -109,13 +131,8 @@ impl Engine {
 
     pub(crate) fn scratch(&self) -> Scratch {
         let layers = self.pressure.rest.iter().chain(&self.wrench.rest);
-        let widest = layers
-            .map(|layer| layer.weight.n_rows().max(layer.bias.len()))
-            .max();
-        let widest = widest
-            .unwrap_or(0)
-            .max(self.pressure.n_hidden)
-            .max(self.wrench.n_hidden);
+        let widest = layers.map(|layer| layer.bias.len()).max().unwrap_or(0);
+        let widest = widest.max(self.pressure.n_hidden).max(self.wrench.n_hidden);
         let n_features = self.pressure.nothing.len().max(self.wrench.nothing.len());
         Scratch {
             near: Vec::with_capacity(self.n_points),
@@ -289,31 +306,50 @@ impl Sparse {
             }
             terms.extend((row..).zip(features.iter().copied()));
         }
-        for (block, bias) in port.bias.as_chunks::<LANES>().0.iter().enumerate() {
-            let mut sums = *bias;
-            for (row, input) in terms.iter() {
-                let from = *row as usize * self.n_hidden + block * LANES;
-                let weights = &self.rows[from..from + LANES];
-                for (sum, weight) in sums.iter_mut().zip(weights) {
-                    *sum = input.mul_add(*weight, *sum);
-                }
-            }
-            hidden[block * LANES..(block + 1) * LANES].copy_from_slice(&sums);
-        }
+        sum_up(&port.bias, &self.rows, terms.iter().copied(), hidden);
         let (mut hidden, mut next) = (hidden, next);
         for layer in &self.rest {
-            hidden[..layer.weight.n_rows()]
-                .iter_mut()
-                .for_each(|value| *value = silu(*value));
-            let n_outputs = layer.bias.len();
-            next[..n_outputs].copy_from_slice(&layer.bias);
-            for (value, weights) in hidden.iter().zip(layer.weight.rows()) {
-                for (sum, weight) in next[..n_outputs].iter_mut().zip(weights) {
-                    *sum = value.mul_add(*weight, *sum);
-                }
-            }
+            let units = &mut hidden[..layer.n_inputs];
+            units.iter_mut().for_each(|value| *value = silu(*value));
+            let terms = (0..).zip(units.iter().copied());
+            sum_up(&layer.bias, &layer.weights, terms, next);
             (hidden, next) = (next, hidden);
         }
         &hidden[..]
     }
+}
+
+/// Adds multiples of rows to an offset. Each sum runs in the order of the terms, whatever the processor. `[n_rows][n]`
+#[inline(always)]
+fn sum_up(bias: &[f32], rows: &[f32], terms: impl Iterator<Item = (u32, f32)> + Clone, sums: &mut [f32]) {
+    let n = bias.len();
+    let mut first = 0;
+    while first + LANES[0] <= n {
+        sum_up_lanes::<{ LANES[0] }>(bias, rows, terms.clone(), sums, first);
+        first += LANES[0];
+    }
+    while first + LANES[1] <= n {
+        sum_up_lanes::<{ LANES[1] }>(bias, rows, terms.clone(), sums, first);
+        first += LANES[1];
+    }
+}
+
+#[inline(always)]
+fn sum_up_lanes<const N: usize>(
+    bias: &[f32],
+    rows: &[f32],
+    terms: impl Iterator<Item = (u32, f32)>,
+    sums: &mut [f32],
+    first: usize,
+) {
+    let mut own = [0.0; N];
+    own.copy_from_slice(&bias[first..first + N]);
+    for (row, factor) in terms {
+        let from = row as usize * bias.len() + first;
+        let row = &rows[from..from + N];
+        for (sum, value) in own.iter_mut().zip(row) {
+            *sum = factor.mul_add(*value, *sum);
+        }
+    }
+    sums[first..first + N].copy_from_slice(&own);
 }

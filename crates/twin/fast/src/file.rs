@@ -40,7 +40,18 @@ struct Header {
     center_mm: glam::DVec3,
 }
 
+/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml`.
+const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
+
 impl FastGel {
+    /// The fast gel of PhysTac, which is built in.
+    ///
+    /// # Errors
+    /// None, unless this crate was compiled with another file in its place.
+    pub fn phystac() -> Result<Self, FastFileError> {
+        Self::from_bytes(PHYSTAC)
+    }
+
     /// The gel as the bytes of a file.
     ///
     /// # Errors

@@ -48,14 +48,14 @@ pub struct TrainSettings {
 impl Default for TrainSettings {
     fn default() -> Self {
         Self {
-            n_steps: 60_000,
+            n_steps: 40_000,
             n_frames: 128,
             n_places: 8,
             learning_rate: 5e-3,
             weight_decay: 1e-3,
             n_features: 6,
-            pressure_hidden: vec![64, 48, 32],
-            wrench_hidden: vec![64, 48, 32],
+            pressure_hidden: vec![64, 32, 32],
+            wrench_hidden: vec![64, 32, 32],
         }
     }
 }

@@ -1,0 +1,41 @@
+//! A thousand sensors under a thousand balls: `cargo run --release --example touch_for_learning`.
+#![allow(clippy::print_stdout)] // programs print
+
+use std::time::Instant;
+
+use twintac::{Body, Error, FastGel, Pose, Shape, Touch};
+
+const N_SENSORS: usize = 1024;
+
+fn main() -> Result<(), Error> {
+    let (pressure_kpa, seconds) = step(100)?;
+    println!(
+        "the first sensor reads {:.2?} kPa (simulated)",
+        &pressure_kpa[..8]
+    );
+    println!("{:.0} readings a second", 100.0 * N_SENSORS as f64 / seconds);
+    Ok(())
+}
+
+/// Presses each ball a little deeper at each step. Returns what all sensors read at last, kPa, and how long it took, s.
+pub fn step(n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
+    let n_threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut sensors = FastGel::phystac()?.batch(n_threads);
+    let bodies = [Body::new(&Shape::Sphere { radius_mm: 6.0 }, &Default::default())?];
+    let ends: Vec<usize> = (1..=N_SENSORS).collect(); // one body touches each sensor
+    let (mut pressure_kpa, mut wrench) = (vec![0.0; 8 * N_SENSORS], vec![[0.0; 6]; N_SENSORS]);
+    let started = Instant::now();
+    for step in 0..n_steps {
+        let depth_mm = 2.0 * step as f64 / n_steps as f64;
+        let touch = |sensor: usize| {
+            let x_mm = 20.0 * sensor as f64 / N_SENSORS as f64 - 10.0;
+            Touch {
+                body: 0,
+                gel_from_body: Pose::from_position([x_mm, 0.0, 8.5 - depth_mm].into()),
+            }
+        };
+        let touches: Vec<Touch> = (0..N_SENSORS).map(touch).collect();
+        sensors.read(&bodies, &touches, &ends, &mut pressure_kpa, &mut wrench);
+    }
+    Ok((pressure_kpa, started.elapsed().as_secs_f64()))
+}

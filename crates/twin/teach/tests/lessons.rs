@@ -1,0 +1,34 @@
+//! Lessons repeat, and the fast gel that is built in agrees with presses that it was not taught.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use twintac_fast::{FastGel, lesson_places_mm};
+use twintac_sensor::SensorFile;
+use twintac_shape::Surfaces;
+use twintac_teach::Teacher;
+
+#[test]
+fn the_built_in_gel_agrees_with_presses_that_it_was_not_taught() {
+    let sensor = SensorFile::phystac().unwrap().sensor;
+    let teacher = Teacher::new(sensor.clone(), &lesson_places_mm(&sensor));
+    // Lessons of another seed.
+    let presses: Vec<_> = (0..12).map(|number| teacher.lesson(2, number).unwrap()).collect();
+    let judged = FastGel::phystac()
+        .unwrap()
+        .judge(&presses, &Surfaces::new())
+        .unwrap();
+    assert!(judged.overall.n_frames > 40, "{judged:?}");
+    // Half of these presses are on coarse meshes, which read too little by several percent.
+    assert!(judged.overall.nearest_percent < 10.0, "{judged:?}");
+    assert!(judged.overall.force_percent < 10.0, "{judged:?}");
+}
+
+#[test]
+fn a_number_is_a_lesson() {
+    let sensor = SensorFile::phystac().unwrap().sensor;
+    let teacher = Teacher::new(sensor.clone(), &lesson_places_mm(&sensor)[..8]);
+    let lesson = teacher.lesson(1, 5).unwrap();
+    assert_eq!(teacher.lesson(1, 5).unwrap(), lesson);
+    assert_ne!(teacher.lesson(1, 6).unwrap().shape, lesson.shape);
+    assert_ne!(teacher.exam(1, 5).unwrap().shape, lesson.shape);
+}
