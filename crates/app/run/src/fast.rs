@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use twintac_fast::{FastGel, Judgement, Lesson, TrainSettings, lesson_places_mm};
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::Surfaces;
-use twintac_teach::Teacher;
+use twintac_teach::{DRAW_VERSION, Teacher};
 
 use crate::error::At;
 use crate::files::{read_json, sha256, write_file, write_json};
@@ -61,6 +61,8 @@ struct LessonsOf {
     /// Digest of what presses depend on: gel, shell, and ports.
     gel_sha256: String,
     seed: u64,
+    /// How they were drawn.
+    draw_version: u32,
 }
 
 /// Teaches and judges a fast twin in a folder. Presses that are there already are not solved again.
@@ -119,12 +121,19 @@ fn check_folder(sensor: &Sensor, folder: &Path, seed: u64) -> Result<(), RunErro
     let of = LessonsOf {
         gel_sha256: sha256(gel.as_bytes()),
         seed,
+        draw_version: DRAW_VERSION,
     };
     let path = folder.join("lessons.json");
     if path.exists() {
         let found: LessonsOf = read_json(&path)?;
         if found != of {
-            let what = if found.seed == seed { "gel" } else { "seed" };
+            let what = if found.seed != of.seed {
+                "seed"
+            } else if found.gel_sha256 != of.gel_sha256 {
+                "gel"
+            } else {
+                "version of this program"
+            };
             return Err(RunError::Input(format!(
                 "{} holds presses of another {what}: give another folder with --out",
                 folder.display()

@@ -36,6 +36,9 @@ pub(crate) struct Draw {
     pub(crate) edges_per_height: f64,
 }
 
+/// Counts how presses have been drawn: those of another version are other presses, though number and seed be the same.
+pub const DRAW_VERSION: u32 = 1;
+
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {

@@ -6,4 +6,5 @@
 mod draw;
 mod press;
 
+pub use draw::DRAW_VERSION;
 pub use press::{TeachError, Teacher};

@@ -12,7 +12,10 @@ fn the_built_in_gel_agrees_with_presses_that_it_was_not_taught() {
     let sensor = SensorFile::phystac().unwrap().sensor;
     let teacher = Teacher::new(sensor.clone(), &lesson_places_mm(&sensor));
     let exams: Vec<_> = (0..4).map(|number| teacher.exam(2, number).unwrap()).collect();
-    let judged = FastGel::phystac().unwrap().judge(&exams, &Surfaces::new()).unwrap();
+    let judged = FastGel::phystac()
+        .unwrap()
+        .judge(&exams, &Surfaces::new())
+        .unwrap();
     assert!(judged.overall.n_frames > 15, "{judged:?}");
     assert!(judged.overall.nearest_percent < 4.0, "{judged:?}");
     assert!(judged.overall.force_percent < 6.0, "{judged:?}");
