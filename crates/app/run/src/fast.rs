@@ -5,6 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_fast::{FastGel, Judgement, Lesson, TrainSettings, lesson_places_mm};
+use twintac_recording::Provenance;
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::Surfaces;
 use twintac_teach::{DRAW_VERSION, Teacher};
@@ -47,6 +48,8 @@ impl Default for FastSettings {
 pub struct FastResult {
     /// The sensor.
     pub sensor: String,
+    /// Where the numbers come from: both gels are simulated.
+    pub provenance: Provenance,
     /// Presses that were taught.
     pub n_taught: usize,
     /// Errors against the solved gel on presses like those that were taught.
@@ -100,6 +103,7 @@ pub fn train_fast(
     write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
     let result = FastResult {
         sensor: sensor.sensor.name.clone(),
+        provenance: Provenance::Simulated,
         n_taught: taught.len(),
         held_out: gel.judge(&held_out, &Surfaces::new())?,
         unseen_shapes: gel.judge(&exams, &Surfaces::new())?,

@@ -108,7 +108,7 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
-//! Touch for learning, a few microseconds a reading, with any number of bodies of any shape:
+//! Touch for learning, about ten microseconds a reading, with any number of bodies of any shape:
 //!
 //! ```
 //! # #[cfg(feature = "fast")] {

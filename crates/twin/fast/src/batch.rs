@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::{Body, FastGel, FastReader, Touch};
 
-/// Fast gels of many sensors of one kind. It owns all memory that readings need: reading allocates nothing.
+/// Fast gels of many sensors of one kind. It owns all memory that readings need.
 #[derive(Clone, Debug)]
 pub struct FastBatch {
     /// One for each thread.
@@ -33,7 +33,7 @@ impl FastBatch {
     /// - `wrench`: is written; force, N, and torque about the top of the gel's middle, N mm. `[n_sensors]`
     ///
     /// # Panics
-    /// Slices of other lengths, ends that decrease, a body that is not there.
+    /// Slices of other lengths, ends that decrease, a body that is not there, a pose that is not finite.
     pub fn read(
         &mut self,
         bodies: &[Body],

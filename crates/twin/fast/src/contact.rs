@@ -59,9 +59,15 @@ impl ContactGrid {
 
     #[inline(always)]
     fn add(&self, body: &Body, gel_from_body: &Pose, inputs: &mut [f32]) {
-        let rotation = gel_from_body.rotation.as_quat();
+        let (position_mm, rotation) = (gel_from_body.position_mm, gel_from_body.rotation);
+        // It would read as if nothing touched.
+        assert!(
+            position_mm.is_finite() && rotation.is_finite(),
+            "a pose of finite numbers"
+        );
+        let rotation = rotation.as_quat();
         let body_from_gel = Mat3::from_quat(rotation.inverse());
-        let origin = gel_from_body.position_mm.as_vec3();
+        let origin = position_mm.as_vec3();
         let [low, high] = self.box_in_gel(body, &Mat3::from_quat(rotation), origin);
         if low.z > self.heights_mm[1] {
             return;

@@ -106,6 +106,11 @@ impl FastGel {
             let problem = format!("version {} where {VERSION} is expected", header.version);
             return Err(FastFileError::new(problem));
         }
+        if header.layout.grid.n.iter().product::<usize>() != header.layout.grid.len() {
+            return Err(FastFileError::new(
+                "its grid has another number of heights than of points",
+            ));
+        }
         let tensors = SafeTensors::deserialize(bytes).map_err(FastFileError::new)?;
         let (n_patch, n_grid) = (header.layout.patch.offsets.len(), header.layout.grid.len());
         let n_inputs = [header.layout.patch.n_inputs(), header.layout.n_field_inputs()];

@@ -27,6 +27,9 @@ impl FastGel {
     ///
     /// # Errors
     /// A lesson whose shape can't be.
+    ///
+    /// # Panics
+    /// No lesson with a frame.
     pub fn train(
         sensor: &Sensor,
         lessons: &[Lesson],

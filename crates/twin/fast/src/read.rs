@@ -47,7 +47,7 @@ impl FastReader {
     /// - `wrench`: is written; force on the gel, N, and torque about the top of the gel's middle, N mm.
     ///
     /// # Panics
-    /// A slice of pressures of another length than there are taxels.
+    /// A slice of pressures of another length than there are taxels, a pose that is not finite.
     pub fn read(&mut self, bodies: &[(&Body, Pose)], pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
         self.grid.fill(bodies.iter().copied(), &mut self.inputs);
         self.evaluate(pressure_kpa, wrench);

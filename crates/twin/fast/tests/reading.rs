@@ -156,3 +156,11 @@ fn a_sensor_of_a_batch_reads_what_it_reads_alone() {
         }
     }
 }
+
+#[test]
+#[should_panic(expected = "a pose of finite numbers")]
+fn a_pose_that_is_no_pose_is_not_read_as_nothing() {
+    let (gel, _) = gel(1);
+    let nowhere = Pose::from_position(DVec3::new(f64::NAN, 0.0, 6.0));
+    read(&gel, &[(&ball(), nowhere)]);
+}
