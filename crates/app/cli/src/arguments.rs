@@ -83,6 +83,9 @@ pub(crate) struct FastTrain {
     /// Presses of shapes that are not taught, to be judged on [default: 100].
     #[arg(long, value_name = "N")]
     pub(crate) exams: Option<u64>,
+    /// Presses of such shapes that slide and tilt, to be judged on [default: 40].
+    #[arg(long, value_name = "N")]
+    pub(crate) slides: Option<u64>,
     /// Steps of the training [default: 40000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) steps: Option<u64>,

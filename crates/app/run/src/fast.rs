@@ -8,7 +8,7 @@ use twintac_fast::{FastGel, Judgement, Lesson, TrainSettings, lesson_places_mm};
 use twintac_recording::Provenance;
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::Surfaces;
-use twintac_teach::{DRAW_VERSION, Teacher};
+use twintac_teach::{DRAW_VERSION, TeachError, Teacher, exam_surfaces};
 
 use crate::error::At;
 use crate::files::{read_json, sha256, write_file, write_json};
@@ -21,6 +21,9 @@ pub const FAST_GEL: &str = "fast.safetensors";
 /// One lesson of so many is not taught but judged on.
 const ONE_HELD_OUT_OF: usize = 20;
 
+/// Held out is what has edges at most so much longer than the shortest of all.
+const HELD_OUT_LONGER: f64 = 1.2;
+
 /// How much is learned from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -29,6 +32,8 @@ pub struct FastSettings {
     pub n_lessons: u64,
     /// Presses of shapes that are not.
     pub n_exams: u64,
+    /// Presses of such shapes that slide and tilt.
+    pub n_slides: u64,
     /// How the networks are trained.
     pub train: TrainSettings,
 }
@@ -38,6 +43,7 @@ impl Default for FastSettings {
         Self {
             n_lessons: 2000,
             n_exams: 100,
+            n_slides: 40,
             train: TrainSettings::default(),
         }
     }
@@ -54,8 +60,10 @@ pub struct FastResult {
     pub n_taught: usize,
     /// Errors against the solved gel on presses like those that were taught.
     pub held_out: Judgement,
-    /// Errors against the solved gel on shapes that no lesson has.
+    /// Errors against the solved gel on shapes that no lesson has, which are pressed straight down.
     pub unseen_shapes: Judgement,
+    /// The same where such shapes slide and tilt.
+    pub slides: Judgement,
 }
 
 /// What the lessons of a folder are of.
@@ -81,16 +89,22 @@ pub fn train_fast(
 ) -> Result<FastResult, RunError> {
     check_folder(&sensor.sensor, folder, seed)?;
     let places_mm = lesson_places_mm(&sensor.sensor);
-    let teacher = Teacher::new(sensor.sensor.clone(), &places_mm);
+    let teacher = Teacher::new(&sensor.sensor, &places_mm)?;
     let exams = presses("exams", settings.n_exams, folder, progress, &|number| {
         teacher.exam(seed, number)
+    })?;
+    let slides = presses("slides", settings.n_slides, folder, progress, &|number| {
+        teacher.slide(seed, number)
     })?;
     let lessons = presses("lessons", settings.n_lessons, folder, progress, &|number| {
         teacher.lesson(seed, number)
     })?;
     let (mut taught, mut held_out) = (Vec::new(), Vec::new());
+    let edges_mm = lessons.iter().map(|lesson| lesson.edge_mm);
+    let longest_held_out_mm = HELD_OUT_LONGER * edges_mm.fold(f64::INFINITY, f64::min);
     for (number, lesson) in lessons.into_iter().enumerate() {
-        let is_held_out = number % ONE_HELD_OUT_OF == 0;
+        // On a coarse mesh the solved gel reads too little: nobody is judged by it.
+        let is_held_out = number % ONE_HELD_OUT_OF == 0 && lesson.edge_mm < longest_held_out_mm;
         if is_held_out { &mut held_out } else { &mut taught }.push(lesson);
     }
     let n_reports = settings.train.n_steps / twintac_fast::REPORT_STEPS;
@@ -101,12 +115,14 @@ pub fn train_fast(
     })?;
     drop(work);
     write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
+    let surfaces = exam_surfaces().map_err(TeachError::from)?;
     let result = FastResult {
         sensor: sensor.sensor.name.clone(),
         provenance: Provenance::Simulated,
         n_taught: taught.len(),
         held_out: gel.judge(&held_out, &Surfaces::new())?,
-        unseen_shapes: gel.judge(&exams, &Surfaces::new())?,
+        unseen_shapes: gel.judge(&exams, &surfaces)?,
+        slides: gel.judge(&slides, &surfaces)?,
     };
     write_json(&folder.join("judgement.json"), &result)?;
     Ok(result)

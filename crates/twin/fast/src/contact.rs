@@ -1,5 +1,7 @@
 //! What the gel is touched by: for each point of the grid, how far inside a body it lies, or how close to one.
 
+use std::ops::Range;
+
 use glam::{Mat3, Vec3};
 use pulp::{Arch, Simd, WithSimd};
 use twintac_shape::Pose;
@@ -12,6 +14,11 @@ const LEVELS_MM: [f32; 3] = [0.0, -1.5, -3.0];
 
 /// Deeper points are no deeper to the network, mm.
 const DEEPEST_MM: f32 = 4.0;
+
+/// Points of a row whose distances are computed together.
+const SIDE_BY_SIDE: usize = 8;
+
+type Lanes = [f32; SIDE_BY_SIDE];
 
 /// Numbers for each point.
 pub(crate) const N_CHANNELS: usize = LEVELS_MM.len();
@@ -81,17 +88,84 @@ impl ContactGrid {
         };
         let (columns, rows) = (range(0), range(1));
         debug_assert!(columns.end <= n_x && rows.end <= n_y);
-        for j in rows {
-            let y_mm = self.first_mm[1] + self.spacing_mm * j as f32;
-            for i in columns.clone() {
-                let x_mm = self.first_mm[0] + self.spacing_mm * i as f32;
-                let point = j * n_x + i;
-                let at = body_from_gel * (Vec3::new(x_mm, y_mm, self.height_mm[point]) - origin);
-                let inputs = &mut inputs[point * N_CHANNELS..(point + 1) * N_CHANNELS];
-                for (level_mm, input) in LEVELS_MM.iter().zip(inputs) {
-                    let distance_mm = body.distance_mm(at + *level_mm * body_from_gel.z_axis);
-                    *input = input.max((REACH_MM - distance_mm.max(-DEEPEST_MM)) * (1.0 / REACH_MM));
+        let placed = Placed {
+            body_from_gel,
+            origin,
+            columns,
+            rows,
+        };
+        match &body.form {
+            Form::Ball { radius_mm } => self.add_placed(&placed, inputs, |x, y, z, _| {
+                std::array::from_fn(|side| {
+                    let z = z[side] - radius_mm;
+                    (x[side] * x[side] + y[side] * y[side] + z * z).sqrt() - radius_mm
+                })
+            }),
+            Form::Sampled(samples) => self.add_placed(&placed, inputs, |x, y, z, is_asked| {
+                let mut distance_mm = [REACH_MM; SIDE_BY_SIDE];
+                for (side, distance_mm) in distance_mm.iter_mut().enumerate() {
+                    if is_asked[side] {
+                        *distance_mm = samples.distance_mm(Vec3::new(x[side], y[side], z[side]));
+                    }
                 }
+                distance_mm
+            }),
+        }
+    }
+
+    /// The points of a body's box, a few of a row at a time: simple loops over a fixed number of points become vector instructions.
+    #[inline(always)]
+    fn add_placed(
+        &self,
+        placed: &Placed,
+        inputs: &mut [f32],
+        distance_mm: impl Fn(&Lanes, &Lanes, &Lanes, &[bool; SIDE_BY_SIDE]) -> Lanes,
+    ) {
+        let n_x = self.n[0];
+        let [along, across, up] = [
+            placed.body_from_gel.x_axis,
+            placed.body_from_gel.y_axis,
+            placed.body_from_gel.z_axis,
+        ];
+        let inputs = inputs.as_chunks_mut::<N_CHANNELS>().0;
+        for j in placed.rows.clone() {
+            let y_mm = self.first_mm[1] + self.spacing_mm * j as f32;
+            let mut first = placed.columns.start;
+            while first < placed.columns.end {
+                let n = SIDE_BY_SIDE.min(placed.columns.end - first);
+                let points = j * n_x + first..j * n_x + first + n;
+                let mut height_mm = [0.0; SIDE_BY_SIDE];
+                height_mm[..n].copy_from_slice(&self.height_mm[points.clone()]);
+                let row = across * (y_mm - placed.origin.y);
+                let x_mm: Lanes = std::array::from_fn(|side| {
+                    self.first_mm[0] + self.spacing_mm * (first + side) as f32 - placed.origin.x
+                });
+                let z_mm = height_mm.map(|height_mm| height_mm - placed.origin.z);
+                let at = |axis: usize, level_mm: f32| -> Lanes {
+                    std::array::from_fn(|side| {
+                        along[axis] * x_mm[side] + row[axis] + up[axis] * (z_mm[side] + level_mm)
+                    })
+                };
+                let shares = |level_mm: f32, is_asked: &[bool; SIDE_BY_SIDE]| {
+                    distance_mm(&at(0, level_mm), &at(1, level_mm), &at(2, level_mm), is_asked).map(share)
+                };
+                let surface = shares(LEVELS_MM[0], &std::array::from_fn(|side| side < n));
+                // What is not near the surface is not near anything below it.
+                let is_near = surface.map(|share| share > 0.0);
+                let inputs = &mut inputs[points];
+                for (input, share) in inputs.iter_mut().zip(&surface) {
+                    input[0] = larger(input[0], *share);
+                }
+                if is_near.contains(&true) {
+                    for level in 1..N_CHANNELS {
+                        let deeper = shares(LEVELS_MM[level], &is_near);
+                        for ((input, is_near), share) in inputs.iter_mut().zip(is_near).zip(deeper) {
+                            let share = if is_near { share } else { 0.0 };
+                            input[level] = larger(input[level], share);
+                        }
+                    }
+                }
+                first += n;
             }
         }
     }
@@ -130,13 +204,23 @@ impl<'b, B: Iterator<Item = (&'b Body, Pose)>> WithSimd for Filling<'_, B> {
     }
 }
 
-impl Body {
-    /// Distance at a point of the body's own frame, mm; never much more than [`REACH_MM`] has to be right.
-    #[inline(always)]
-    fn distance_mm(&self, point: Vec3) -> f32 {
-        match &self.form {
-            Form::Ball { radius_mm } => (point - Vec3::Z * *radius_mm).length() - radius_mm,
-            Form::Sampled(samples) => samples.distance_mm(point),
-        }
-    }
+/// How much of the reach around a body is left at a distance, in units of the reach.
+#[inline(always)]
+fn share(distance_mm: f32) -> f32 {
+    let distance_mm = larger(distance_mm, -DEEPEST_MM);
+    larger((REACH_MM - distance_mm) * (1.0 / REACH_MM), 0.0)
+}
+
+/// The larger of two numbers that are both there, in one instruction: `f32::max` looks for what is not a number.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// A body in the gel's frame, and the points of the grid that it can be near.
+struct Placed {
+    body_from_gel: Mat3,
+    origin: Vec3,
+    columns: Range<usize>,
+    rows: Range<usize>,
 }

@@ -8,7 +8,7 @@ use crate::Lesson;
 use crate::layout::Layout;
 use crate::lesson::lesson_places_mm;
 use crate::networks::Networks;
-use crate::training::{Frames, TrainProgress, TrainSettings, train};
+use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
 /// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,14 @@ impl FastGel {
             center_mm,
         )?;
         let is_symmetric = matches!(sensor.gel.solid, Solid::Block { .. }) && layout.is_symmetric(center_mm);
-        let networks = train(&frames, &layout, settings, is_symmetric, seed, progress);
+        let course = Course {
+            frames: &frames,
+            layout: &layout,
+            settings,
+            is_symmetric,
+            seed,
+        };
+        let networks = train(course, progress);
         Ok(Self {
             sensor: sensor.name.clone(),
             ports_mm: sensor

@@ -7,17 +7,25 @@ use rand::Rng;
 use twintac_sensor::Sensor;
 use twintac_shape::{Part, Pose, Shape};
 
+use crate::boulder;
+
 /// The gel's width of which the sizes below are, mm: the root of PhysTac's area.
 const WIDTH_MM: f64 = 25.0;
 
 /// Largest tilt of a press, radians.
 const LARGEST_TILT: f64 = 0.3;
 
+/// Largest tilt on the way of a slide.
+const LARGEST_TURN: f64 = 0.15;
+
 /// Largest tilt of a part of a whole.
 const LARGEST_TILT_OF_PART: f64 = 0.4;
 
 /// How deep a press goes at most, of the gel's height.
 const DEEPEST: f64 = 0.6;
+
+/// The deepest frame of a press is at least so deep, as part of that. The frames before it show what is less deep.
+const SHALLOWEST: f64 = 0.35;
 
 /// Height of the gel for which meshes have the edges below, mm: PhysTac's.
 const HEIGHT_MM: f64 = 8.5;
@@ -34,18 +42,31 @@ pub(crate) struct Draw {
     pub(crate) depth_mm: f64,
     pub(crate) edge_mm: f64,
     pub(crate) edges_per_height: f64,
+    /// How it goes on once it is down.
+    pub(crate) slide: Option<Slide>,
+}
+
+/// A way along the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Slide {
+    /// How far, mm.
+    pub(crate) by_mm: DVec2,
+    /// The turn on the way, about an axis in the gel's frame.
+    pub(crate) turn: DQuat,
 }
 
 /// Counts how presses have been drawn: those of another version are other presses, though number and seed be the same.
-pub const DRAW_VERSION: u32 = 1;
+pub const DRAW_VERSION: u32 = 2;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
-    /// Balls, cylinders, boxes, rings and wedges, alone or together; most on coarse meshes.
+    /// Balls, cylinders, boxes, rings and wedges, alone or together; some on coarse meshes.
     Lesson,
-    /// Crosses and triangles, which no lesson has, on fine meshes.
+    /// Crosses, triangles and boulders, which no lesson has, on fine meshes; straight down.
     Exam,
+    /// The same shapes, which slide and tilt after they are down.
+    Slide,
 }
 
 /// Draws a press for a sensor.
@@ -54,16 +75,16 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     let size_mm = (high - low).truncate();
     let scale = size_mm.element_product().sqrt() / WIDTH_MM;
     let height_mm = high.z - low.z;
-    let shape = match (purpose, random.random_range(0..7)) {
-        (Purpose::Exam, kind) => unseen(kind, scale, random),
-        (Purpose::Lesson, kind @ 0..5) => simple(kind, scale, random),
-        (Purpose::Lesson, _) => whole(scale, random),
+    let is_lesson = purpose == Purpose::Lesson;
+    let shape = match (is_lesson, random.random_range(0..7)) {
+        (false, kind) => unseen(kind, scale, random),
+        (true, kind @ 0..5) => simple(kind, scale, random),
+        (true, _) => whole(scale, random),
     };
     // Coarse presses are cheap, so that there are many; fine ones are right.
     let (edges_per_height, finest_mm, coarsest_mm) = match random.random_range(0..3) {
-        _ if purpose == Purpose::Exam => (7.0, FINEST_MM, FINEST_MM),
-        0 => (6.0, 1.05, 1.4),
-        1 => (7.0, 0.8, 1.05),
+        _ if !is_lesson => (7.0, FINEST_MM, FINEST_MM),
+        0 => (7.0, 0.8, 1.05),
         _ => (7.0, FINEST_MM, 0.8),
     };
     let tilt = if random.random_bool(0.4) {
@@ -73,11 +94,13 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     };
     let limit_mm = sensor.limits.map_or(f64::INFINITY, |limits| limits.depth_mm);
     let deepest_mm = limit_mm.min(DEEPEST * height_mm);
+    let within = DVec2::new(random.random(), random.random());
+    let rotation = turned(tilt, random);
     Draw {
         shape,
-        place_mm: low.truncate() + size_mm * DVec2::new(random.random(), random.random()),
-        rotation: turned(tilt, random),
-        depth_mm: deepest_mm * random.random_range(0.2..1.0),
+        place_mm: low.truncate() + size_mm * within,
+        rotation,
+        depth_mm: deepest_mm * random.random_range(SHALLOWEST..1.0),
         edge_mm: height_mm / HEIGHT_MM
             * if finest_mm < coarsest_mm {
                 random.random_range(finest_mm..coarsest_mm)
@@ -85,6 +108,15 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
                 finest_mm
             },
         edges_per_height,
+        slide: (purpose == Purpose::Slide).then(|| {
+            // Towards the middle, so that it stays on the gel.
+            let inwards = (DVec2::splat(0.5) - within).to_angle() + random.random_range(-1.0..1.0);
+            let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
+            Slide {
+                by_mm: scale * random.random_range(2.0..5.0) * DVec2::from_angle(inwards),
+                turn: DQuat::from_axis_angle(axis, random.random_range(0.0..LARGEST_TURN)),
+            }
+        }),
     }
 }
 
@@ -124,10 +156,11 @@ fn simple(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
             }
         }
         _ => Shape::Wedge {
-            angle_rad: between(0.9, 2.4) / scale,
+            angle_rad: between(1.3, 2.4) / scale,
             length_mm: between(6.0, 20.0),
             height_mm: 0.7 * height_mm,
-            edge_radius_mm,
+            // A sharper ridge slips between the nodes of the mesh.
+            edge_radius_mm: between(1.0, 2.0),
         },
     }
 }
@@ -137,19 +170,21 @@ fn unseen(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
     let mut between = |low: f64, high: f64| scale * random.random_range(low..high);
     let edge_radius_mm = between(0.6, 1.6);
     let height_mm = 14.0 * scale;
-    if kind.is_multiple_of(2) {
-        Shape::X {
+    match kind {
+        0..3 => Shape::X {
             length_mm: between(10.0, 18.0),
             width_mm: between(3.3, 5.0),
             height_mm,
             edge_radius_mm,
-        }
-    } else {
-        Shape::Triangle {
+        },
+        3..5 => Shape::Triangle {
             side_mm: between(8.0, 18.0),
             height_mm,
             edge_radius_mm,
-        }
+        },
+        _ => Shape::Stl {
+            path: boulder::name(random.random_range(0..boulder::N)),
+        },
     }
 }
 

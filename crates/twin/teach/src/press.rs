@@ -2,16 +2,21 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use twintac_fast::{Lesson, LessonFrame};
+use twintac_protocol::{PressPath, Waypoint, Zero};
 use twintac_sensor::{Sensor, Taxel};
 use twintac_shape::Pose;
 use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSettings};
 
+use crate::boulder::exam_surfaces;
 use crate::draw::{Draw, Purpose, draw};
 
-/// Frames of a press.
+/// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
+
+/// Frames on the way of a slide.
+const N_SLIDE_FRAMES: u32 = 5;
 
 /// Finer meshes than any that is asked for.
 const MAX_NODES: usize = 60_000;
@@ -25,6 +30,9 @@ pub enum TeachError {
     /// The shape can't be.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
+    /// The surface of a shape can't be.
+    #[error(transparent)]
+    Surface(#[from] twintac_shape::SurfaceError),
 }
 
 /// Presses one sensor's gel at random.
@@ -37,20 +45,26 @@ pub struct Teacher {
 
 impl Teacher {
     /// A teacher who reads the floor at these places of the gel's plane, mm. `[n_places]`
-    #[must_use]
-    pub fn new(sensor: Arc<Sensor>, places_mm: &[DVec2]) -> Self {
+    ///
+    /// # Errors
+    /// None that is known.
+    pub fn new(sensor: &Sensor, places_mm: &[DVec2]) -> Result<Self, TeachError> {
+        // Exams press with surfaces that the sensor does not have.
+        let mut sensor = sensor.clone();
+        sensor.surfaces.extend(exam_surfaces()?);
         let port = &sensor.taxels[0];
         let places = places_mm.iter().map(|at| Taxel {
             position_mm: at.extend(port.position_mm.z),
             ..port.clone()
         });
-        Self {
+        Ok(Self {
             places: places.collect(),
-            sensor,
-        }
+            sensor: Arc::new(sensor),
+        })
     }
 
-    /// The lesson of a number; the same number gives the same lesson. It ends where the solver does, and has no frames if that cannot begin.
+    /// The lesson of a number; the same number gives the same lesson. It ends where the solver does, or where the gel gives way,
+    /// and has no frames if that cannot begin.
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
@@ -66,6 +80,15 @@ impl Teacher {
     pub fn exam(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
         let random = &mut twintac_random::stream(seed, &format!("exam {number}"));
         self.press(&draw(&self.sensor, Purpose::Exam, random))
+    }
+
+    /// The slide of a number: the shape of an exam goes down, then aside, and tilts on the way.
+    ///
+    /// # Errors
+    /// A sensor that cannot be meshed.
+    pub fn slide(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+        let random = &mut twintac_random::stream(seed, &format!("slide {number}"));
+        self.press(&draw(&self.sensor, Purpose::Slide, random))
     }
 
     fn press(&self, drawn: &Draw) -> Result<Lesson, TeachError> {
@@ -89,15 +112,19 @@ impl Teacher {
             Err(SimulateError::NoTouch { .. }) => return Ok(lesson),
             touch => touch?,
         };
-        let mesh = gel.mesh(&PressPlace {
-            indenter: String::new(),
-            shape: drawn.shape.clone(),
-            x_mm: drawn.place_mm.x,
-            y_mm: drawn.place_mm.y,
-            rotation: drawn.rotation,
-            depth_mm: drawn.depth_mm,
-            enough_force_n: None,
-        })?;
+        let poses = poses(drawn, &touch);
+        let mesh = match &drawn.slide {
+            None => gel.mesh(&PressPlace {
+                indenter: String::new(),
+                shape: drawn.shape.clone(),
+                x_mm: drawn.place_mm.x,
+                y_mm: drawn.place_mm.y,
+                rotation: drawn.rotation,
+                depth_mm: drawn.depth_mm,
+                enough_force_n: None,
+            }),
+            Some(_) => gel.mesh_along(&drawn.shape, &path(&poses)),
+        }?;
         let body = mesh.body();
         let ports = self
             .places
@@ -106,17 +133,17 @@ impl Teacher {
         let ports = ports.collect::<Result<Vec<_>, _>>()?;
         let indenter = drawn.shape.signed_distance_field(&self.sensor.surfaces)?;
         let mut state = body.rest();
-        for frame in 1..=N_FRAMES {
-            let depth_mm = drawn.depth_mm * f64::from(frame) / f64::from(N_FRAMES);
-            let pose = Pose {
-                position_mm: touch.position_mm - DVec3::Z * depth_mm,
-                ..touch
-            };
+        for pose in poses {
             let Ok(solved) = body.advance(&mut state, indenter.as_ref(), &pose, 0.0) else {
                 break;
             };
             let nodal_kpa = body.pressure_kpa(&state);
             let force_n = solved.indenter_force_n;
+            // No elastic gel pushes less the deeper it is pressed: a thin part has slipped between the nodes of the mesh.
+            let before_n = lesson.frames.last().map_or(0.0, |before| before.force_n.z);
+            if drawn.slide.is_none() && force_n.z > before_n {
+                break;
+            }
             lesson.frames.push(LessonFrame {
                 gel_from_indenter: pose,
                 force_n,
@@ -125,5 +152,43 @@ impl Teacher {
             });
         }
         Ok(lesson)
+    }
+}
+
+/// Evenly down from first touch, then on.
+fn poses(drawn: &Draw, touch: &Pose) -> Vec<Pose> {
+    let parts = |n: u32| (1..=n).map(move |frame| f64::from(frame) / f64::from(n));
+    let at = |part: f64| Pose {
+        position_mm: touch.position_mm - part * drawn.depth_mm * DVec3::Z,
+        ..*touch
+    };
+    let mut poses: Vec<Pose> = parts(N_FRAMES).map(at).collect();
+    if let Some(slide) = &drawn.slide {
+        let down = at(1.0);
+        poses.extend(parts(N_SLIDE_FRAMES).map(|part| Pose {
+            position_mm: down.position_mm + (part * slide.by_mm).extend(0.0),
+            rotation: (DQuat::IDENTITY.slerp(slide.turn, part) * down.rotation).normalize(),
+        }));
+    }
+    poses
+}
+
+/// The way of a slide, for meshing.
+fn path(poses: &[Pose]) -> PressPath {
+    let waypoint = |(number, pose): (usize, &Pose)| Waypoint {
+        time_s: number as f64,
+        position_mm: pose.position_mm,
+        turn_rad: pose.rotation.to_scaled_axis(),
+        force_n: None,
+    };
+    PressPath {
+        summary: String::new(),
+        indenter: String::new(),
+        zero: Zero::Board,
+        rate_hz: None,
+        poses: poses.iter().enumerate().map(waypoint).collect(),
+        force_direction: DVec3::NEG_Z,
+        force_travel_mm: None,
+        points: Vec::new(),
     }
 }

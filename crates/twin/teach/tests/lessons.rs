@@ -4,17 +4,16 @@
 
 use twintac_fast::{FastGel, lesson_places_mm};
 use twintac_sensor::SensorFile;
-use twintac_shape::Surfaces;
-use twintac_teach::Teacher;
+use twintac_teach::{Teacher, exam_surfaces};
 
 #[test]
 fn the_built_in_gel_agrees_with_presses_that_it_was_not_taught() {
     let sensor = SensorFile::phystac().unwrap().sensor;
-    let teacher = Teacher::new(sensor.clone(), &lesson_places_mm(&sensor));
+    let teacher = Teacher::new(&sensor, &lesson_places_mm(&sensor)).unwrap();
     let exams: Vec<_> = (0..4).map(|number| teacher.exam(2, number).unwrap()).collect();
     let judged = FastGel::phystac()
         .unwrap()
-        .judge(&exams, &Surfaces::new())
+        .judge(&exams, &exam_surfaces().unwrap())
         .unwrap();
     assert!(judged.overall.n_frames > 15, "{judged:?}");
     assert!(judged.overall.nearest_percent < 4.0, "{judged:?}");
@@ -24,9 +23,12 @@ fn the_built_in_gel_agrees_with_presses_that_it_was_not_taught() {
 #[test]
 fn a_number_is_a_lesson() {
     let sensor = SensorFile::phystac().unwrap().sensor;
-    let teacher = Teacher::new(sensor.clone(), &lesson_places_mm(&sensor)[..8]);
+    let teacher = Teacher::new(&sensor, &lesson_places_mm(&sensor)[..8]).unwrap();
     let lesson = teacher.lesson(1, 5).unwrap();
     assert_eq!(teacher.lesson(1, 5).unwrap(), lesson);
     assert_ne!(teacher.lesson(1, 6).unwrap().shape, lesson.shape);
     assert_ne!(teacher.exam(1, 5).unwrap().shape, lesson.shape);
+    let slide = teacher.slide(1, 0).unwrap();
+    let [down, after] = [4, 5].map(|frame: usize| slide.frames[frame].gel_from_indenter.position_mm);
+    assert!((down - after).truncate().length() > 0.3 && down.z == after.z);
 }

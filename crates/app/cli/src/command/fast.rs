@@ -15,6 +15,7 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
     let mut settings = FastSettings::default();
     settings.n_lessons = arguments.lessons.unwrap_or(settings.n_lessons);
     settings.n_exams = arguments.exams.unwrap_or(settings.n_exams);
+    settings.n_slides = arguments.slides.unwrap_or(settings.n_slides);
     if let Some(steps) = arguments.steps {
         settings.train.n_steps = steps as usize;
     }
@@ -39,7 +40,8 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
         "", "frames", "nearest", "all", "force"
     ))?;
     print_group("held-out presses", &found.held_out.overall)?;
-    print_judgement("shapes never taught", &found.unseen_shapes)
+    print_judgement("shapes never taught", &found.unseen_shapes)?;
+    print_group("the same, sliding and tilting", &found.slides.overall)
 }
 
 fn print_judgement(name: &str, found: &Judgement) -> Result<()> {

@@ -1,6 +1,8 @@
 //! Lessons as a network sees them.
 
 use glam::{DVec2, DVec3};
+use rand::Rng;
+use twintac_random::RandomStream;
 use twintac_shape::{Pose, ShapeError, Surfaces};
 
 use crate::contact::ContactGrid;
@@ -37,6 +39,11 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
+    /// A frame at random.
+    pub(crate) fn any(&self, random: &mut RandomStream) -> &TaughtFrame {
+        &self.frames[random.random_range(0..self.frames.len())]
+    }
+
     pub(crate) fn of(
         lessons: &[Lesson],
         grid: &SurfaceGrid,

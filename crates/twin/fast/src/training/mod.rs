@@ -5,5 +5,5 @@ mod frames;
 mod train;
 
 pub(crate) use frames::Frames;
-pub(crate) use train::train;
+pub(crate) use train::{Course, train};
 pub use train::{REPORT_STEPS, TrainProgress, TrainSettings};

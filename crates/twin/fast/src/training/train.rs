@@ -1,11 +1,13 @@
 //! The steps of training.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 use twintac_learn::{AdamW, AdamWSettings, Matrix};
-use twintac_random::digest_stream;
+use twintac_random::{RandomStream, digest_stream};
 
 use super::Frames;
-use super::batch::Batch;
+use super::batch::{PressureBatch, WrenchBatch};
 use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::LocalNetwork;
@@ -76,78 +78,124 @@ pub struct TrainProgress {
 /// Steps between reports.
 pub const REPORT_STEPS: usize = 100;
 
-/// Trains the networks.
-pub(crate) fn train(
-    frames: &Frames,
-    layout: &Layout,
-    settings: &TrainSettings,
-    is_symmetric: bool,
-    seed: u64,
-    progress: &mut dyn FnMut(TrainProgress),
-) -> Networks {
-    let mut random = digest_stream(seed, "fast twin");
-    let (n_patch, n_grid) = (layout.patch.offsets.len(), layout.grid.len());
-    let n_others = |n_inputs: usize, n_points: usize| n_inputs - n_points * N_CHANNELS;
-    let pressure = [
-        n_patch,
-        settings.n_features,
-        n_others(layout.patch.n_inputs(), n_patch),
-    ];
-    let wrench = [
-        n_grid,
-        settings.n_features,
-        n_others(layout.n_field_inputs(), n_grid),
-    ];
-    let mut networks = Networks {
-        pressure: LocalNetwork::new(pressure, &settings.pressure_hidden, 1, &mut random),
-        wrench: LocalNetwork::new(wrench, &settings.wrench_hidden, 6, &mut random),
-    };
-    let optimizer_settings = AdamWSettings {
-        weight_decay: settings.weight_decay as f32,
-        gradient_norm: 1.0,
-    };
-    let mut optimizers = [&networks.pressure, &networks.wrench]
-        .map(|network| AdamW::new(network.arrays(), optimizer_settings));
-    let mut sums = [0.0_f32; 2];
-    for step in 0..settings.n_steps {
-        let sizes = [settings.n_frames, settings.n_places];
-        let batch = Batch::draw(frames, layout, sizes, is_symmetric, &mut random);
-        let rate = settings.learning_rate * schedule(step as f64 / settings.n_steps as f64);
-        let Batch {
-            patches,
-            pressure,
-            largest_kpa,
-            fields,
-            wrench,
-            largest_n,
-        } = batch;
+/// What is trained on, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Course<'a> {
+    pub(crate) frames: &'a Frames,
+    pub(crate) layout: &'a Layout,
+    pub(crate) settings: &'a TrainSettings,
+    /// Whether the gel is its own mirror image.
+    pub(crate) is_symmetric: bool,
+    pub(crate) seed: u64,
+}
 
-        let (output, kept) = networks.pressure.forward(&patches, n_patch);
-        let (error, slope) = pressure_loss(&output, &pressure, &largest_kpa);
-        sums[0] += error;
-        let mut slopes = networks.pressure.zeros();
-        networks.pressure.backward(&kept, slope, n_patch, &mut slopes);
-        optimizers[0].step(rate, networks.pressure.arrays_mut(), slopes.arrays());
+/// Trains the two networks side by side; neither knows of the other.
+pub(crate) fn train(course: Course<'_>, progress: &mut dyn FnMut(TrainProgress)) -> Networks {
+    let mut pressure = Training::new("pressure", course, |layout, settings| {
+        let (n_points, n_inputs) = (layout.patch.offsets.len(), layout.patch.n_inputs());
+        ([n_points, n_inputs], &settings.pressure_hidden, 1)
+    });
+    let mut wrench = Training::new("wrench", course, |layout, settings| {
+        let (n_points, n_inputs) = (layout.grid.len(), layout.n_field_inputs());
+        ([n_points, n_inputs], &settings.wrench_hidden, 6)
+    });
+    let Course {
+        frames,
+        layout,
+        settings,
+        is_symmetric,
+        ..
+    } = course;
+    let sizes = [settings.n_frames, settings.n_places];
+    let mut step = 0;
+    while step < settings.n_steps {
+        let next = (step + REPORT_STEPS).min(settings.n_steps);
+        let (pressure_error, wrench_error) = rayon::join(
+            || {
+                pressure.steps(step..next, settings, |random| {
+                    let batch = PressureBatch::draw(frames, layout, sizes, random);
+                    (batch.inputs, move |output: &Matrix| {
+                        pressure_loss(output, &batch.pressure, &batch.largest_kpa)
+                    })
+                })
+            },
+            || {
+                wrench.steps(step..next, settings, |random| {
+                    let batch = WrenchBatch::draw(frames, layout, settings.n_frames, is_symmetric, random);
+                    (batch.inputs, move |output: &Matrix| {
+                        wrench_loss(output, &batch.wrench, &batch.largest_n)
+                    })
+                })
+            },
+        );
+        step = next;
+        progress(TrainProgress {
+            step,
+            of: settings.n_steps,
+            pressure: pressure_error,
+            wrench: wrench_error,
+        });
+    }
+    Networks {
+        pressure: pressure.network,
+        wrench: wrench.network,
+    }
+}
 
-        let (output, kept) = networks.wrench.forward(&fields, n_grid);
-        let (error, slope) = wrench_loss(&output, &wrench, &largest_n);
-        sums[1] += error;
-        let mut slopes = networks.wrench.zeros();
-        networks.wrench.backward(&kept, slope, n_grid, &mut slopes);
-        optimizers[1].step(rate, networks.wrench.arrays_mut(), slopes.arrays());
+/// A network in training.
+struct Training {
+    network: LocalNetwork,
+    optimizer: AdamW,
+    random: RandomStream,
+    n_points: usize,
+}
 
-        if (step + 1) % REPORT_STEPS == 0 {
-            let [pressure, wrench] = sums.map(|sum| sum / REPORT_STEPS as f32);
-            sums = [0.0; 2];
-            progress(TrainProgress {
-                step: step + 1,
-                of: settings.n_steps,
-                pressure,
-                wrench,
-            });
+impl Training {
+    /// Random weights. `sizes` gives the numbers of points and of all inputs, hidden units, and the number of outputs.
+    fn new<'a>(
+        name: &str,
+        course: Course<'a>,
+        sizes: impl Fn(&'a Layout, &'a TrainSettings) -> ([usize; 2], &'a Vec<usize>, usize),
+    ) -> Self {
+        let mut random = digest_stream(course.seed, &format!("fast twin, {name}"));
+        let ([n_points, n_inputs], hidden, n_outputs) = sizes(course.layout, course.settings);
+        let n_others = n_inputs - n_points * N_CHANNELS;
+        let inputs = [n_points, course.settings.n_features, n_others];
+        let network = LocalNetwork::new(inputs, hidden, n_outputs, &mut random);
+        let settings = AdamWSettings {
+            weight_decay: course.settings.weight_decay as f32,
+            gradient_norm: 1.0,
+        };
+        Self {
+            optimizer: AdamW::new(network.arrays(), settings),
+            network,
+            random,
+            n_points,
         }
     }
-    networks
+
+    /// Takes steps on inputs that are drawn together with their loss. Returns the mean error.
+    fn steps<L: FnOnce(&Matrix) -> (f32, Matrix)>(
+        &mut self,
+        steps: Range<usize>,
+        settings: &TrainSettings,
+        draw: impl Fn(&mut RandomStream) -> (Matrix, L),
+    ) -> f32 {
+        let mut sum = 0.0;
+        let n_steps = steps.len();
+        for step in steps {
+            let (inputs, loss) = draw(&mut self.random);
+            let (output, kept) = self.network.forward(&inputs, self.n_points);
+            let (error, slope) = loss(&output);
+            sum += error;
+            let mut slopes = self.network.zeros();
+            self.network.backward(&kept, slope, self.n_points, &mut slopes);
+            let rate = settings.learning_rate * schedule(step as f64 / settings.n_steps as f64);
+            self.optimizer
+                .step(rate, self.network.arrays_mut(), slopes.arrays());
+        }
+        sum / n_steps as f32
+    }
 }
 
 /// Rises at first, then falls to zero along a cosine.
