@@ -1,0 +1,215 @@
+//! Sensors from what touches to what is read.
+
+use digitac::{Twin, TwinState};
+use glam::DQuat;
+use rayon::prelude::*;
+use twintac_fast::{Body, FastBatch, FastGel, Touch};
+use twintac_shape::Pose;
+
+use crate::Imperfection;
+use crate::sensor::Sensor;
+
+/// Many sensors of one kind. It owns all memory that steps need.
+#[derive(Clone, Debug)]
+pub struct SensorBatch {
+    gel: FastBatch,
+    imperfection: Imperfection,
+    seed: u64,
+    n_taxels: usize,
+    chunks: Vec<Chunk>,
+    /// Sensors of each chunk but the last.
+    of_chunk: usize,
+    /// What touches, as the sensors that are not where they should be feel it.
+    touches: Vec<Touch>,
+    /// `[n_sensors * n_taxels]`
+    pressure_kpa: Vec<f32>,
+}
+
+/// Sensors that one thread steps.
+#[derive(Clone, Debug)]
+struct Chunk {
+    sensors: Vec<Sensor>,
+    twin: Option<TwinState>,
+    /// What the gels show, and what perfect sensors would read of it. `[n_sensors * n_taxels]`
+    seen: Vec<f64>,
+    true_kpa: Vec<f64>,
+}
+
+impl SensorBatch {
+    /// So many sensors whose gels have rested. Sensor `n` is the same under the same seed, whatever the other sensors are and however many
+    /// threads there are.
+    ///
+    /// With a twin, readings are those of its barometers; without, the pressures at the ports.
+    ///
+    /// # Panics
+    /// A twin of another number of taxels than the gel has.
+    #[must_use]
+    pub fn new(
+        gel: &FastGel,
+        twin: Option<&Twin>,
+        imperfection: Imperfection,
+        n_sensors: usize,
+        n_threads: usize,
+        seed: u64,
+    ) -> Self {
+        let n_taxels = gel.n_taxels();
+        if let Some(twin) = twin {
+            assert_eq!(
+                twin.taxels().len(),
+                n_taxels,
+                "a twin of as many taxels as the gel has"
+            );
+        }
+        let of_chunk = n_sensors.div_ceil(n_threads.max(1)).max(1);
+        let chunk = |first: usize| {
+            let numbers = first..(first + of_chunk).min(n_sensors);
+            let n = numbers.len();
+            Chunk {
+                sensors: numbers
+                    .map(|number| Sensor::draw(&imperfection, n_taxels, seed, number as u64))
+                    .collect(),
+                twin: twin.map(|twin| {
+                    let mut twin = twin.states(n);
+                    twin.tare_untouched();
+                    twin
+                }),
+                seen: vec![0.0; n * n_taxels],
+                true_kpa: vec![0.0; n * n_taxels],
+            }
+        };
+        Self {
+            gel: gel.batch(n_threads),
+            chunks: (0..n_sensors).step_by(of_chunk).map(chunk).collect(),
+            imperfection,
+            seed,
+            n_taxels,
+            of_chunk,
+            touches: Vec::new(),
+            pressure_kpa: vec![0.0; n_sensors * n_taxels],
+        }
+    }
+
+    /// Number of sensors.
+    #[must_use]
+    pub fn n_sensors(&self) -> usize {
+        self.chunks.iter().map(|chunk| chunk.sensors.len()).sum()
+    }
+
+    /// One more moment of every sensor.
+    ///
+    /// - `since_previous_s`: time since the last step, s, not negative.
+    /// - `bodies`, `touches`, `ends`: what touches whom, as [`FastBatch::read`] takes it. Poses are in the frame in which the sensor should be.
+    /// - `readings_kpa`: is written; what the bus of each sensor delivered last, kPa. `[n_sensors * n_taxels]`
+    /// - `wrench`: is written; force on each gel, N, and torque about the top of its middle, N mm, in the frame of the sensor where it is.
+    ///   `[n_sensors]`
+    ///
+    /// # Panics
+    /// Those of [`FastBatch::read`].
+    pub fn step(
+        &mut self,
+        since_previous_s: f64,
+        bodies: &[Body],
+        touches: &[Touch],
+        ends: &[usize],
+        readings_kpa: &mut [f32],
+        wrench: &mut [[f32; 6]],
+    ) {
+        assert_eq!(
+            readings_kpa.len(),
+            self.pressure_kpa.len(),
+            "a reading for each taxel of each sensor"
+        );
+        self.mount(touches, ends);
+        self.gel
+            .read(bodies, &self.touches, ends, &mut self.pressure_kpa, wrench);
+        let n = self.of_chunk * self.n_taxels;
+        let (imperfection, n_taxels) = (&self.imperfection, self.n_taxels);
+        let numbers = self
+            .pressure_kpa
+            .par_chunks(n)
+            .zip(readings_kpa.par_chunks_mut(n));
+        self.chunks
+            .par_iter_mut()
+            .zip(numbers)
+            .for_each(|(chunk, (pressure_kpa, readings_kpa))| {
+                chunk.step(
+                    imperfection,
+                    n_taxels,
+                    since_previous_s,
+                    pressure_kpa,
+                    readings_kpa,
+                );
+            });
+    }
+
+    /// What touches, seen from where the sensors are.
+    fn mount(&mut self, touches: &[Touch], ends: &[usize]) {
+        self.touches.clear();
+        self.touches.extend_from_slice(touches);
+        let sensors = self.chunks.iter().flat_map(|chunk| &chunk.sensors);
+        let mut first = 0;
+        for (sensor, end) in sensors.zip(ends) {
+            let actual = &sensor.actual_from_described;
+            if actual.rotation != DQuat::IDENTITY || actual.position_mm != glam::DVec3::ZERO {
+                for touch in &mut self.touches[first..*end] {
+                    touch.gel_from_body = Pose {
+                        position_mm: actual.position_mm + actual.rotation * touch.gel_from_body.position_mm,
+                        rotation: actual.rotation * touch.gel_from_body.rotation,
+                    };
+                }
+            }
+            first = *end;
+        }
+    }
+
+    /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.
+    ///
+    /// # Panics
+    /// A sensor that is not there.
+    pub fn rest(&mut self, sensor: usize) {
+        let (chunk, own) = (&mut self.chunks[sensor / self.of_chunk], sensor % self.of_chunk);
+        chunk.sensors[own].rest();
+        if let Some(twin) = &mut chunk.twin {
+            twin.rest(own);
+        }
+    }
+
+    /// Puts another sensor in the place of one, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart:
+    /// those below the number of sensors are the first ones.
+    ///
+    /// # Panics
+    /// A sensor that is not there.
+    pub fn replace(&mut self, sensor: usize, number: u64) {
+        let drawn = Sensor::draw(&self.imperfection, self.n_taxels, self.seed, number);
+        self.chunks[sensor / self.of_chunk].sensors[sensor % self.of_chunk] = drawn;
+        self.rest(sensor);
+    }
+}
+
+impl Chunk {
+    fn step(
+        &mut self,
+        imperfection: &Imperfection,
+        n_taxels: usize,
+        since_previous_s: f64,
+        pressure_kpa: &[f32],
+        readings_kpa: &mut [f32],
+    ) {
+        for (seen, pressure_kpa) in self.seen.iter_mut().zip(pressure_kpa) {
+            *seen = f64::from(*pressure_kpa);
+        }
+        let true_kpa = match &mut self.twin {
+            Some(twin) => {
+                twin.step(since_previous_s, &self.seen, &mut self.true_kpa);
+                &self.true_kpa
+            }
+            None => &self.seen,
+        };
+        let taxels = true_kpa
+            .chunks_exact(n_taxels)
+            .zip(readings_kpa.chunks_exact_mut(n_taxels));
+        for (sensor, (true_kpa, readings_kpa)) in self.sensors.iter_mut().zip(taxels) {
+            sensor.step(imperfection, since_previous_s, true_kpa, readings_kpa);
+        }
+    }
+}

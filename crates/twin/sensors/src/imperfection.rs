@@ -1,0 +1,149 @@
+//! How far sensors are from perfect: distributions, in a TOML.
+
+use serde::{Deserialize, Serialize};
+use twintac_config::{ConfigError, Document};
+
+/// From what each sensor's imperfections are drawn. A zero leaves one out; [`Imperfection::default`] is a perfect sensor. *Deviation* is the
+/// standard deviation of a normal distribution about zero.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Imperfection {
+    /// Deviation of each taxel's gain, as part of it.
+    pub gain_deviation: f64,
+    /// Deviation of each taxel's zero, kPa.
+    pub offset_deviation_kpa: f64,
+    /// Deviation of how much each taxel drifts with temperature, kPa/K.
+    pub drift_deviation_kpa_per_k: f64,
+    /// Deviation of the temperature from that of the tare, K. It wanders within [`Self::temperature_time_s`].
+    pub temperature_deviation_k: f64,
+    /// Time in which the temperature forgets what it was, s.
+    pub temperature_time_s: f64,
+    /// Deviation of each reading's noise, kPa.
+    pub noise_deviation_kpa: f64,
+    /// Distance of the values that are told apart, kPa.
+    pub quantum_kpa: f64,
+    /// Half of the gap between loading and unloading, as part of the reading.
+    pub hysteresis: f64,
+    /// Chance that a taxel reads zero for ever.
+    pub dead_chance: f64,
+    /// Chance that a taxel stays at the first value that it reads.
+    pub stuck_chance: f64,
+    /// Chance that a taxel reads what it should have read a frame before.
+    pub late_chance: f64,
+    /// Frames that the bus delivers in a second, Hz; between them readings stay. Zero delivers one at each step.
+    pub rate_hz: f64,
+    /// Deviation of the time between frames, as part of it.
+    pub jitter: f64,
+    /// Deviation of the height at which the sensor is mounted, mm.
+    pub height_deviation_mm: f64,
+    /// Deviation of the sensor's place along x and along y, mm.
+    pub place_deviation_mm: f64,
+    /// Deviation of the sensor's turn about each axis, radians.
+    pub turn_deviation_rad: f64,
+}
+
+/// A file with the table `[imperfection]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    imperfection: Imperfection,
+}
+
+impl Imperfection {
+    /// Parses a TOML text with the table `[imperfection]`; `file` names it in errors.
+    ///
+    /// # Errors
+    /// The first field that is wrong, with file and line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
+        let document = twintac_config::parse::<File>(file, text)?;
+        document.value.imperfection.check(&document)?;
+        Ok(document.value.imperfection)
+    }
+
+    fn check(&self, document: &Document<File>) -> Result<(), ConfigError> {
+        let widths = [
+            ("gain_deviation", self.gain_deviation),
+            ("offset_deviation_kpa", self.offset_deviation_kpa),
+            ("drift_deviation_kpa_per_k", self.drift_deviation_kpa_per_k),
+            ("temperature_deviation_k", self.temperature_deviation_k),
+            ("temperature_time_s", self.temperature_time_s),
+            ("noise_deviation_kpa", self.noise_deviation_kpa),
+            ("quantum_kpa", self.quantum_kpa),
+            ("rate_hz", self.rate_hz),
+            ("height_deviation_mm", self.height_deviation_mm),
+            ("place_deviation_mm", self.place_deviation_mm),
+            ("turn_deviation_rad", self.turn_deviation_rad),
+        ];
+        let parts = [
+            ("hysteresis", self.hysteresis),
+            ("dead_chance", self.dead_chance),
+            ("stuck_chance", self.stuck_chance),
+            ("late_chance", self.late_chance),
+            ("jitter", self.jitter),
+        ];
+        let wrong = |name: &str, value: f64, hint: &str| {
+            document.error(&format!("imperfection.{name}"), format!("is {value}"), hint)
+        };
+        for (name, value) in widths {
+            if value < 0.0 {
+                return Err(wrong(name, value, "give zero or more"));
+            }
+        }
+        for (name, value) in parts {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(wrong(name, value, "give a part from 0 to 1"));
+            }
+        }
+        let chances = self.dead_chance + self.stuck_chance + self.late_chance;
+        if chances > 1.0 {
+            return Err(wrong(
+                "late_chance",
+                self.late_chance,
+                "let the three chances add up to 1 at most",
+            ));
+        }
+        if self.temperature_deviation_k > 0.0 && self.temperature_time_s == 0.0 {
+            let hint = "give the time in which the temperature wanders";
+            return Err(wrong("temperature_time_s", 0.0, hint));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_and_a_wrong_field_is_named() {
+        let text = "[imperfection]\ngain_deviation = 0.05\nrate_hz = 100.0\n";
+        let found = Imperfection::parse("a.toml", text).unwrap();
+        assert_eq!(
+            found,
+            Imperfection {
+                gain_deviation: 0.05,
+                rate_hz: 100.0,
+                ..Imperfection::default()
+            }
+        );
+        for (text, expected) in [
+            (
+                "[imperfection]\nnoise_deviation_kpa = -1.0\n",
+                "noise_deviation_kpa",
+            ),
+            ("[imperfection]\nhysteresis = 1.5\n", "hysteresis"),
+            (
+                "[imperfection]\ndead_chance = 0.6\nlate_chance = 0.5\n",
+                "late_chance",
+            ),
+            (
+                "[imperfection]\ntemperature_deviation_k = 2.0\n",
+                "temperature_time_s",
+            ),
+            ("[imperfection]\nnois = 1.0\n", "nois"),
+        ] {
+            let error = Imperfection::parse("a.toml", text).unwrap_err().to_string();
+            assert!(error.contains(expected) && error.contains("a.toml"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! One sensor: what was drawn for it, and what it remembers.
+
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use twintac_random::{RandomStream, normal, stream};
+use twintac_shape::Pose;
+
+use crate::Imperfection;
+
+/// Smallest time between two frames, as part of the usual one.
+const SHORTEST_FRAME: f64 = 0.1;
+
+/// A sensor with imperfections of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct Sensor {
+    random: RandomStream,
+    taxels: Vec<Taxel>,
+    /// From where the sensor should be to where it is.
+    pub(crate) actual_from_described: Pose,
+    temperature_k: f64,
+    /// Time until the bus delivers the next frame, s.
+    until_frame_s: f64,
+    /// Time since the last frame that was delivered, s.
+    since_frame_s: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Taxel {
+    fate: Fate,
+    gain: f64,
+    offset_kpa: f64,
+    drift_kpa_per_k: f64,
+    /// What hysteresis lets through, kPa.
+    behind_kpa: f64,
+    /// What should have been read at the last frame, kPa.
+    before_kpa: f64,
+    /// What the bus delivered last, kPa; `None` before the first frame.
+    delivered_kpa: Option<f64>,
+}
+
+/// What has become of a taxel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fate {
+    Fine,
+    Dead,
+    Stuck,
+    Late,
+}
+
+impl Sensor {
+    /// Draws the sensor of a number. The same seed and number give the same sensor, whatever else there is.
+    pub(crate) fn draw(imperfection: &Imperfection, n_taxels: usize, seed: u64, number: u64) -> Self {
+        let mut random = stream(seed, &format!("sensor {number}"));
+        let mut turn = || normal(&mut random, imperfection.turn_deviation_rad);
+        let rotation = DQuat::from_scaled_axis(DVec3::new(turn(), turn(), turn())).normalize();
+        let mut place = || normal(&mut random, imperfection.place_deviation_mm);
+        let (x_mm, y_mm) = (place(), place());
+        let position_mm = DVec3::new(x_mm, y_mm, normal(&mut random, imperfection.height_deviation_mm));
+        let taxels = (0..n_taxels)
+            .map(|_| Taxel::draw(imperfection, &mut random))
+            .collect();
+        Self {
+            taxels,
+            actual_from_described: Pose {
+                position_mm,
+                rotation,
+            },
+            temperature_k: normal(&mut random, imperfection.temperature_deviation_k),
+            until_frame_s: 0.0,
+            since_frame_s: 0.0,
+            random,
+        }
+    }
+
+    /// One more moment: from what each taxel should read, kPa, to what the bus delivers. `[n_taxels]`
+    pub(crate) fn step(
+        &mut self,
+        imperfection: &Imperfection,
+        since_previous_s: f64,
+        true_kpa: &[f64],
+        readings_kpa: &mut [f32],
+    ) {
+        self.until_frame_s -= since_previous_s;
+        self.since_frame_s += since_previous_s;
+        let is_first = self
+            .taxels
+            .first()
+            .is_some_and(|taxel| taxel.delivered_kpa.is_none());
+        if is_first {
+            (self.until_frame_s, self.since_frame_s) = (0.0, 0.0);
+        }
+        // Rounding does not cost a frame.
+        let is_frame = imperfection.rate_hz == 0.0 || self.until_frame_s <= 1e-9;
+        if is_frame {
+            self.wander(imperfection);
+            self.wait(imperfection);
+        }
+        for ((taxel, true_kpa), reading_kpa) in self.taxels.iter_mut().zip(true_kpa).zip(readings_kpa) {
+            let through_kpa = taxel.lag(imperfection.hysteresis, *true_kpa);
+            if is_frame {
+                taxel.deliver(imperfection, through_kpa, self.temperature_k, &mut self.random);
+            }
+            *reading_kpa = taxel.delivered_kpa.unwrap_or(0.0) as f32;
+        }
+    }
+
+    /// The temperature changes: an Ornstein-Uhlenbeck process, exact for any time.
+    fn wander(&mut self, imperfection: &Imperfection) {
+        if imperfection.temperature_deviation_k > 0.0 {
+            let kept = (-self.since_frame_s / imperfection.temperature_time_s).exp();
+            let new_k = imperfection.temperature_deviation_k * (1.0 - kept * kept).max(0.0).sqrt();
+            self.temperature_k = kept * self.temperature_k + normal(&mut self.random, new_k);
+        }
+        self.since_frame_s = 0.0;
+    }
+
+    /// Draws the time until the next frame.
+    fn wait(&mut self, imperfection: &Imperfection) {
+        if imperfection.rate_hz > 0.0 {
+            let jitter = if imperfection.jitter > 0.0 {
+                normal(&mut self.random, imperfection.jitter)
+            } else {
+                0.0
+            };
+            // A frame that was late does not make the next one late; more than one that was missed is gone.
+            let late_s = self.until_frame_s.max(-1.0 / imperfection.rate_hz);
+            self.until_frame_s = late_s + (1.0 + jitter).max(SHORTEST_FRAME) / imperfection.rate_hz;
+        }
+    }
+
+    /// The gel has rested: nothing is remembered but what the sensor is.
+    pub(crate) fn rest(&mut self) {
+        self.until_frame_s = 0.0;
+        for taxel in &mut self.taxels {
+            taxel.behind_kpa = 0.0;
+            taxel.before_kpa = 0.0;
+            if taxel.fate != Fate::Stuck {
+                taxel.delivered_kpa = None;
+            }
+        }
+    }
+}
+
+impl Taxel {
+    fn draw(imperfection: &Imperfection, random: &mut RandomStream) -> Self {
+        let chance: f64 = random.random();
+        let [dead, stuck, late] = [
+            imperfection.dead_chance,
+            imperfection.stuck_chance,
+            imperfection.late_chance,
+        ];
+        Self {
+            fate: if chance < dead {
+                Fate::Dead
+            } else if chance < dead + stuck {
+                Fate::Stuck
+            } else if chance < dead + stuck + late {
+                Fate::Late
+            } else {
+                Fate::Fine
+            },
+            gain: 1.0 + normal(random, imperfection.gain_deviation),
+            offset_kpa: normal(random, imperfection.offset_deviation_kpa),
+            drift_kpa_per_k: normal(random, imperfection.drift_deviation_kpa_per_k),
+            behind_kpa: 0.0,
+            before_kpa: 0.0,
+            delivered_kpa: None,
+        }
+    }
+
+    /// A play as wide as a part of the reading: less on the way up, more on the way down.
+    fn lag(&mut self, hysteresis: f64, true_kpa: f64) -> f64 {
+        let half_kpa = hysteresis * true_kpa.abs();
+        self.behind_kpa = self.behind_kpa.clamp(true_kpa - half_kpa, true_kpa + half_kpa);
+        self.behind_kpa
+    }
+
+    fn deliver(
+        &mut self,
+        imperfection: &Imperfection,
+        through_kpa: f64,
+        temperature_k: f64,
+        random: &mut RandomStream,
+    ) {
+        let drift_kpa = self.drift_kpa_per_k * temperature_k;
+        let mut reading_kpa = self.gain * through_kpa + self.offset_kpa + drift_kpa;
+        if imperfection.noise_deviation_kpa > 0.0 {
+            reading_kpa += normal(random, imperfection.noise_deviation_kpa);
+        }
+        if imperfection.quantum_kpa > 0.0 {
+            reading_kpa = imperfection.quantum_kpa * (reading_kpa / imperfection.quantum_kpa).round();
+        }
+        let before_kpa = std::mem::replace(&mut self.before_kpa, reading_kpa);
+        self.delivered_kpa = Some(match self.fate {
+            Fate::Fine => reading_kpa,
+            Fate::Dead => 0.0,
+            Fate::Stuck => self.delivered_kpa.unwrap_or(reading_kpa),
+            Fate::Late => before_kpa,
+        });
+    }
+}

@@ -1,0 +1,207 @@
+//! Sensors side by side read what each reads alone, and imperfections do what they say.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use glam::DVec3;
+use proptest::prelude::*;
+use twintac_fast::{Body, FastGel, Touch};
+use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_shape::{Pose, Shape, Surfaces};
+
+const N_TAXELS: usize = 8;
+
+fn ball() -> Vec<Body> {
+    vec![Body::new(&Shape::Sphere { radius_mm: 6.0 }, &Surfaces::new()).unwrap()]
+}
+
+fn touch(x_mm: f64, depth_mm: f64) -> Touch {
+    Touch {
+        body: 0,
+        gel_from_body: Pose::from_position(DVec3::new(x_mm, 3.0, 8.5 - depth_mm)),
+    }
+}
+
+/// Readings of every step. `[n_steps][n_sensors * n_taxels]`
+fn readings(
+    imperfection: &Imperfection,
+    n_sensors: usize,
+    n_threads: usize,
+    seed: u64,
+    depth_mm: &[f64],
+) -> Vec<Vec<f32>> {
+    let gel = FastGel::phystac().unwrap();
+    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), n_sensors, n_threads, seed);
+    assert_eq!(batch.n_sensors(), n_sensors);
+    let ends: Vec<usize> = (1..=n_sensors).collect();
+    let bodies = ball();
+    let step = |depth_mm: &f64| {
+        let touches: Vec<Touch> = (0..n_sensors).map(|_| touch(2.0, *depth_mm)).collect();
+        let (mut readings_kpa, mut wrench) = (vec![0.0; n_sensors * N_TAXELS], vec![[0.0; 6]; n_sensors]);
+        batch.step(0.01, &bodies, &touches, &ends, &mut readings_kpa, &mut wrench);
+        readings_kpa
+    };
+    depth_mm.iter().map(step).collect()
+}
+
+fn all_imperfections() -> Imperfection {
+    Imperfection {
+        gain_deviation: 0.05,
+        offset_deviation_kpa: 0.2,
+        drift_deviation_kpa_per_k: 0.05,
+        temperature_deviation_k: 2.0,
+        temperature_time_s: 60.0,
+        noise_deviation_kpa: 0.05,
+        quantum_kpa: 0.01,
+        hysteresis: 0.03,
+        dead_chance: 0.05,
+        stuck_chance: 0.05,
+        late_chance: 0.05,
+        rate_hz: 60.0,
+        jitter: 0.1,
+        height_deviation_mm: 0.05,
+        place_deviation_mm: 0.3,
+        turn_deviation_rad: 0.01,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+
+    #[test]
+    fn bits_do_not_depend_on_the_batch_or_the_threads(
+        seed in 0..1000_u64,
+        n_sensors in 2..40_usize,
+        n_threads in 1..5_usize,
+        depth_mm in prop::collection::vec(-0.5..3.0_f64, 1..8),
+    ) {
+        let imperfection = all_imperfections();
+        let many = readings(&imperfection, n_sensors, n_threads, seed, &depth_mm);
+        let few = readings(&imperfection, n_sensors / 2 + 1, 1, seed, &depth_mm);
+        for (many, few) in many.iter().zip(&few) {
+            prop_assert_eq!(&many[..few.len()], &few[..]);
+        }
+    }
+}
+
+#[test]
+fn a_perfect_sensor_reads_the_pressure() {
+    let found = readings(&Imperfection::default(), 1, 1, 1, &[1.0]);
+    let (mut pressure_kpa, mut wrench) = ([0.0; N_TAXELS], [0.0; 6]);
+    let touch = touch(2.0, 1.0);
+    FastGel::phystac().unwrap().reader().read(
+        &[(&ball()[0], touch.gel_from_body)],
+        &mut pressure_kpa,
+        &mut wrench,
+    );
+    assert_eq!(found[0], pressure_kpa);
+}
+
+#[test]
+fn widths_are_those_that_were_asked_for() {
+    let deviation = |values: &[f64]| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        (square / values.len() as f64).sqrt()
+    };
+    let untouched = |imperfection: Imperfection| -> Vec<f64> {
+        let found = readings(&imperfection, 500, 1, 3, &[-5.0]);
+        found[0].iter().map(|reading| f64::from(*reading)).collect()
+    };
+    for (imperfection, expected) in [
+        (
+            Imperfection {
+                offset_deviation_kpa: 0.4,
+                ..Imperfection::default()
+            },
+            0.4,
+        ),
+        (
+            Imperfection {
+                noise_deviation_kpa: 0.2,
+                ..Imperfection::default()
+            },
+            0.2,
+        ),
+    ] {
+        let found = deviation(&untouched(imperfection));
+        assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
+    }
+    let quantized = untouched(Imperfection {
+        noise_deviation_kpa: 0.5,
+        quantum_kpa: 0.25,
+        ..Imperfection::default()
+    });
+    assert!(quantized.iter().all(|reading| (reading * 4.0).fract() == 0.0));
+    let dead = Imperfection {
+        dead_chance: 0.2,
+        ..Imperfection::default()
+    };
+    let touched = readings(&dead, 500, 1, 3, &[2.0]);
+    let perfect = readings(&Imperfection::default(), 500, 1, 3, &[2.0]);
+    let felt = || {
+        touched[0]
+            .iter()
+            .zip(&perfect[0])
+            .filter(|(_, perfect)| **perfect != 0.0)
+    };
+    let part = felt().filter(|(reading, _)| **reading == 0.0).count() as f64 / felt().count() as f64;
+    assert!((part - 0.2).abs() < 0.03, "{part}");
+}
+
+#[test]
+fn unloading_reads_more_than_loading() {
+    let hysteresis = Imperfection {
+        hysteresis: 0.1,
+        ..Imperfection::default()
+    };
+    let perfect = readings(&Imperfection::default(), 1, 1, 1, &[1.0, 2.0, 1.0]);
+    let found = readings(&hysteresis, 1, 1, 1, &[1.0, 2.0, 1.0]);
+    for taxel in 0..N_TAXELS {
+        let (perfect_kpa, [up, down]) = (perfect[0][taxel], [0, 2].map(|step: usize| found[step][taxel]));
+        if perfect_kpa > 0.5 {
+            assert!((up / perfect_kpa - 0.9).abs() < 1e-5, "{up} {perfect_kpa}");
+            assert!((down / perfect_kpa - 1.1).abs() < 1e-5, "{down} {perfect_kpa}");
+        }
+    }
+}
+
+#[test]
+fn a_slow_bus_repeats_and_a_late_taxel_is_a_frame_behind() {
+    let slow = Imperfection {
+        rate_hz: 50.0,
+        ..Imperfection::default()
+    };
+    let depths_mm = [1.0, 1.2, 1.4, 1.6, 1.8];
+    let perfect = readings(&Imperfection::default(), 1, 1, 1, &depths_mm);
+    let found = readings(&slow, 1, 1, 1, &depths_mm);
+    for (step, delivered) in [0, 0, 2, 2, 4].into_iter().enumerate() {
+        assert_eq!(found[step], perfect[delivered], "step {step}");
+    }
+    let late = Imperfection {
+        late_chance: 1.0,
+        ..Imperfection::default()
+    };
+    let found = readings(&late, 1, 1, 1, &depths_mm);
+    assert_eq!(found[0], [0.0; N_TAXELS]);
+    assert_eq!(found[1..], perfect[..4]);
+}
+
+#[test]
+fn a_replaced_sensor_is_the_one_of_its_number() {
+    let gel = FastGel::phystac().unwrap();
+    let (bodies, imperfection) = (ball(), all_imperfections());
+    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), 3, 2, 9);
+    let mut other = SensorBatch::new(&gel, None, imperfection, 8, 1, 9);
+    batch.replace(1, 7);
+    let step = |batch: &mut SensorBatch| {
+        let n = batch.n_sensors();
+        let (touches, ends) = (vec![touch(0.0, 1.5); n], (1..=n).collect::<Vec<_>>());
+        let (mut readings_kpa, mut wrench) = (vec![0.0; n * N_TAXELS], vec![[0.0; 6]; n]);
+        batch.step(0.01, &bodies, &touches, &ends, &mut readings_kpa, &mut wrench);
+        readings_kpa
+    };
+    assert_eq!(
+        step(&mut batch)[N_TAXELS..2 * N_TAXELS],
+        step(&mut other)[7 * N_TAXELS..]
+    );
+}
