@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use twintac_fast::{Body, FastGel, FastReader};
 use twintac_shape::{Pose, Shape, ShapeError, Surfaces};
 
+use crate::contact::Contact;
 use crate::model::{ContactModel, Domain, Press};
 use crate::turn::turn_rad;
 
@@ -71,10 +72,11 @@ impl FastModel {
         &self.gel
     }
 
-    /// The body of a shape, and where it is when it presses so.
-    pub(crate) fn body(&self, shape: usize, press: &Press) -> (&Body, Pose) {
-        let placed = &self.bodies[shape];
-        (&placed.body, pose(&self.gel, placed, press))
+    /// The body that a contact tells, and where it is in the gel's frame.
+    #[must_use]
+    pub fn placed(&self, contact: &Contact) -> (&Body, Pose) {
+        let placed = &self.bodies[contact.shape];
+        (&placed.body, pose(&self.gel, placed, &contact.press()))
     }
 }
 

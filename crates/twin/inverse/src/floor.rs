@@ -46,7 +46,7 @@ impl Inverse<FastModel> {
 impl FloorMap {
     /// The map under a contact, kPa, row by row along x; `[n_y * n_x]`. Each point is the mean over a disc as large as a port.
     pub fn read(&mut self, contact: &Contact) -> &[f32] {
-        let (body, gel_from_body) = self.model.body(contact.shape, &contact.press());
+        let (body, gel_from_body) = self.model.placed(contact);
         self.reader.read(&[(body, gel_from_body)], &mut self.pressure_kpa, &mut [0.0; 6]);
         &self.pressure_kpa
     }

@@ -86,6 +86,8 @@ pub(crate) struct Hypothesis {
     /// Sum of the weighted squares of what is left of this frame's readings.
     pub(crate) cost: f64,
     pub(crate) is_alive: bool,
+    /// Frames that it has left to come near a good press before it is judged; 0: it is judged.
+    pub(crate) on_trial: u32,
     damping: f64,
     readings_kpa: Vec<f32>,
     trial_kpa: Vec<f32>,
@@ -104,6 +106,7 @@ impl Hypothesis {
             gain: 0.0,
             cost: 0.0,
             is_alive: false,
+            on_trial: 0,
             damping: DAMPING[0],
             readings_kpa: vec![0.0; n_readings],
             trial_kpa: vec![0.0; n_readings],
@@ -111,17 +114,23 @@ impl Hypothesis {
         }
     }
 
-    /// Begins at a press, of which nothing else is known.
-    pub(crate) fn begin<M: ContactModel>(&mut self, model: &mut M, prior: &Prior, at: Vector, evidence: f64) {
+    /// Begins at a press, of which nothing else is known, so many frames on trial.
+    pub(crate) fn begin<M: ContactModel>(&mut self, model: &mut M, prior: &Prior, at: Vector, on_trial: u32) {
         self.at = prior.within(at);
         self.covariance = [[0.0; N]; N];
         for number in 0..N {
             self.covariance[number][number] = prior.broad[number];
         }
-        self.evidence = evidence;
+        self.evidence = 0.0;
+        self.on_trial = on_trial;
         self.damping = DAMPING[0];
         self.is_alive = true;
         self.force_n = model.read(prior.shape, &Press::of(self.at), &mut self.readings_kpa);
+    }
+
+    /// Whether it counts.
+    pub(crate) fn is_judged(&self) -> bool {
+        self.is_alive && self.on_trial == 0
     }
 
     /// Takes notice of a frame.

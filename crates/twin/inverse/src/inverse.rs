@@ -99,6 +99,12 @@ impl<M: ContactModel> Inverse<M> {
         &self.model
     }
 
+    /// Known shapes.
+    #[must_use]
+    pub fn n_shapes(&self) -> usize {
+        self.shapes.len()
+    }
+
     /// A tracker of a sensor that nothing has touched yet.
     #[must_use]
     pub fn start(&self) -> Tracker<M> {

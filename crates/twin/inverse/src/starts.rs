@@ -37,14 +37,6 @@ pub(crate) struct Starts {
     ranges: [[f64; 2]; N],
 }
 
-/// A press to begin at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Start {
-    pub(crate) at: [f64; N],
-    /// Sum of the weighted squares of what is left of the readings.
-    pub(crate) cost: f64,
-}
-
 impl Starts {
     pub(crate) fn of<M: ContactModel>(model: &M, shape: usize) -> Self {
         let domain = model.domain(shape);
@@ -105,7 +97,7 @@ impl Starts {
         roots: &[f32],
         costs: &mut Vec<f32>,
         n_starts: usize,
-        starts: &mut Vec<Start>,
+        starts: &mut Vec<[f64; N]>,
     ) {
         let square: f32 = weighted.iter().map(|value| value * value).sum();
         costs.clear();
@@ -117,23 +109,20 @@ impl Starts {
         }));
         starts.clear();
         while starts.len() < n_starts {
-            let apart = |at: &[f64; N]| starts.iter().all(|start| self.is_apart(&start.at, at));
+            let apart = |at: &[f64; N]| starts.iter().all(|start| self.is_apart(start, at));
             let mut best: Option<(usize, f32)> = None;
             for (number, cost) in costs.iter().enumerate() {
                 if best.is_none_or(|(_, least)| *cost < least) && apart(&self.presses[number]) {
                     best = Some((number, *cost));
                 }
             }
-            let Some((number, cost)) = best else { return };
+            let Some((number, _)) = best else { return };
             let row = &self.readings_kpa[number * self.n_padded..][..self.n_padded];
             let (product, own) = products(weighted, roots, row);
             let mut at = self.presses[number];
             at[2] *= f64::from(strength(product, own)).powf(1.0 / POWER);
             at[2] = at[2].clamp(self.ranges[2][0], self.ranges[2][1]);
-            starts.push(Start {
-                at,
-                cost: f64::from(cost.max(0.0)),
-            });
+            starts.push(at);
         }
     }
 

@@ -3,14 +3,26 @@
 use glam::DVec2;
 
 use crate::contact::Contact;
-use crate::hypothesis::{Hypothesis, Weighed};
+use crate::hypothesis::{Hypothesis, Prior, Weighed};
 use crate::inverse::{Inverse, Prepared};
 use crate::matrix::form;
 use crate::model::{ContactModel, N};
-use crate::starts::{LANES, Start};
+use crate::starts::LANES;
 
 /// Hypotheses whose readings are less probable than the best's by e to this power wait for their shape's turn.
 const IMPROBABLE: f64 = 10.0;
+
+/// A hypothesis of a shape gives way to a new one if it is less probable than the shape's best by e to this power.
+const WORSE: f64 = 3.0;
+
+/// Frames that a new hypothesis has before it is judged.
+const ON_TRIAL: u32 = 6;
+
+/// By how much a new hypothesis may fit a frame better by chance, weighted squares: it is not yet bound by the frames before.
+const BY_CHANCE: f64 = 10.0;
+
+/// Presses of a shape's table that are tried in turn.
+const N_CANDIDATES: usize = 8;
 
 /// Two hypotheses of one shape closer than this are one: mm, mm, mm, radians.
 const SAME: [f64; N] = [0.4, 0.4, 0.15, 0.1];
@@ -18,7 +30,7 @@ const SAME: [f64; N] = [0.4, 0.4, 0.15, 0.1];
 /// Follows the contact of one sensor. Frames allocate nothing.
 ///
 /// A few presses of each shape are followed at once, because readings of few taxels fit several. In each frame the table of one shape's readings is
-/// searched for a press that fits better than those that are followed.
+/// searched for another press that fits, which is tried instead of one that does not.
 #[derive(Clone, Debug)]
 pub struct Tracker<M> {
     inverse: Inverse<M>,
@@ -27,6 +39,10 @@ pub struct Tracker<M> {
     is_touched: bool,
     /// The shape whose turn it is.
     turn: usize,
+    /// Which of its candidates is tried.
+    candidate: usize,
+    /// Frames of this contact, less what was forgotten.
+    n_frames: f64,
     contact: Contact,
     readings_kpa: Vec<f32>,
     weights: Vec<f64>,
@@ -36,7 +52,7 @@ pub struct Tracker<M> {
     weighted: Vec<f32>,
     roots: Vec<f32>,
     costs: Vec<f32>,
-    starts: Vec<Start>,
+    starts: Vec<[f64; N]>,
 }
 
 impl<M: ContactModel> Tracker<M> {
@@ -49,6 +65,8 @@ impl<M: ContactModel> Tracker<M> {
             hypotheses: vec![Hypothesis::nothing(n_readings); n_shapes * n_starts],
             is_touched: false,
             turn: 0,
+            candidate: 0,
+            n_frames: 0.0,
             contact: Contact {
                 shape_probabilities: vec![0.0; n_shapes],
                 ..Contact::default()
@@ -59,7 +77,7 @@ impl<M: ContactModel> Tracker<M> {
             weighted: vec![0.0; n_padded],
             roots: vec![0.0; n_padded],
             costs: Vec::with_capacity(largest.unwrap_or(0)),
-            starts: Vec::with_capacity(n_starts),
+            starts: Vec::with_capacity(n_starts.max(N_CANDIDATES)),
             inverse,
         }
     }
@@ -84,6 +102,7 @@ impl<M: ContactModel> Tracker<M> {
         self.weigh(since_previous_s, readings_kpa, largest_kpa);
         if !self.is_touched {
             self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.is_alive = false);
+            self.n_frames = 0.0;
         }
         for shape in 0..self.inverse.shapes.len() {
             if !self.is_touched || shape == self.turn {
@@ -92,7 +111,11 @@ impl<M: ContactModel> Tracker<M> {
         }
         self.is_touched = true;
         self.follow(since_previous_s);
-        self.turn = (self.turn + 1) % self.inverse.shapes.len();
+        self.turn += 1;
+        if self.turn == self.inverse.shapes.len() {
+            self.turn = 0;
+            self.candidate = (self.candidate + 1) % N_CANDIDATES;
+        }
         self.conclude();
         Some(&self.contact)
     }
@@ -112,36 +135,39 @@ impl<M: ContactModel> Tracker<M> {
         }
     }
 
-    /// Looks for presses of a shape that are not followed yet.
+    /// Begins with the best presses of a shape; once it is touched, tries one more.
     fn search(&mut self, shape: usize) {
         let n_starts = self.inverse.settings.n_starts;
         let Prepared { prior, starts } = &self.inverse.shapes[shape];
-        let n_wanted = if self.is_touched { 1 } else { n_starts };
+        let model = &mut self.inverse.model;
+        let n_wanted = if self.is_touched { N_CANDIDATES } else { n_starts };
         starts.best(&self.weighted, &self.roots, &mut self.costs, n_wanted, &mut self.starts);
         let own = &mut self.hypotheses[shape * n_starts..(shape + 1) * n_starts];
-        for start in &self.starts {
-            let alive = own.iter().filter(|hypothesis| hypothesis.is_alive);
-            if alive.clone().any(|known| !starts.is_apart(&known.at, &start.at)) {
-                continue;
+        if !self.is_touched {
+            for (hypothesis, at) in own.iter_mut().zip(&self.starts) {
+                hypothesis.begin(model, prior, *at, 0);
             }
-            let best = alive.max_by(|a, b| a.evidence.total_cmp(&b.evidence));
-            // As probable as the best of the shape, less what it fits worse now.
-            let evidence = best.map_or(0.0, |best| best.evidence - 0.5 * (start.cost - best.cost).max(0.0));
-            let Some(worst) = own.iter_mut().min_by(|a, b| {
-                let value = |hypothesis: &Hypothesis| {
-                    if hypothesis.is_alive { hypothesis.evidence } else { f64::NEG_INFINITY }
-                };
-                value(a).total_cmp(&value(b))
-            }) else {
-                return;
-            };
-            if !worst.is_alive || worst.cost > start.cost {
-                worst.begin(&mut self.inverse.model, prior, start.at, evidence);
-            }
+            return;
+        }
+        let Some(at) = self.starts.get(self.candidate) else { return };
+        let mut alive = own.iter().filter(|hypothesis| hypothesis.is_alive);
+        if alive.any(|known| !starts.is_apart(&known.at, at)) {
+            return;
+        }
+        let best = best_evidence(own);
+        let value = |hypothesis: &Hypothesis| match (hypothesis.is_alive, hypothesis.on_trial) {
+            (false, _) => f64::NEG_INFINITY,
+            (true, 0) => hypothesis.evidence,
+            (true, _) => f64::INFINITY,
+        };
+        if let Some(worst) = own.iter_mut().min_by(|a, b| value(a).total_cmp(&value(b)))
+            && value(worst) < best - WORSE
+        {
+            worst.begin(model, prior, *at, ON_TRIAL);
         }
     }
 
-    /// Takes what is probable, and what has its turn, through the frame.
+    /// Takes what is probable, on trial, or has its turn through the frame.
     fn follow(&mut self, since_s: f64) {
         let settings = self.inverse.settings;
         let frame = Weighed {
@@ -151,38 +177,30 @@ impl<M: ContactModel> Tracker<M> {
         };
         let remembered = (-since_s / settings.shape_memory_s).exp();
         let best = best_evidence(&self.hypotheses);
-        let is_followed = |number: usize, hypothesis: &Hypothesis| {
-            let is_turn = number / settings.n_starts == self.turn;
-            hypothesis.is_alive && (is_turn || hypothesis.evidence > best - IMPROBABLE)
-        };
         let mut gain = f64::NEG_INFINITY;
         for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
-            if is_followed(number, hypothesis) {
+            let is_turn = number / settings.n_starts == self.turn;
+            let is_probable = hypothesis.on_trial > 0 || hypothesis.evidence > best - IMPROBABLE;
+            if hypothesis.is_alive && (is_turn || is_probable) {
                 let prior = &self.inverse.shapes[number / settings.n_starts].prior;
                 hypothesis.update(&mut self.inverse.model, prior, &frame, &settings);
-                gain = gain.max(hypothesis.gain);
+                if hypothesis.is_judged() {
+                    gain = gain.max(hypothesis.gain);
+                }
             } else {
                 hypothesis.gain = f64::NAN;
             }
         }
-        for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.is_alive) {
+        for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.is_judged()) {
             // What waits keeps its distance.
             let own = if hypothesis.gain.is_nan() { gain } else { hypothesis.gain };
             hypothesis.evidence = remembered * (hypothesis.evidence - best) + own;
         }
+        self.n_frames = remembered * self.n_frames + 1.0;
+        let most = best_evidence(&self.hypotheses) - WORSE;
         for (shape, own) in self.hypotheses.chunks_mut(settings.n_starts).enumerate() {
-            let prior = &self.inverse.shapes[shape].prior;
-            for first in 0..own.len() {
-                for second in 0..own.len() {
-                    let [a, b] = [&own[first], &own[second]];
-                    let way = prior.way(&a.at, &b.at);
-                    let is_same = way.iter().zip(SAME).all(|(way, same)| way.abs() < same);
-                    let is_both = first != second && a.is_alive && b.is_alive;
-                    if is_both && is_same && a.evidence >= b.evidence {
-                        own[second].is_alive = false;
-                    }
-                }
-            }
+            judge(own, self.n_frames, most);
+            merge(own, &self.inverse.shapes[shape].prior);
         }
     }
 
@@ -191,7 +209,7 @@ impl<M: ContactModel> Tracker<M> {
         let settings = &self.inverse.settings;
         let best = best_evidence(&self.hypotheses);
         let weight = |hypothesis: &Hypothesis| {
-            if hypothesis.is_alive { (hypothesis.evidence - best).exp() } else { 0.0 }
+            if hypothesis.is_judged() { (hypothesis.evidence - best).exp() } else { 0.0 }
         };
         let total: f64 = self.hypotheses.iter().map(weight).sum();
         let contact = &mut self.contact;
@@ -210,7 +228,7 @@ impl<M: ContactModel> Tracker<M> {
         let of_shape: f64 = own.iter().map(weight).sum();
         contact.covariance = [[0.0; N]; N];
         let mut force_square = (settings.force_part * told.force_n).powi(2);
-        for hypothesis in own.iter().filter(|hypothesis| hypothesis.is_alive) {
+        for hypothesis in own.iter().filter(|hypothesis| hypothesis.is_judged()) {
             let part = weight(hypothesis) / of_shape;
             let way = prior.way(&told.at, &hypothesis.at);
             for row in 0..N {
@@ -240,6 +258,39 @@ impl<M: ContactModel> Tracker<M> {
 }
 
 fn best_evidence(hypotheses: &[Hypothesis]) -> f64 {
-    let alive = hypotheses.iter().filter(|hypothesis| hypothesis.is_alive);
-    alive.map(|hypothesis| hypothesis.evidence).fold(f64::NEG_INFINITY, f64::max)
+    let judged = hypotheses.iter().filter(|hypothesis| hypothesis.is_judged());
+    judged.map(|hypothesis| hypothesis.evidence).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Ends trials: what fits this frame clearly better than the shape's best counts as if it had fitted all frames of the contact so,
+/// but is not believed more than anything that did.
+fn judge(own: &mut [Hypothesis], n_frames: f64, most: f64) {
+    let judged = own.iter().filter(|hypothesis| hypothesis.is_judged() && !hypothesis.gain.is_nan());
+    let best = judged.max_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let Some((evidence, cost)) = best.map(|best| (best.evidence, best.cost)) else {
+        return;
+    };
+    for hypothesis in own.iter_mut().filter(|hypothesis| hypothesis.is_alive && hypothesis.on_trial > 0) {
+        hypothesis.on_trial -= 1;
+        if hypothesis.on_trial == 0 {
+            let better = cost - hypothesis.cost;
+            let in_all = n_frames * (better - BY_CHANCE).max(0.0) + better.min(0.0);
+            hypothesis.evidence = (evidence + 0.5 * in_all).min(most.max(evidence));
+        }
+    }
+}
+
+/// Of hypotheses that have come to the same press, keeps the most probable.
+fn merge(own: &mut [Hypothesis], prior: &Prior) {
+    for first in 0..own.len() {
+        for second in 0..own.len() {
+            let [a, b] = [&own[first], &own[second]];
+            let way = prior.way(&a.at, &b.at);
+            let is_same = way.iter().zip(SAME).all(|(way, same)| way.abs() < same);
+            let is_better = !b.is_judged() || a.evidence >= b.evidence;
+            if first != second && a.is_judged() && b.is_alive && is_same && is_better {
+                own[second].is_alive = false;
+            }
+        }
+    }
 }
