@@ -79,8 +79,11 @@ pub(crate) struct Hypothesis {
     pub(crate) force_n: f64,
     /// How the force changes with each number.
     pub(crate) force_slope: Vector,
-    /// Logarithm of how probable all readings are, with what was forgotten taken off.
+    /// Logarithm of how probable all readings are by its presses, with what was forgotten taken off.
     pub(crate) evidence: f64,
+    /// Logarithm of the part of all presses of the shape that fit as well (Occam's factor, by Laplace): a shape is no more probable for having
+    /// more to choose from. It counts once, not in each frame: what is known is forgotten and learned again all the time.
+    occam: f64,
     /// What this frame added to it.
     pub(crate) gain: f64,
     /// Sum of the weighted squares of what is left of this frame's readings.
@@ -103,6 +106,7 @@ impl Hypothesis {
             force_n: 0.0,
             force_slope: [0.0; N],
             evidence: 0.0,
+            occam: 0.0,
             gain: 0.0,
             cost: 0.0,
             is_alive: false,
@@ -122,10 +126,16 @@ impl Hypothesis {
             self.covariance[number][number] = prior.broad[number];
         }
         self.evidence = 0.0;
+        self.occam = 0.0;
         self.on_trial = on_trial;
         self.damping = DAMPING[0];
         self.is_alive = true;
         self.force_n = model.read(prior.shape, &Press::of(self.at), &mut self.readings_kpa);
+    }
+
+    /// How probable it is: a logarithm, up to what is the same for all.
+    pub(crate) fn score(&self) -> f64 {
+        self.evidence + self.occam
     }
 
     /// Whether it counts.
@@ -143,7 +153,7 @@ impl Hypothesis {
     ) {
         let before = self.at;
         let spread = self.spread(prior, frame.since_s, settings);
-        let (known, log_spread) = inverse(&spread);
+        let (known, _) = inverse(&spread);
         let mut information = known;
         for _ in 0..settings.n_steps.max(1) {
             self.find_slopes(model, prior);
@@ -160,7 +170,8 @@ impl Hypothesis {
         self.covariance = covariance;
         let way = prior.way(&before, &self.at);
         self.cost = self.cost_of(&self.readings_kpa, frame);
-        self.gain = -0.5 * (self.cost + form(&known, &way) + log_information + log_spread);
+        self.gain = -0.5 * (self.cost + form(&known, &way));
+        self.occam = -0.5 * (log_information + prior.broad.iter().map(|broad| broad.ln()).sum::<f64>());
     }
 
     /// What is known before a frame: what was known, less sure after a while.

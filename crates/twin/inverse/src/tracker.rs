@@ -154,10 +154,10 @@ impl<M: ContactModel> Tracker<M> {
         if alive.any(|known| !starts.is_apart(&known.at, at)) {
             return;
         }
-        let best = best_evidence(own);
+        let best = best_score(own);
         let value = |hypothesis: &Hypothesis| match (hypothesis.is_alive, hypothesis.on_trial) {
             (false, _) => f64::NEG_INFINITY,
-            (true, 0) => hypothesis.evidence,
+            (true, 0) => hypothesis.score(),
             (true, _) => f64::INFINITY,
         };
         if let Some(worst) = own.iter_mut().min_by(|a, b| value(a).total_cmp(&value(b)))
@@ -176,11 +176,11 @@ impl<M: ContactModel> Tracker<M> {
             since_s,
         };
         let remembered = (-since_s / settings.shape_memory_s).exp();
-        let best = best_evidence(&self.hypotheses);
+        let best = best_score(&self.hypotheses);
         let mut gain = f64::NEG_INFINITY;
         for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
             let is_turn = number / settings.n_starts == self.turn;
-            let is_probable = hypothesis.on_trial > 0 || hypothesis.evidence > best - IMPROBABLE;
+            let is_probable = hypothesis.on_trial > 0 || hypothesis.score() > best - IMPROBABLE;
             if hypothesis.is_alive && (is_turn || is_probable) {
                 let prior = &self.inverse.shapes[number / settings.n_starts].prior;
                 hypothesis.update(&mut self.inverse.model, prior, &frame, &settings);
@@ -197,7 +197,7 @@ impl<M: ContactModel> Tracker<M> {
             hypothesis.evidence = remembered * (hypothesis.evidence - best) + own;
         }
         self.n_frames = remembered * self.n_frames + 1.0;
-        let most = best_evidence(&self.hypotheses) - WORSE;
+        let most = best_score(&self.hypotheses) - WORSE;
         for (shape, own) in self.hypotheses.chunks_mut(settings.n_starts).enumerate() {
             judge(own, self.n_frames, most);
             merge(own, &self.inverse.shapes[shape].prior);
@@ -207,9 +207,9 @@ impl<M: ContactModel> Tracker<M> {
     /// What the hypotheses come to.
     fn conclude(&mut self) {
         let settings = &self.inverse.settings;
-        let best = best_evidence(&self.hypotheses);
+        let best = best_score(&self.hypotheses);
         let weight = |hypothesis: &Hypothesis| {
-            if hypothesis.is_judged() { (hypothesis.evidence - best).exp() } else { 0.0 }
+            if hypothesis.is_judged() { (hypothesis.score() - best).exp() } else { 0.0 }
         };
         let total: f64 = self.hypotheses.iter().map(weight).sum();
         let contact = &mut self.contact;
@@ -257,16 +257,16 @@ impl<M: ContactModel> Tracker<M> {
     }
 }
 
-fn best_evidence(hypotheses: &[Hypothesis]) -> f64 {
+fn best_score(hypotheses: &[Hypothesis]) -> f64 {
     let judged = hypotheses.iter().filter(|hypothesis| hypothesis.is_judged());
-    judged.map(|hypothesis| hypothesis.evidence).fold(f64::NEG_INFINITY, f64::max)
+    judged.map(Hypothesis::score).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Ends trials: what fits this frame clearly better than the shape's best counts as if it had fitted all frames of the contact so,
 /// but is not believed more than anything that did.
 fn judge(own: &mut [Hypothesis], n_frames: f64, most: f64) {
     let judged = own.iter().filter(|hypothesis| hypothesis.is_judged() && !hypothesis.gain.is_nan());
-    let best = judged.max_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let best = judged.max_by(|a, b| a.score().total_cmp(&b.score()));
     let Some((evidence, cost)) = best.map(|best| (best.evidence, best.cost)) else {
         return;
     };
@@ -287,7 +287,7 @@ fn merge(own: &mut [Hypothesis], prior: &Prior) {
             let [a, b] = [&own[first], &own[second]];
             let way = prior.way(&a.at, &b.at);
             let is_same = way.iter().zip(SAME).all(|(way, same)| way.abs() < same);
-            let is_better = !b.is_judged() || a.evidence >= b.evidence;
+            let is_better = !b.is_judged() || a.score() >= b.score();
             if first != second && a.is_judged() && b.is_alive && is_same && is_better {
                 own[second].is_alive = false;
             }
