@@ -188,7 +188,9 @@ pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
 pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Touch};
 #[cfg(feature = "fast")]
-pub use twintac_inverse::{Contact, FloorMap, Inverse, InverseSettings, KnownShape, Tracker};
+pub use twintac_inverse::{
+    Contact, FloorMap, Inverse, InverseSettings, KnownShape, ReadingTable, TableModel, Tracker,
+};
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Import, Provenance, Recording};
 #[cfg(feature = "run")]

@@ -183,8 +183,19 @@ fn ports_may_be_anywhere_on_the_floor() {
     let places: Vec<DVec2> = rows.collect();
     let together = pressures(&places);
     for number in (0..places.len()).step_by(37) {
-        assert_eq!(pressures(&places[number..=number]), together[number..=number], "{number} {}", places[number]);
+        assert_eq!(
+            pressures(&places[number..=number]),
+            together[number..=number],
+            "{number} {}",
+            places[number]
+        );
     }
-    let largest = (0..places.len()).max_by(|a, b| together[*a].total_cmp(&together[*b])).unwrap();
-    assert!(places[largest].distance(DVec2::new(-3.0, 2.5)) < 2.0, "{}", places[largest]);
+    let largest = (0..places.len())
+        .max_by(|a, b| together[*a].total_cmp(&together[*b]))
+        .unwrap();
+    assert!(
+        places[largest].distance(DVec2::new(-3.0, 2.5)) < 2.0,
+        "{}",
+        places[largest]
+    );
 }

@@ -31,7 +31,9 @@ impl Inverse<FastModel> {
         let n = [size.x, size.y].map(|size| (size / spacing_mm).floor().max(1.0) as usize);
         let first_mm = 0.5 * (low + high - spacing_mm * DVec2::new(n[0] as f64 - 1.0, n[1] as f64 - 1.0));
         let place = |i: usize, j: usize| first_mm + spacing_mm * DVec2::new(i as f64, j as f64);
-        let places: Vec<DVec2> = (0..n[1]).flat_map(|j| (0..n[0]).map(move |i| place(i, j))).collect();
+        let places: Vec<DVec2> = (0..n[1])
+            .flat_map(|j| (0..n[0]).map(move |i| place(i, j)))
+            .collect();
         FloorMap {
             reader: self.model.gel().with_ports(&places).reader(),
             pressure_kpa: vec![0.0; places.len()],
@@ -47,7 +49,8 @@ impl FloorMap {
     /// The map under a contact, kPa, row by row along x; `[n_y * n_x]`. Each point is the mean over a disc as large as a port.
     pub fn read(&mut self, contact: &Contact) -> &[f32] {
         let (body, gel_from_body) = self.model.placed(contact);
-        self.reader.read(&[(body, gel_from_body)], &mut self.pressure_kpa, &mut [0.0; 6]);
+        self.reader
+            .read(&[(body, gel_from_body)], &mut self.pressure_kpa, &mut [0.0; 6]);
         &self.pressure_kpa
     }
 

@@ -46,7 +46,13 @@ impl Prior {
             turn_rad: domain.turn_rad,
             is_free: ranges.map(|[low, high]| high > low),
             // Of an even distribution; what is known is not looked for, whatever stands here.
-            broad: ranges.map(|[low, high]| if high > low { (high - low).powi(2) / 12.0 } else { 1.0 }),
+            broad: ranges.map(|[low, high]| {
+                if high > low {
+                    (high - low).powi(2) / 12.0
+                } else {
+                    1.0
+                }
+            }),
         }
     }
 
@@ -54,7 +60,9 @@ impl Prior {
         for (number, [low, high]) in self.ranges.into_iter().enumerate().take(N - 1) {
             at[number] = at[number].clamp(low, high);
         }
-        at[N - 1] = self.turn_rad.map_or(0.0, |turn_rad| at[N - 1].rem_euclid(turn_rad));
+        at[N - 1] = self
+            .turn_rad
+            .map_or(0.0, |turn_rad| at[N - 1].rem_euclid(turn_rad));
         at
     }
 
@@ -66,7 +74,9 @@ impl Prior {
     /// From one press to another, the short way around.
     pub(crate) fn way(&self, from: &Vector, to: &Vector) -> Vector {
         let mut way: Vector = std::array::from_fn(|number| to[number] - from[number]);
-        way[N - 1] = self.turn_rad.map_or(0.0, |turn_rad| nearest(way[N - 1], turn_rad));
+        way[N - 1] = self
+            .turn_rad
+            .map_or(0.0, |turn_rad| nearest(way[N - 1], turn_rad));
         way
     }
 }
@@ -161,8 +171,14 @@ impl Hypothesis {
             let way = prior.way(&self.at, &before);
             let back = times(&known, &way);
             let right: Vector = std::array::from_fn(|number| {
-                let terms = self.slopes[number].iter().zip(self.left(frame)).zip(frame.weights);
-                back[number] + terms.map(|((slope, left), weight)| slope * left * weight).sum::<f64>()
+                let terms = self.slopes[number]
+                    .iter()
+                    .zip(self.left(frame))
+                    .zip(frame.weights);
+                back[number]
+                    + terms
+                        .map(|((slope, left), weight)| slope * left * weight)
+                        .sum::<f64>()
             });
             self.step(model, prior, frame, (&before, &known), (&information, right));
         }
@@ -200,7 +216,11 @@ impl Hypothesis {
             let mut at = self.at;
             let [_, high] = prior.ranges[number];
             let is_at_end = number < N - 1 && at[number] + DIFFERENCES[number] > high;
-            let difference = if is_at_end { -DIFFERENCES[number] } else { DIFFERENCES[number] };
+            let difference = if is_at_end {
+                -DIFFERENCES[number]
+            } else {
+                DIFFERENCES[number]
+            };
             at[number] += difference;
             let force_n = model.read(prior.shape, &Press::of(at), &mut self.trial_kpa);
             self.force_slope[number] = (force_n - self.force_n) / difference;
@@ -232,7 +252,8 @@ impl Hypothesis {
 
     fn cost_of(&self, own_kpa: &[f32], frame: &Weighed<'_>) -> f64 {
         let both = frame.readings_kpa.iter().zip(own_kpa).zip(frame.weights);
-        both.map(|((read, own), weight)| f64::from(read - own).powi(2) * weight).sum()
+        both.map(|((read, own), weight)| f64::from(read - own).powi(2) * weight)
+            .sum()
     }
 
     /// What the press leaves of readings, as a root mean square in deviations.
@@ -264,9 +285,8 @@ impl Hypothesis {
         way = way.map(|way| way / length);
         let there = prior.within(std::array::from_fn(|number| self.at[number] + way[number]));
         let force_n = model.read(prior.shape, &Press::of(there), &mut self.trial_kpa);
-        let total = |at: &Vector, own_kpa: &[f32]| {
-            self.cost_of(own_kpa, frame) + form(known, &prior.way(before, at))
-        };
+        let total =
+            |at: &Vector, own_kpa: &[f32]| self.cost_of(own_kpa, frame) + form(known, &prior.way(before, at));
         if total(&there, &self.trial_kpa) <= total(&self.at, &self.readings_kpa) {
             self.at = there;
             self.force_n = force_n;

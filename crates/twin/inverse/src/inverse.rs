@@ -57,7 +57,10 @@ impl Inverse<FastModel> {
         surfaces: &Surfaces,
         settings: InverseSettings,
     ) -> Result<Self, InverseError> {
-        Self::new(FastModel::new(gel, shapes, surfaces, settings.deepest_mm)?, settings)
+        Self::new(
+            FastModel::new(gel, shapes, surfaces, settings.deepest_mm)?,
+            settings,
+        )
     }
 }
 

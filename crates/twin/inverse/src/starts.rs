@@ -128,7 +128,9 @@ impl Starts {
 
     /// Whether two presses are different starts. Spins count by the way that a corner 5 mm from the middle goes.
     pub(crate) fn is_apart(&self, a: &[f64; N], b: &[f64; N]) -> bool {
-        let turn = self.turn_rad.map_or(0.0, |turn_rad| nearest(a[3] - b[3], turn_rad));
+        let turn = self
+            .turn_rad
+            .map_or(0.0, |turn_rad| nearest(a[3] - b[3], turn_rad));
         (a[0] - b[0]).hypot(a[1] - b[1]) + 5.0 * turn.abs() > APART_MM
     }
 }
@@ -137,9 +139,8 @@ impl Starts {
 #[inline(always)]
 fn products(weighted: &[f32], roots: &[f32], row: &[f32]) -> (f32, f32) {
     let (mut products, mut squares) = ([0.0; LANES], [0.0; LANES]);
-    let lanes = |values: &[f32], first: usize| -> [f32; LANES] {
-        std::array::from_fn(|lane| values[first + lane])
-    };
+    let lanes =
+        |values: &[f32], first: usize| -> [f32; LANES] { std::array::from_fn(|lane| values[first + lane]) };
     for first in (0..row.len()).step_by(LANES) {
         let (reading, root, row) = (lanes(weighted, first), lanes(roots, first), lanes(row, first));
         for lane in 0..LANES {
@@ -161,5 +162,7 @@ fn evenly([low, high]: [f64; 2], spacing: f64) -> Vec<f64> {
     if n < 1.0 {
         return vec![0.5 * (low + high)];
     }
-    (0..=n as usize).map(|i| low + (high - low) * i as f64 / n).collect()
+    (0..=n as usize)
+        .map(|i| low + (high - low) * i as f64 / n)
+        .collect()
 }

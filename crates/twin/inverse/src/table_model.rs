@@ -35,10 +35,17 @@ impl TableModel {
     /// Tables whose lists have other lengths than there are nodes, or that differ in their number of readings.
     #[must_use]
     pub fn new(tables: Vec<ReadingTable>) -> Self {
-        let n_readings = tables.first().and_then(|table| table.readings_kpa.first()).map_or(0, Vec::len);
+        let n_readings = tables
+            .first()
+            .and_then(|table| table.readings_kpa.first())
+            .map_or(0, Vec::len);
         for table in &tables {
             let n_nodes = table.n.iter().product::<usize>();
-            assert_eq!([table.readings_kpa.len(), table.force_n.len()], [n_nodes; 2], "a value for each node");
+            assert_eq!(
+                [table.readings_kpa.len(), table.force_n.len()],
+                [n_nodes; 2],
+                "a value for each node"
+            );
             let is_whole = table.readings_kpa.iter().all(|node| node.len() == n_readings);
             assert!(n_nodes > 0 && is_whole, "readings of all taxels at each node");
         }
@@ -62,7 +69,10 @@ impl ContactModel for TableModel {
         let table = &self.tables[shape];
         let range = |axis: usize| {
             let first_mm = table.first_mm[axis];
-            [first_mm, first_mm + table.step_mm[axis] * (table.n[axis] - 1) as f64]
+            [
+                first_mm,
+                first_mm + table.step_mm[axis] * (table.n[axis] - 1) as f64,
+            ]
         };
         let ([low_x, high_x], [low_y, high_y]) = (range(0), range(1));
         Domain {
@@ -76,7 +86,10 @@ impl ContactModel for TableModel {
         let table = &self.tables[shape];
         let at = [press.place_mm.x, press.place_mm.y, press.depth_mm];
         let axes: [_; 3] = std::array::from_fn(|axis| {
-            nodes((at[axis] - table.first_mm[axis]) / table.step_mm[axis], table.n[axis])
+            nodes(
+                (at[axis] - table.first_mm[axis]) / table.step_mm[axis],
+                table.n[axis],
+            )
         });
         readings_kpa.fill(0.0);
         let mut force_n = 0.0;

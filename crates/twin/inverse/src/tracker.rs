@@ -90,9 +90,16 @@ impl<M: ContactModel> Tracker<M> {
     /// # Panics
     /// Another number of readings, numbers that are not finite, a negative time.
     pub fn update(&mut self, since_previous_s: f64, readings_kpa: &[f64]) -> Option<&Contact> {
-        assert_eq!(readings_kpa.len(), self.readings_kpa.len(), "a reading for each taxel");
+        assert_eq!(
+            readings_kpa.len(),
+            self.readings_kpa.len(),
+            "a reading for each taxel"
+        );
         assert!(since_previous_s >= 0.0, "a time that does not run backwards");
-        assert!(readings_kpa.iter().all(|reading| reading.is_finite()), "finite readings");
+        assert!(
+            readings_kpa.iter().all(|reading| reading.is_finite()),
+            "finite readings"
+        );
         let settings = self.inverse.settings;
         let largest_kpa = readings_kpa.iter().copied().fold(0.0, f64::max);
         if largest_kpa < settings.touch_deviations * settings.noise_kpa {
@@ -101,7 +108,9 @@ impl<M: ContactModel> Tracker<M> {
         }
         self.weigh(since_previous_s, readings_kpa, largest_kpa);
         if !self.is_touched {
-            self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.is_alive = false);
+            self.hypotheses
+                .iter_mut()
+                .for_each(|hypothesis| hypothesis.is_alive = false);
             self.n_frames = 0.0;
         }
         for shape in 0..self.inverse.shapes.len() {
@@ -141,7 +150,13 @@ impl<M: ContactModel> Tracker<M> {
         let Prepared { prior, starts } = &self.inverse.shapes[shape];
         let model = &mut self.inverse.model;
         let n_wanted = if self.is_touched { N_CANDIDATES } else { n_starts };
-        starts.best(&self.weighted, &self.roots, &mut self.costs, n_wanted, &mut self.starts);
+        starts.best(
+            &self.weighted,
+            &self.roots,
+            &mut self.costs,
+            n_wanted,
+            &mut self.starts,
+        );
         let own = &mut self.hypotheses[shape * n_starts..(shape + 1) * n_starts];
         if !self.is_touched {
             for (hypothesis, at) in own.iter_mut().zip(&self.starts) {
@@ -149,7 +164,9 @@ impl<M: ContactModel> Tracker<M> {
             }
             return;
         }
-        let Some(at) = self.starts.get(self.candidate) else { return };
+        let Some(at) = self.starts.get(self.candidate) else {
+            return;
+        };
         let mut alive = own.iter().filter(|hypothesis| hypothesis.is_alive);
         if alive.any(|known| !starts.is_apart(&known.at, at)) {
             return;
@@ -191,9 +208,17 @@ impl<M: ContactModel> Tracker<M> {
                 hypothesis.gain = f64::NAN;
             }
         }
-        for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.is_judged()) {
+        for hypothesis in self
+            .hypotheses
+            .iter_mut()
+            .filter(|hypothesis| hypothesis.is_judged())
+        {
             // What waits keeps its distance.
-            let own = if hypothesis.gain.is_nan() { gain } else { hypothesis.gain };
+            let own = if hypothesis.gain.is_nan() {
+                gain
+            } else {
+                hypothesis.gain
+            };
             hypothesis.evidence = remembered * (hypothesis.evidence - best) + own;
         }
         self.n_frames = remembered * self.n_frames + 1.0;
@@ -209,7 +234,11 @@ impl<M: ContactModel> Tracker<M> {
         let settings = &self.inverse.settings;
         let best = best_score(&self.hypotheses);
         let weight = |hypothesis: &Hypothesis| {
-            if hypothesis.is_judged() { (hypothesis.score() - best).exp() } else { 0.0 }
+            if hypothesis.is_judged() {
+                (hypothesis.score() - best).exp()
+            } else {
+                0.0
+            }
         };
         let total: f64 = self.hypotheses.iter().map(weight).sum();
         let contact = &mut self.contact;
@@ -218,7 +247,9 @@ impl<M: ContactModel> Tracker<M> {
             *probability = own.iter().map(weight).sum::<f64>() / total;
         }
         let probabilities = contact.shape_probabilities.iter().enumerate();
-        contact.shape = probabilities.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(shape, _)| shape);
+        contact.shape = probabilities
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .map_or(0, |(shape, _)| shape);
         let own = &self.hypotheses[contact.shape * settings.n_starts..][..settings.n_starts];
         let prior = &self.inverse.shapes[contact.shape].prior;
         let Some(told) = own.iter().max_by(|a, b| weight(a).total_cmp(&weight(b))) else {
@@ -242,7 +273,11 @@ impl<M: ContactModel> Tracker<M> {
                     + (hypothesis.force_n - told.force_n).powi(2));
         }
         let deviation = |number: usize| {
-            if prior.is_free(number) { contact.covariance[number][number].max(0.0).sqrt() } else { 0.0 }
+            if prior.is_free(number) {
+                contact.covariance[number][number].max(0.0).sqrt()
+            } else {
+                0.0
+            }
         };
         contact.place_deviation_mm = DVec2::new(deviation(0), deviation(1));
         contact.depth_deviation_mm = deviation(2);
@@ -265,12 +300,17 @@ fn best_score(hypotheses: &[Hypothesis]) -> f64 {
 /// Ends trials: what fits this frame clearly better than the shape's best counts as if it had fitted all frames of the contact so,
 /// but is not believed more than anything that did.
 fn judge(own: &mut [Hypothesis], n_frames: f64, most: f64) {
-    let judged = own.iter().filter(|hypothesis| hypothesis.is_judged() && !hypothesis.gain.is_nan());
+    let judged = own
+        .iter()
+        .filter(|hypothesis| hypothesis.is_judged() && !hypothesis.gain.is_nan());
     let best = judged.max_by(|a, b| a.score().total_cmp(&b.score()));
     let Some((evidence, cost)) = best.map(|best| (best.evidence, best.cost)) else {
         return;
     };
-    for hypothesis in own.iter_mut().filter(|hypothesis| hypothesis.is_alive && hypothesis.on_trial > 0) {
+    for hypothesis in own
+        .iter_mut()
+        .filter(|hypothesis| hypothesis.is_alive && hypothesis.on_trial > 0)
+    {
         hypothesis.on_trial -= 1;
         if hypothesis.on_trial == 0 {
             let better = cost - hypothesis.cost;

@@ -9,7 +9,9 @@ pub(crate) fn turn_rad(shape: &Shape) -> Option<f64> {
     match shape {
         Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Ring { .. } => None,
         Shape::X { .. } => Some(FRAC_PI_2),
-        Shape::Box { size_mm: [x, y, _], .. } if (x - y).abs() < 1e-9 => Some(FRAC_PI_2),
+        Shape::Box {
+            size_mm: [x, y, _], ..
+        } if (x - y).abs() < 1e-9 => Some(FRAC_PI_2),
         Shape::Box { .. } | Shape::Wedge { .. } => Some(PI),
         Shape::Triangle { .. } => Some(TAU / 3.0),
         Shape::Stl { .. } | Shape::Union { .. } => Some(TAU),

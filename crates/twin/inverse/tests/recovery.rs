@@ -88,7 +88,11 @@ fn place_depth_force_and_shape_are_found() {
         }
         n_told += 1;
         let (error, deviation) = (contact.place_mm - press.place_mm, contact.place_deviation_mm);
-        let turn = if shape == 1 { contact.spin_rad - press.spin_rad } else { 0.0 };
+        let turn = if shape == 1 {
+            contact.spin_rad - press.spin_rad
+        } else {
+            0.0
+        };
         let errors = [
             (error.x, deviation.x),
             (error.y, deviation.y),
@@ -96,13 +100,20 @@ fn place_depth_force_and_shape_are_found() {
             (contact.force_n - force_n, contact.force_deviation_n),
             (turn - PI * (turn / PI).round(), contact.spin_deviation_rad + 1e-9),
         ];
-        n_within += usize::from(errors.iter().all(|(error, deviation)| error.abs() < 4.0 * deviation));
+        n_within += usize::from(
+            errors
+                .iter()
+                .all(|(error, deviation)| error.abs() < 4.0 * deviation),
+        );
         place_errors_mm.push(error.length());
     }
     place_errors_mm.sort_by(f64::total_cmp);
     assert!(place_errors_mm[n_told / 2] < 0.15, "{place_errors_mm:?}");
     // A bar near an edge may be turned and moved together and read nearly the same: deviations say too little there.
-    assert!(n_within + 3 >= n_told, "{n_within} of {n_told} within four deviations");
+    assert!(
+        n_within + 3 >= n_told,
+        "{n_within} of {n_told} within four deviations"
+    );
     assert!(n_told >= 55, "{n_told} of 60 shapes told");
 }
 
@@ -139,7 +150,11 @@ fn errors_are_as_large_as_is_said() {
             let n = errors.iter().filter(|error| error.abs() < deviations).count();
             n as f64 / errors.len() as f64
         };
-        assert!((0.55..0.85).contains(&within(1.0)), "{number}: {} within one", within(1.0));
+        assert!(
+            (0.55..0.85).contains(&within(1.0)),
+            "{number}: {} within one",
+            within(1.0)
+        );
         assert!(within(2.0) > 0.88, "{number}: {} within two", within(2.0));
     }
 }
@@ -195,7 +210,9 @@ fn the_floor_is_highest_below_the_contact() {
     let mut map = KNOWN.floor_map(0.5);
     assert_eq!(map.n(), [68, 36]);
     let floor_kpa = map.read(contact).to_vec();
-    let largest = (0..floor_kpa.len()).max_by(|a, b| floor_kpa[*a].total_cmp(&floor_kpa[*b])).unwrap();
+    let largest = (0..floor_kpa.len())
+        .max_by(|a, b| floor_kpa[*a].total_cmp(&floor_kpa[*b]))
+        .unwrap();
     let at = map.place_mm(largest % 68, largest / 68);
     assert!(at.distance(press.place_mm) < 1.0, "{at}");
 }
@@ -203,7 +220,8 @@ fn the_floor_is_highest_below_the_contact() {
 #[test]
 fn what_cannot_be_is_an_error() {
     let gel = FastGel::phystac().unwrap();
-    let new = |shapes: &[KnownShape], settings| Inverse::of_fast_gel(&gel, shapes, &Surfaces::new(), settings);
+    let new =
+        |shapes: &[KnownShape], settings| Inverse::of_fast_gel(&gel, shapes, &Surfaces::new(), settings);
     assert_eq!(new(&[], settings()).unwrap_err(), InverseError::NoShape);
     let silent = InverseSettings {
         noise_kpa: 0.0,

@@ -121,13 +121,7 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
 }
 
 /// A press straight down of an upright shape, on the finest mesh.
-pub(crate) fn upright(
-    sensor: &Sensor,
-    shape: &Shape,
-    place_mm: DVec2,
-    spin_rad: f64,
-    depth_mm: f64,
-) -> Draw {
+pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad: f64, depth_mm: f64) -> Draw {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     Draw {
         shape: shape.clone(),

@@ -53,8 +53,16 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    pub(crate) fn new(sensor: &Sensor, gel: &FastGel, places_mm: &[DVec2]) -> Result<Self, Box<dyn Error + Send + Sync>> {
-        let taxels_mm: Vec<DVec2> = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate()).collect();
+    pub(crate) fn new(
+        sensor: &Sensor,
+        gel: &FastGel,
+        places_mm: &[DVec2],
+    ) -> Result<Self, Box<dyn Error + Send + Sync>> {
+        let taxels_mm: Vec<DVec2> = sensor
+            .taxels
+            .iter()
+            .map(|taxel| taxel.position_mm.truncate())
+            .collect();
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let rectangle = Rectangle {
             min_mm: [low.x, low.y],
@@ -95,8 +103,9 @@ impl Judge {
             let mut last = (Vec::new(), None);
             for _ in 0..HELD {
                 let true_kpa = frame.floor_kpa[..n_taxels].iter();
-                let readings_kpa: Vec<f64> =
-                    true_kpa.map(|true_kpa| f64::from(*true_kpa) + normal(random, NOISE_KPA)).collect();
+                let readings_kpa: Vec<f64> = true_kpa
+                    .map(|true_kpa| f64::from(*true_kpa) + normal(random, NOISE_KPA))
+                    .collect();
                 let start = Instant::now();
                 let contact = tracker.update(1.0 / RATE_HZ, &readings_kpa);
                 let seconds = start.elapsed().as_secs_f64();
@@ -134,14 +143,19 @@ impl Judge {
         self.map.fill(readings_kpa, &mut map_kpa)?;
         let [columns, _] = self.map.grid();
         let low = DVec2::from(self.map.rectangle().min_mm);
-        let peak = (0..map_kpa.len()).max_by(|a, b| map_kpa[*a].total_cmp(&map_kpa[*b])).unwrap_or(0);
+        let peak = (0..map_kpa.len())
+            .max_by(|a, b| map_kpa[*a].total_cmp(&map_kpa[*b]))
+            .unwrap_or(0);
         let peak = DVec2::new((peak % columns) as f64, (peak / columns) as f64);
         let (body, position_mm) = inverse.model().placed(contact);
         let mut own_kpa = vec![0.0; self.places_mm.len()];
-        self.floor.read(&[(body, position_mm)], &mut own_kpa, &mut [0.0; 6]);
+        self.floor
+            .read(&[(body, position_mm)], &mut own_kpa, &mut [0.0; 6]);
         let largest = f64::from(true_kpa.iter().copied().fold(f32::MIN_POSITIVE, f32::max));
         let percent = |found: &dyn Fn(usize) -> f64| {
-            let square = (0..true_kpa.len()).map(|i| (found(i) - f64::from(true_kpa[i])).powi(2)).sum::<f64>();
+            let square = (0..true_kpa.len())
+                .map(|i| (found(i) - f64::from(true_kpa[i])).powi(2))
+                .sum::<f64>();
             100.0 * (square / true_kpa.len() as f64).sqrt() / largest
         };
         let of_map = |i: usize| {
@@ -161,7 +175,12 @@ impl Judge {
             times
         };
         let (on, first) = (sorted(false), sorted(true));
-        let at = |times: &[f64], part: f64| times.get((part * times.len() as f64) as usize).copied().unwrap_or(0.0);
+        let at = |times: &[f64], part: f64| {
+            times
+                .get((part * times.len() as f64) as usize)
+                .copied()
+                .unwrap_or(0.0)
+        };
         [at(&on, 0.5), at(&on, 0.99), at(&first, 0.5)]
     }
 }

@@ -65,5 +65,9 @@ pub(crate) fn solved(
         std::fs::write(path, serde_json::to_vec(&solved)?)?;
         Ok(solved)
     };
-    (0..OF_EACH * shapes.len()).into_par_iter().with_max_len(1).map(solve).collect()
+    (0..OF_EACH * shapes.len())
+        .into_par_iter()
+        .with_max_len(1)
+        .map(solve)
+        .collect()
 }

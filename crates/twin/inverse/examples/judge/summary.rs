@@ -69,7 +69,9 @@ pub(crate) fn summary(shapes: &[KnownShape], watched: &[Watched]) -> Summary {
         down_to_1_mm: group(&|found| found.depth_mm <= 1.0),
         below_1_mm: group(&|found| found.depth_mm > 1.0),
         deepest_steps: group(&|found| found.step == deepest),
-        by_shape: (0..shapes.len()).map(|shape| (named(shape), group(&|found| found.shape == shape))).collect(),
+        by_shape: (0..shapes.len())
+            .map(|shape| (named(shape), group(&|found| found.shape == shape)))
+            .collect(),
         told_at_deepest,
     }
 }
