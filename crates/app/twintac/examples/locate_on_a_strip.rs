@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(&run).join("training/held-out");
     let twin = Twin::load(&folder)?;
     let record: serde_json::Value = serde_json::from_slice(&std::fs::read(folder.join("twin.json"))?)?;
-    let recording = Recording::read(&Path::new(&run).join("recordings/presses.parquet"))?;
+    let recording = Recording::read_parquet(&Path::new(&run).join("recordings/presses.parquet"))?;
     let presses = &recording.presses;
     let largest_kpa = presses.iter().flat_map(|press| press.taxels_kpa.iter().flatten());
     let settings = InverseSettings {
