@@ -10,7 +10,6 @@ use crate::hypothesis::Prior;
 use crate::model::ContactModel;
 use crate::settings::InverseSettings;
 use crate::starts::Starts;
-use crate::tracker::Tracker;
 
 /// Why there is no inverse.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -106,11 +105,5 @@ impl<M: ContactModel> Inverse<M> {
     #[must_use]
     pub fn n_shapes(&self) -> usize {
         self.shapes.len()
-    }
-
-    /// A tracker of a sensor that nothing has touched yet.
-    #[must_use]
-    pub fn start(&self) -> Tracker<M> {
-        Tracker::new(self.clone())
     }
 }

@@ -55,8 +55,16 @@ pub struct Tracker<M> {
     starts: Vec<[f64; N]>,
 }
 
+impl<M: ContactModel> Inverse<M> {
+    /// A tracker of a sensor that nothing has touched yet.
+    #[must_use]
+    pub fn start(&self) -> Tracker<M> {
+        Tracker::new(self.clone())
+    }
+}
+
 impl<M: ContactModel> Tracker<M> {
-    pub(crate) fn new(inverse: Inverse<M>) -> Self {
+    fn new(inverse: Inverse<M>) -> Self {
         let n_readings = inverse.model.n_readings();
         let (n_shapes, n_starts) = (inverse.shapes.len(), inverse.settings.n_starts);
         let n_padded = n_readings.next_multiple_of(LANES);
