@@ -41,6 +41,7 @@
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call | `fast` |
+//! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
 //! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
@@ -125,6 +126,22 @@
 //! # Ok::<(), twintac::Error>(())
 //! ```
 //!
+//! And back, frame by frame, from readings to what touches:
+//!
+//! ```
+//! # #[cfg(feature = "fast")] {
+//! use twintac::{FastGel, Inverse, InverseSettings, KnownShape, Shape};
+//!
+//! let ball = KnownShape { name: "ball".into(), shape: Shape::Sphere { radius_mm: 5.0 } };
+//! let inverse = Inverse::of_fast_gel(&FastGel::phystac()?, &[ball], &Default::default(), InverseSettings::default())?;
+//! let mut tracker = inverse.start();
+//! if let Some(contact) = tracker.update(0.01, &[0.1, 0.9, 1.0, 0.1, 0.8, 8.7, 0.9, 0.2]) {
+//!     println!("{:.1} mm, {:.2} mm deep, {:.2} N", contact.place_mm, contact.depth_mm, contact.force_n);
+//! }
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! The folder `examples/` has these as programs, and one that trains a twin on CSV files of your own.
 //!
 //! # Features
@@ -133,7 +150,7 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
-//! | `fast` | touch for learning, without finite elements |
+//! | `fast` | touch for learning, without finite elements, and back from readings to contacts |
 //! | `map` | pressure maps and pictures |
 //! | `recording` | recorded presses: Parquet, CSV |
 //! | `live` | reading a sensor; brings `recording` |
@@ -170,6 +187,10 @@ pub use digitac::{Prediction, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
 pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Touch};
+#[cfg(feature = "fast")]
+pub use twintac_inverse::{
+    Contact, FloorMap, Inverse, InverseSettings, KnownShape, ReadingTable, TableModel, Tracker,
+};
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Import, Provenance, Recording};
 #[cfg(feature = "run")]

@@ -1,5 +1,7 @@
 //! The networks as they are evaluated: only what touches is multiplied.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 use twintac_learn::Linear;
@@ -179,8 +181,13 @@ impl Engine {
     }
 }
 
+/// The rows of places between the grid's points: how far behind their cell they lie, in millionths of the spacing, and where the point lies from
+/// the cell.
+type RowsBetween = BTreeMap<([i64; 2], [i32; 2]), usize>;
+
 impl Ports {
-    /// The ports of a gel. One that is not on the grid gets rows of its own: the inputs between the grid's points are linear.
+    /// The ports of a gel. One that is not on the grid gets rows of its own: the inputs between the grid's points are linear. Ports that lie
+    /// equally far behind their cells share them.
     fn of(gel: &FastGel, network: &mut Sparse) -> Self {
         let layout = &gel.layout;
         let first = &gel.networks.pressure.rest.layers[0];
@@ -190,8 +197,12 @@ impl Ports {
             first_use: Vec::new(),
             n: gel.ports_mm.len(),
         };
+        // Behind the patch come the rows of what describes a place, which no port needs here; rows of ports follow the patch.
+        let n_own = network.nothing.len() * network.n_hidden;
+        network.rows.truncate(layout.patch.offsets.len() * n_own);
+        let mut between = RowsBetween::new();
         for (port, at) in gel.ports_mm.iter().enumerate() {
-            ports.add(port as u32, *at, layout, network);
+            ports.add(port as u32, *at, layout, network, &mut between);
             ports.bias.extend(bias_at(*at, layout, first, network));
         }
         ports.uses.sort_by_key(|pair| (pair.point, pair.port));
@@ -205,7 +216,14 @@ impl Ports {
         &self.uses[self.first_use[point] as usize..self.first_use[point + 1] as usize]
     }
 
-    fn add(&mut self, port: u32, at: DVec2, layout: &Layout, network: &mut Sparse) {
+    fn add(
+        &mut self,
+        port: u32,
+        at: DVec2,
+        layout: &Layout,
+        network: &mut Sparse,
+        between: &mut RowsBetween,
+    ) {
         let (grid, patch) = (&layout.grid, &layout.patch);
         let (cell, part) = grid.cell(at);
         let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|corner: [i32; 2]| {
@@ -221,6 +239,7 @@ impl Ports {
         let corners = corners.into_iter().filter(|(_, share)| *share > 1e-6);
         let is_on_grid = part.length() < 1e-6;
         let n_own = network.nothing.len() * network.n_hidden;
+        let behind = [part.x, part.y].map(|part| (1e6 * part).round() as i64);
         for point in 0..grid.len() {
             let of_point = [point % grid.n[0], point / grid.n[0]].map(|index| index as i32);
             let mut reached = corners.clone().filter_map(|(corner, share)| {
@@ -228,8 +247,11 @@ impl Ports {
                 let place = patch.offsets.iter().position(|known| *known == offset)?;
                 Some((place, share as f32))
             });
+            let from_cell = [0, 1].map(|axis| of_point[axis] - cell[axis]);
             let place = if is_on_grid {
                 reached.next().map(|(place, _)| place)
+            } else if let Some(known) = between.get(&(behind, from_cell)) {
+                Some(*known)
             } else {
                 let mut own = vec![0.0; n_own];
                 let mut is_reached = false;
@@ -242,7 +264,9 @@ impl Ports {
                 }
                 is_reached.then(|| {
                     network.rows.extend(own);
-                    network.rows.len() / n_own - 1
+                    let place = network.rows.len() / n_own - 1;
+                    between.insert((behind, from_cell), place);
+                    place
                 })
             };
             self.uses.extend(place.map(|place| Use {

@@ -76,4 +76,26 @@ impl FastGel {
     pub fn sensor(&self) -> &str {
         &self.sensor
     }
+    /// The same gel with its ports at other places of the floor, mm, instead of the taxels': a reading is the pressure over a disc as large as a
+    /// port there. Ports on a regular grid share what they need: thousands take a few MB.
+    #[must_use]
+    pub fn with_ports(&self, places_mm: &[DVec2]) -> Self {
+        Self {
+            ports_mm: places_mm.to_vec(),
+            ..self.clone()
+        }
+    }
+
+    /// Corners of the gel in plan, mm.
+    #[must_use]
+    pub fn bounds_mm(&self) -> [DVec2; 2] {
+        let low_mm = self.layout.surroundings.low_mm();
+        [low_mm, 2.0 * self.center_mm.truncate() - low_mm]
+    }
+
+    /// Height of the undeformed gel above the board, mm, linear between points 2 mm apart.
+    #[must_use]
+    pub fn height_mm_at(&self, place_mm: DVec2) -> f64 {
+        self.layout.grid.height_mm_at(place_mm)
+    }
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use twintac_fast::{Body, FastGel, Lesson, LessonFrame, Touch, TrainSettings, lesson_places_mm};
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::{Pose, Shape, Surfaces};
@@ -163,4 +163,39 @@ fn a_pose_that_is_no_pose_is_not_read_as_nothing() {
     let (gel, _) = gel(1);
     let nowhere = Pose::from_position(DVec3::new(f64::NAN, 0.0, 6.0));
     read(&gel, &[(&ball(), nowhere)]);
+}
+
+#[test]
+fn ports_may_be_anywhere_on_the_floor() {
+    let (gel, _) = gel(400);
+    let ball = ball();
+    let there = [(&ball, Pose::from_position(DVec3::new(-3.0, 2.5, 6.5)))];
+    let pressures = |places_mm: &[DVec2]| {
+        let mut pressure_kpa = vec![0.0; places_mm.len()];
+        let mut reader = gel.with_ports(places_mm).reader();
+        reader.read(&there, &mut pressure_kpa, &mut [0.0; 6]);
+        pressure_kpa
+    };
+    let taxels = [-12.0, -4.0, 4.0, 12.0].map(|x| DVec2::new(x, -4.0));
+    assert_eq!(pressures(&taxels), read(&gel, &there).0[..4]);
+    // Places equally far behind their points share rows: each reads what it reads alone.
+    let rows = (-10..10).flat_map(|j| (-20..20).map(move |i| 0.5 * DVec2::new(f64::from(i), f64::from(j))));
+    let places: Vec<DVec2> = rows.collect();
+    let together = pressures(&places);
+    for number in (0..places.len()).step_by(37) {
+        assert_eq!(
+            pressures(&places[number..=number]),
+            together[number..=number],
+            "{number} {}",
+            places[number]
+        );
+    }
+    let largest = (0..places.len())
+        .max_by(|a, b| together[*a].total_cmp(&together[*b]))
+        .unwrap();
+    assert!(
+        places[largest].distance(DVec2::new(-3.0, 2.5)) < 2.0,
+        "{}",
+        places[largest]
+    );
 }

@@ -120,6 +120,20 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     }
 }
 
+/// A press straight down of an upright shape, on the finest mesh.
+pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad: f64, depth_mm: f64) -> Draw {
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    Draw {
+        shape: shape.clone(),
+        place_mm,
+        rotation: DQuat::from_rotation_z(spin_rad),
+        depth_mm,
+        edge_mm: (high.z - low.z) / HEIGHT_MM * FINEST_MM,
+        edges_per_height: 7.0,
+        slide: None,
+    }
+}
+
 /// Turned at random about the vertical, then tilted in a random direction.
 fn turned(tilt: f64, random: &mut impl Rng) -> DQuat {
     let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);

@@ -6,11 +6,11 @@ use glam::{DQuat, DVec2, DVec3};
 use twintac_fast::{Lesson, LessonFrame};
 use twintac_protocol::{PressPath, Waypoint, Zero};
 use twintac_sensor::{Sensor, Taxel};
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Shape};
 use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSettings};
 
 use crate::boulder::exam_surfaces;
-use crate::draw::{Draw, Purpose, draw};
+use crate::draw::{Draw, Purpose, draw, upright};
 
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
@@ -89,6 +89,20 @@ impl Teacher {
     pub fn slide(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
         let random = &mut twintac_random::stream(seed, &format!("slide {number}"));
         self.press(&draw(&self.sensor, Purpose::Slide, random))
+    }
+
+    /// A shape pressed upright at a place, mm, turned about the vertical, radians, down to a depth below first touch, mm: as an exam, but not at random.
+    ///
+    /// # Errors
+    /// A sensor that cannot be meshed, a shape that can't be.
+    pub fn upright(
+        &self,
+        shape: &Shape,
+        place_mm: DVec2,
+        spin_rad: f64,
+        depth_mm: f64,
+    ) -> Result<Lesson, TeachError> {
+        self.press(&upright(&self.sensor, shape, place_mm, spin_rad, depth_mm))
     }
 
     fn press(&self, drawn: &Draw) -> Result<Lesson, TeachError> {

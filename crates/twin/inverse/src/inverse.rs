@@ -1,0 +1,109 @@
+//! From readings to contacts: what is prepared once for all sensors of a kind.
+
+use std::sync::Arc;
+
+use twintac_fast::FastGel;
+use twintac_shape::{ShapeError, Surfaces};
+
+use crate::fast_model::{FastModel, KnownShape};
+use crate::hypothesis::Prior;
+use crate::model::ContactModel;
+use crate::settings::InverseSettings;
+use crate::starts::Starts;
+
+/// Why there is no inverse.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InverseError {
+    /// A shape that can't be.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// No shape is known.
+    #[error("no known shape: at least one is needed")]
+    NoShape,
+    /// A setting that can't be.
+    #[error("the inverse's `{field}` is {found}, expected a number above 0")]
+    Setting {
+        /// Its name.
+        field: &'static str,
+        /// What it is.
+        found: f64,
+    },
+}
+
+/// What is prepared of a model and its known shapes.
+#[derive(Clone, Debug)]
+pub struct Inverse<M> {
+    pub(crate) model: M,
+    pub(crate) shapes: Arc<Vec<Prepared>>,
+    pub(crate) settings: InverseSettings,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Prepared {
+    pub(crate) prior: Prior,
+    pub(crate) starts: Starts,
+}
+
+impl Inverse<FastModel> {
+    /// Of a fast gel and the shapes that may touch it, upright. Takes a fraction of a second for a few shapes, on all threads.
+    ///
+    /// # Errors
+    /// No shape, a shape that can't be, settings that are not above zero.
+    pub fn of_fast_gel(
+        gel: &FastGel,
+        shapes: &[KnownShape],
+        surfaces: &Surfaces,
+        settings: InverseSettings,
+    ) -> Result<Self, InverseError> {
+        Self::new(
+            FastModel::new(gel, shapes, surfaces, settings.deepest_mm)?,
+            settings,
+        )
+    }
+}
+
+impl<M: ContactModel> Inverse<M> {
+    /// Of any model.
+    ///
+    /// # Errors
+    /// No shape, settings that are not above zero.
+    pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
+        let positive = [
+            ("noise_kpa", settings.noise_kpa),
+            ("correlated_s", settings.correlated_s),
+            ("shape_memory_s", settings.shape_memory_s),
+            ("touch_deviations", settings.touch_deviations),
+            ("deepest_mm", settings.deepest_mm),
+            ("n_starts", settings.n_starts as f64),
+            ("n_steps", settings.n_steps as f64),
+        ];
+        if let Some((field, found)) = positive.into_iter().find(|(_, value)| !(*value > 0.0)) {
+            return Err(InverseError::Setting { field, found });
+        }
+        if model.n_shapes() == 0 {
+            return Err(InverseError::NoShape);
+        }
+        let prepared = |shape| Prepared {
+            prior: Prior::of(&model, shape),
+            starts: Starts::of(&model, shape),
+        };
+        Ok(Self {
+            shapes: Arc::new((0..model.n_shapes()).map(prepared).collect()),
+            model,
+            settings,
+        })
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+
+    /// Known shapes.
+    #[must_use]
+    pub fn n_shapes(&self) -> usize {
+        self.shapes.len()
+    }
+}

@@ -1,0 +1,86 @@
+//! Small symmetric matrices.
+
+use crate::model::N;
+
+pub(crate) type Vector = [f64; N];
+
+pub(crate) type Matrix = [[f64; N]; N];
+
+/// The lower triangle whose product with its transpose is a positive definite matrix (Cholesky). Where rounding leaves a pivot that is not positive,
+/// a tiny one stands for it.
+pub(crate) fn triangle(matrix: &Matrix) -> Matrix {
+    let mut lower = [[0.0; N]; N];
+    for row in 0..N {
+        for column in 0..=row {
+            let done: f64 = (0..column).map(|k| lower[row][k] * lower[column][k]).sum();
+            let left = matrix[row][column] - done;
+            lower[row][column] = if row == column {
+                left.max(1e-12 * matrix[row][row].abs().max(1e-300)).sqrt()
+            } else {
+                left / lower[column][column]
+            };
+        }
+    }
+    lower
+}
+
+/// Solves a system by its triangle.
+pub(crate) fn solve(lower: &Matrix, mut right: Vector) -> Vector {
+    for row in 0..N {
+        let done: f64 = (0..row).map(|k| lower[row][k] * right[k]).sum();
+        right[row] = (right[row] - done) / lower[row][row];
+    }
+    for row in (0..N).rev() {
+        let done: f64 = (row + 1..N).map(|k| lower[k][row] * right[k]).sum();
+        right[row] = (right[row] - done) / lower[row][row];
+    }
+    right
+}
+
+/// The inverse of a positive definite matrix, and the logarithm of the matrix's determinant.
+pub(crate) fn inverse(matrix: &Matrix) -> (Matrix, f64) {
+    let lower = triangle(matrix);
+    let mut inverse = [[0.0; N]; N];
+    for column in 0..N {
+        let unit = std::array::from_fn(|row| f64::from(u8::from(row == column)));
+        inverse[column] = solve(&lower, unit);
+    }
+    let logarithm = (0..N).map(|row| 2.0 * lower[row][row].ln()).sum();
+    (inverse, logarithm)
+}
+
+/// `vᵀ M v`
+pub(crate) fn form(matrix: &Matrix, vector: &Vector) -> f64 {
+    let product = times(matrix, vector);
+    product.iter().zip(vector).map(|(a, b)| a * b).sum()
+}
+
+pub(crate) fn times(matrix: &Matrix, vector: &Vector) -> Vector {
+    matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn an_inverse_undoes_its_matrix(values in prop::array::uniform16(-1.0..1.0f64), right in prop::array::uniform4(-1.0..1.0f64)) {
+            let root: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| values[N * row + column]));
+            let matrix: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| {
+                let product: f64 = (0..N).map(|k| root[row][k] * root[column][k]).sum();
+                product + if row == column { 0.1 } else { 0.0 }
+            }));
+            let (inverse, logarithm) = inverse(&matrix);
+            let found = times(&inverse, &times(&matrix, &right));
+            let solved = times(&matrix, &solve(&triangle(&matrix), right));
+            for row in 0..N {
+                prop_assert!((found[row] - right[row]).abs() < 1e-9);
+                prop_assert!((solved[row] - right[row]).abs() < 1e-9);
+            }
+            prop_assert!(logarithm.is_finite());
+        }
+    }
+}

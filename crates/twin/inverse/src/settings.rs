@@ -1,0 +1,58 @@
+//! What the inverse assumes.
+
+use serde::{Deserialize, Serialize};
+
+/// How sure readings and model are, and how fast a contact changes.
+///
+/// The variance of a reading `p` in a frame, where `m` is the largest reading: `noise² + (model_part p)² + (model_part_of_largest m)²`. The noise
+/// of two frames is independent. The error of the model is not: frames within `correlated_s` count as one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct InverseSettings {
+    /// Standard deviation of a reading's noise, kPa.
+    pub noise_kpa: f64,
+    /// Standard deviation of the model's error as part of each reading.
+    pub model_part: f64,
+    /// The same as part of the frame's largest reading.
+    pub model_part_of_largest: f64,
+    /// The same of the force, as part of it.
+    pub force_part: f64,
+    /// Time within which errors of the model count as one, s.
+    pub correlated_s: f64,
+    /// A contact is what reads so many deviations of the noise, at one taxel at least.
+    pub touch_deviations: f64,
+    /// Standard deviation of how far a contact wanders along x and along y in a second, mm; it grows with the root of time.
+    pub place_walk_mm: f64,
+    /// The same of the depth, mm.
+    pub depth_walk_mm: f64,
+    /// The same of the spin, radians.
+    pub spin_walk_rad: f64,
+    /// Time after which what told the shape is forgotten to a part of 1/e, s.
+    pub shape_memory_s: f64,
+    /// Possible presses of each shape that are followed at once.
+    pub n_starts: usize,
+    /// Steps towards the best press of each of them in a frame.
+    pub n_steps: usize,
+    /// Deepest press that is thought of, mm below first touch. For a fast gel: not deeper than it was taught.
+    pub deepest_mm: f64,
+}
+
+impl Default for InverseSettings {
+    fn default() -> Self {
+        Self {
+            noise_kpa: 0.05,
+            model_part: 0.03,
+            model_part_of_largest: 0.01,
+            force_part: 0.03,
+            correlated_s: 0.1,
+            touch_deviations: 6.0,
+            place_walk_mm: 3.0,
+            depth_walk_mm: 2.0,
+            spin_walk_rad: 1.0,
+            shape_memory_s: 3.0,
+            n_starts: 3,
+            n_steps: 1,
+            deepest_mm: 5.0,
+        }
+    }
+}

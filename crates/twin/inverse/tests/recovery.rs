@@ -1,0 +1,232 @@
+//! What the fast gel reads leads back to what touched it.
+
+#![allow(clippy::unwrap_used)] // also in the helpers of tests
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use glam::DVec2;
+use rand::Rng;
+use twintac_fast::FastGel;
+use twintac_inverse::{ContactModel, FastModel, Inverse, InverseError, InverseSettings, KnownShape, Press};
+use twintac_random::{normal, stream};
+use twintac_shape::{Shape, Surfaces};
+
+const EDGE_MM: f64 = 0.8;
+
+/// A model that is the truth: what is left is noise.
+fn settings() -> InverseSettings {
+    InverseSettings {
+        noise_kpa: 0.1,
+        model_part: 0.0,
+        model_part_of_largest: 0.0,
+        force_part: 0.0,
+        ..InverseSettings::default()
+    }
+}
+
+fn shapes() -> Vec<KnownShape> {
+    let known = |name: &str, shape| KnownShape {
+        name: name.into(),
+        shape,
+    };
+    let ball = Shape::Sphere { radius_mm: 5.0 };
+    let bar = Shape::Box {
+        size_mm: [14.0, 5.0, 10.0],
+        edge_radius_mm: EDGE_MM,
+    };
+    let ring = Shape::Ring {
+        outer_radius_mm: 7.0,
+        inner_radius_mm: 4.0,
+        height_mm: 10.0,
+        edge_radius_mm: EDGE_MM,
+    };
+    vec![known("ball", ball), known("bar", bar), known("ring", ring)]
+}
+
+static KNOWN: LazyLock<Inverse<FastModel>> = LazyLock::new(|| {
+    let gel = FastGel::phystac().unwrap();
+    Inverse::of_fast_gel(&gel, &shapes(), &Surfaces::new(), settings()).unwrap()
+});
+
+/// What is read of a press, kPa, and its force, N.
+fn read(shape: usize, press: &Press) -> ([f64; 8], f64) {
+    let mut readings_kpa = [0.0; 8];
+    let force_n = KNOWN.model().clone().read(shape, press, &mut readings_kpa);
+    (readings_kpa.map(f64::from), force_n)
+}
+
+fn noisy(readings_kpa: [f64; 8], random: &mut impl Rng) -> [f64; 8] {
+    readings_kpa.map(|reading_kpa| reading_kpa + normal(random, 0.1))
+}
+
+/// A press over the taxels.
+fn drawn(random: &mut impl Rng) -> Press {
+    Press {
+        place_mm: DVec2::new(random.random_range(-10.0..10.0), random.random_range(-4.0..4.0)),
+        depth_mm: random.random_range(1.0..3.0),
+        spin_rad: random.random_range(0.0..PI),
+    }
+}
+
+#[test]
+fn place_depth_force_and_shape_are_found() {
+    let random = &mut stream(1, "presses of a test");
+    let (mut n_told, mut n_within, mut place_errors_mm) = (0, 0, Vec::new());
+    for number in 0..60 {
+        let (shape, press) = (number % 3, drawn(random));
+        let (readings_kpa, force_n) = read(shape, &press);
+        let mut tracker = KNOWN.start();
+        for _ in 0..30 {
+            tracker.update(0.02, &noisy(readings_kpa, random));
+        }
+        let contact = tracker.update(0.02, &noisy(readings_kpa, random)).unwrap();
+        assert!((contact.shape_probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        if contact.shape != shape {
+            assert!(contact.shape_probabilities[shape] > 1e-3, "{press:?} {contact:?}");
+            continue;
+        }
+        n_told += 1;
+        let (error, deviation) = (contact.place_mm - press.place_mm, contact.place_deviation_mm);
+        let turn = if shape == 1 {
+            contact.spin_rad - press.spin_rad
+        } else {
+            0.0
+        };
+        let errors = [
+            (error.x, deviation.x),
+            (error.y, deviation.y),
+            (contact.depth_mm - press.depth_mm, contact.depth_deviation_mm),
+            (contact.force_n - force_n, contact.force_deviation_n),
+            (turn - PI * (turn / PI).round(), contact.spin_deviation_rad + 1e-9),
+        ];
+        n_within += usize::from(
+            errors
+                .iter()
+                .all(|(error, deviation)| error.abs() < 4.0 * deviation),
+        );
+        place_errors_mm.push(error.length());
+    }
+    place_errors_mm.sort_by(f64::total_cmp);
+    assert!(place_errors_mm[n_told / 2] < 0.15, "{place_errors_mm:?}");
+    // A bar near an edge may be turned and moved together and read nearly the same: deviations say too little there.
+    assert!(
+        n_within + 3 >= n_told,
+        "{n_within} of {n_told} within four deviations"
+    );
+    assert!(n_told >= 55, "{n_told} of 60 shapes told");
+}
+
+#[test]
+fn errors_are_as_large_as_is_said() {
+    let gel = FastGel::phystac().unwrap();
+    // Each frame by itself, to its end: errors of frames are independent.
+    let alone = InverseSettings {
+        correlated_s: 1e-3,
+        n_steps: 8,
+        ..settings()
+    };
+    let inverse = Inverse::of_fast_gel(&gel, &shapes()[..1], &Surfaces::new(), alone).unwrap();
+    let random = &mut stream(2, "presses of a test");
+    let mut over_deviation: [Vec<f64>; 4] = Default::default();
+    for _ in 0..150 {
+        let press = Press {
+            place_mm: DVec2::new(random.random_range(-10.0..10.0), random.random_range(-4.0..4.0)),
+            depth_mm: random.random_range(0.8..3.0),
+            spin_rad: 0.0,
+        };
+        let (readings_kpa, force_n) = read(0, &press);
+        let mut tracker = inverse.start();
+        let contact = tracker.update(1.0, &noisy(readings_kpa, random)).unwrap();
+        let error = contact.place_mm - press.place_mm;
+        let deviation = contact.place_deviation_mm;
+        over_deviation[0].push(error.x / deviation.x);
+        over_deviation[1].push(error.y / deviation.y);
+        over_deviation[2].push((contact.depth_mm - press.depth_mm) / contact.depth_deviation_mm);
+        over_deviation[3].push((contact.force_n - force_n) / contact.force_deviation_n);
+    }
+    for (number, errors) in over_deviation.iter().enumerate() {
+        let within = |deviations: f64| {
+            let n = errors.iter().filter(|error| error.abs() < deviations).count();
+            n as f64 / errors.len() as f64
+        };
+        assert!(
+            (0.55..0.85).contains(&within(1.0)),
+            "{number}: {} within one",
+            within(1.0)
+        );
+        assert!(within(2.0) > 0.88, "{number}: {} within two", within(2.0));
+    }
+}
+
+#[test]
+fn nothing_touches_an_untouched_sensor() {
+    let random = &mut stream(3, "noise of a test");
+    let mut tracker = KNOWN.start();
+    for _ in 0..2000 {
+        assert_eq!(tracker.update(0.001, &noisy([0.0; 8], random)), None);
+    }
+    let press = Press {
+        depth_mm: 1.0,
+        ..Press::default()
+    };
+    assert!(tracker.update(0.001, &read(0, &press).0).is_some());
+    assert_eq!(tracker.update(0.001, &noisy([0.0; 8], random)), None);
+}
+
+#[test]
+fn a_contact_that_slides_is_followed() {
+    let random = &mut stream(4, "noise of a test");
+    let mut tracker = KNOWN.start();
+    let mut farthest_mm: f64 = 0.0;
+    for frame in 0..1000 {
+        let at = f64::from(frame) / 1000.0;
+        let press = Press {
+            place_mm: DVec2::new(-8.0 + 16.0 * at, 3.0 - 6.0 * at),
+            depth_mm: 1.5 + at,
+            spin_rad: 0.0,
+        };
+        let contact = tracker.update(0.002, &noisy(read(0, &press).0, random)).unwrap();
+        if frame > 200 {
+            farthest_mm = farthest_mm.max(contact.place_mm.distance(press.place_mm));
+        }
+    }
+    assert!(farthest_mm < 1.5, "{farthest_mm} mm");
+}
+
+#[test]
+fn the_floor_is_highest_below_the_contact() {
+    let press = Press {
+        place_mm: DVec2::new(-3.0, 1.0),
+        depth_mm: 2.0,
+        spin_rad: 0.0,
+    };
+    let mut tracker = KNOWN.start();
+    let (readings_kpa, _) = read(0, &press);
+    for _ in 0..20 {
+        tracker.update(0.1, &readings_kpa);
+    }
+    let contact = tracker.update(0.1, &readings_kpa).unwrap();
+    let mut map = KNOWN.floor_map(0.5);
+    assert_eq!(map.n(), [68, 36]);
+    let floor_kpa = map.read(contact).to_vec();
+    let largest = (0..floor_kpa.len())
+        .max_by(|a, b| floor_kpa[*a].total_cmp(&floor_kpa[*b]))
+        .unwrap();
+    let at = map.place_mm(largest % 68, largest / 68);
+    assert!(at.distance(press.place_mm) < 1.0, "{at}");
+}
+
+#[test]
+fn what_cannot_be_is_an_error() {
+    let gel = FastGel::phystac().unwrap();
+    let new =
+        |shapes: &[KnownShape], settings| Inverse::of_fast_gel(&gel, shapes, &Surfaces::new(), settings);
+    assert_eq!(new(&[], settings()).unwrap_err(), InverseError::NoShape);
+    let silent = InverseSettings {
+        noise_kpa: 0.0,
+        ..settings()
+    };
+    let error = new(&shapes(), silent).unwrap_err().to_string();
+    assert!(error.contains("noise_kpa"), "{error}");
+}
