@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use digitac::{
-    BenchEstimate, Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale, Twin, evaluate,
-    pair, recalibrate, repeatability,
+    BenchEstimate, Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale,
+    Twin, evaluate, pair, recalibrate, repeatability,
 };
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};

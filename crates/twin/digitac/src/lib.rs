@@ -40,8 +40,8 @@ pub use bench_fit::{
 pub use cross_validation::{Bench, Judgement, judge};
 pub use error::DigitacError;
 pub use evaluation::{
-    Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale,
-    Score, evaluate, recalibrate, repeatability,
+    Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score,
+    evaluate, recalibrate, repeatability,
 };
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};

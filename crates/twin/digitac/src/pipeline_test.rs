@@ -344,7 +344,10 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
     let learned = &twin.gains().gain;
     for ((found, factor), learned) in found.adaptation.gain.iter().zip(factors).zip(learned) {
         let factor_found = found.value / learned;
-        assert!((factor_found / factor - 1.0).abs() < 0.05, "{factor_found}, truly {factor}");
+        assert!(
+            (factor_found / factor - 1.0).abs() < 0.05,
+            "{factor_found}, truly {factor}"
+        );
     }
     let pairs = pair(&other, &places, &tables, &found.bench, &PairSettings::default()).unwrap();
     let rest: Vec<usize> = (0..21).filter(|press| !used.contains(press)).collect();

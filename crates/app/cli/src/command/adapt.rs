@@ -118,7 +118,10 @@ fn table(found: &AdaptationCurve) -> String {
             "{} ({} data), {} presses that no twin saw; nearest taxel, frames in contact",
             found.sensor, found.provenance, found.judged_presses
         ),
-        format!("as learned         {:6.2} %", found.as_learned.nearest_in_contact_percent),
+        format!(
+            "as learned         {:6.2} %",
+            found.as_learned.nearest_in_contact_percent
+        ),
     ];
     lines.extend(found.points.iter().map(|point| {
         let error = &point.nearest_in_contact;

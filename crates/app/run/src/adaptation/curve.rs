@@ -172,7 +172,9 @@ impl AdaptationCurve {
         };
         let of_seeds = |point: &AdaptationPoint| -> Vec<f64> {
             let seeds = point.seeds.iter();
-            seeds.map(|seed| seed.figures.nearest_in_contact_percent).collect()
+            seeds
+                .map(|seed| seed.figures.nearest_in_contact_percent)
+                .collect()
         };
         let on_all = self.trained_on_all.nearest_in_contact_percent;
         let best = |point: &AdaptationPoint| of_seeds(point).into_iter().fold(f64::INFINITY, f64::min);
@@ -188,7 +190,12 @@ impl AdaptationCurve {
                 name: String::new(),
                 y_label: "error (% of largest reading)".to_owned(),
                 series: vec![
-                    series("adapted", &|point| point.nearest_in_contact.mean_percent, Ink::Twin, false),
+                    series(
+                        "adapted",
+                        &|point| point.nearest_in_contact.mean_percent,
+                        Ink::Twin,
+                        false,
+                    ),
                     series("best and worst choice", &best, Ink::Twin, true),
                     series("", &worst, Ink::Twin, true),
                     series(&trained, &|_| on_all, Ink::Text, false),

@@ -76,10 +76,16 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, progress: &dyn Progress) -> Result
     let adapted = gel.adapt(&used)?;
     let rest: Vec<usize> = all.into_iter().filter(|press| !used.contains(press)).collect();
     let taught = gel.judge(&adapted, &used)?;
-    let judged = (!rest.is_empty()).then(|| gel.judge(&adapted, &rest)).transpose()?;
-    let as_learned = (!rest.is_empty()).then(|| gel.judge_as_learned(&rest)).transpose()?;
+    let judged = (!rest.is_empty())
+        .then(|| gel.judge(&adapted, &rest))
+        .transpose()?;
+    let as_learned = (!rest.is_empty())
+        .then(|| gel.judge_as_learned(&rest))
+        .transpose()?;
     let origin = Origin {
-        sensor: plan.sensor.map_or_else(|| record.sensor.clone(), |sensor| sensor.text.clone()),
+        sensor: plan
+            .sensor
+            .map_or_else(|| record.sensor.clone(), |sensor| sensor.text.clone()),
         simulation: record.simulation.clone(),
         bench: adapted.bench.clone(),
         settings: record.settings.clone(),

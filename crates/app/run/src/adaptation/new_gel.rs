@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use digitac::{
-    Adapted, BenchEstimate, Estimate, Evaluation, Model, Places, Twin, Variant, adapt, choose_presses, pair,
+    Adapted, BenchEstimate, Estimate, Evaluation, Model, Places, Twin, Variant, adapt, choose_presses,
 };
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
@@ -78,20 +78,15 @@ impl<'a> NewGel<'a> {
         n_presses: usize,
         seed: u64,
     ) -> Result<Vec<usize>, RunError> {
-        let settings = digitac::PairSettings::default();
-        let presses = pair(self.recording, &self.places, &self.tables, &self.bench, &settings)?;
-        let features: Vec<_> = presses.iter().map(|press| &press.features).collect();
-        let mut predicted_kpa = self.twin.predict(&features);
-        for row in predicted_kpa.iter_mut().flatten() {
-            self.left_out.iter().for_each(|&taxel| row[taxel] = 0.0);
-        }
         Ok(choose_presses(
             self.recording,
+            (&self.places, &self.tables),
             candidates,
-            &predicted_kpa,
+            (self.twin, &self.bench),
+            &self.left_out,
             n_presses,
             seed,
-        ))
+        )?)
     }
 
     /// The twin and its bench, adapted with some presses.

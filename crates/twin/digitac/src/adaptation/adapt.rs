@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
 
-use crate::bench_fit::{BenchEstimate, Estimate, Places, features, fit_near_learned_bench};
+use crate::bench_fit::{BenchEstimate, Estimate, LearnedBench, Places, features};
 use crate::features::Sample;
 use crate::physical_fit::Posterior;
 use crate::{DigitacError, Features, Gains, Twin, Variant};
@@ -73,15 +73,21 @@ pub fn adapt(
             found: "none".into(),
         });
     }
-    let (learned, pressed) = ((bench, twin.gains()), (places, tables));
+    let learned = LearnedBench {
+        recording,
+        places,
+        tables,
+        bench,
+        gains: twin.gains(),
+        left_out,
+    };
     let chosen: BTreeSet<usize> = used.iter().copied().collect();
-    let (bench, posterior) = fit_near_learned_bench(recording, pressed, &chosen, learned, left_out)?;
+    let (bench, posterior) = learned.fit(&chosen)?;
     let features = features(recording, places, tables, &bench)?;
     let with = twin.adapted(posterior.gains.clone(), true);
     let without = twin.adapted(posterior.gains.clone(), false);
     let deviation_kpa = |twin: &Twin| deviation_kpa(twin, recording, &features, &chosen, left_out);
-    let keeps_correction =
-        twin.variant().has_perceptron() && deviation_kpa(&with) < deviation_kpa(&without);
+    let keeps_correction = twin.variant().has_perceptron() && deviation_kpa(&with) < deviation_kpa(&without);
     let adaptation = Adaptation {
         used: used.to_vec(),
         contact_offset_mm: bench.contact_offset_mm.clone(),

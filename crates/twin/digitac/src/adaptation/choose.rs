@@ -1,115 +1,89 @@
-//! The few presses that a twin is adapted with.
+//! The few presses that a twin is adapted with: those that tell the most.
 //!
-//! Poses and the twin that is there choose; what was measured does not. A contact height shows in presses of its own file only, and a gain in
-//! presses near its own taxel: so presses are spread over files first, and over taxels then.
+//! Poses and the twin that is there choose; what was measured does not. The presses that are chosen are to leave as little as they can unknown of
+//! what all presses would read: each next one is the one after which the sum of the variances of all predictions is the smallest (I-optimal design,
+//! Atkinson, Donev and Tobias 2007, chapter 10; one after the other). That spreads them over files, whose contact heights differ, over taxels, and
+//! over distances from these.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
-use rand::Rng;
+use rand::seq::SliceRandom;
+use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
 
-use crate::seed;
+use crate::bench_fit::{BenchEstimate, LearnedBench, Places, features};
+use crate::numerics::inverse_symmetric;
+use crate::{DigitacError, Twin, seed};
 
-/// A press is felt at least this much of what the most felt one of its file is, as the twin says.
-const FELT: f64 = 0.5;
+/// Of more candidates, chance takes so many.
+const MAX_CANDIDATES: usize = 120;
 
-/// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. `predicted_kpa` is what the
-/// twin would read along each press of the recording; `[n_presses][n_frames][n_taxels]`.
+/// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. At each step chance leaves half of
+/// the candidates aside. `tables` answer `places.requests`; `bench` is what was found where the twin was trained; taxels in `left_out` do not count.
 ///
-/// Each is one of the file that has the fewest so far, at the taxel that has the fewest so far; chance decides among equals. Presses that the
-/// twin would feel less than half as much as the most of their file come last.
-#[must_use]
+/// # Errors
+/// Tables that do not go with the places; damaged presses.
 pub fn choose_presses(
     recording: &Recording,
+    (places, tables): (&Places, &[DepthTable]),
     candidates: &[usize],
-    predicted_kpa: &[Vec<Vec<f64>>],
+    (twin, bench): (&Twin, &BenchEstimate),
+    left_out: &BTreeSet<usize>,
     n_presses: usize,
     seed_number: u64,
-) -> Vec<usize> {
+) -> Result<Vec<usize>, DigitacError> {
     let mut random = seed::stream(seed_number, "adaptation");
-    let mut most_kpa: BTreeMap<&str, f64> = BTreeMap::new();
-    let mut left: Vec<Candidate<'_>> = Vec::new();
-    for &press in candidates {
-        let file = &recording.presses[press].mounting[..];
-        let (taxel, felt_kpa) = nearest(&predicted_kpa[press]);
-        let most = most_kpa.entry(file).or_insert(0.0);
-        *most = most.max(felt_kpa);
-        left.push(Candidate {
-            press,
-            file,
-            taxel,
-            felt_kpa,
-            chance: random.random(),
-        });
+    let mut left = candidates.to_vec();
+    left.shuffle(&mut random);
+    left.truncate(MAX_CANDIDATES.max(n_presses));
+    let features = features(recording, places, tables, bench)?;
+    let predicted_kpa = twin.predict(&features.iter().collect::<Vec<_>>());
+    let learned = LearnedBench {
+        recording,
+        places,
+        tables,
+        bench,
+        gains: twin.gains(),
+        left_out,
+    };
+    let (told, known) = learned.information(&left.iter().copied().collect(), &predicted_kpa)?;
+    let n = known.len();
+    let mut all = vec![0.0; n * n];
+    told.values().for_each(|matrix| add(&mut all, matrix));
+    let mut sum = vec![0.0; n * n];
+    for (i, known) in known.iter().enumerate() {
+        sum[i * n + i] = *known;
     }
-    let mut of_file: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut of_taxel: BTreeMap<usize, usize> = BTreeMap::new();
+    let is_free: Vec<bool> = known.iter().map(|known| *known > 0.0).collect();
+    let unknown_after = |sum: &[f64], press: &usize| {
+        let mut sum = sum.to_vec();
+        add(&mut sum, &told[press]);
+        trace_of_product(&inverse_symmetric(&sum, &is_free), &all, n)
+    };
     let mut chosen = Vec::new();
-    while chosen.len() < n_presses {
-        let rank = |candidate: &Candidate<'_>| {
-            (
-                candidate.felt_kpa < FELT * most_kpa[candidate.file],
-                of_file.get(candidate.file).copied().unwrap_or(0),
-                of_taxel.get(&candidate.taxel).copied().unwrap_or(0),
-                candidate.chance,
-            )
-        };
-        let ranked = left.iter().enumerate();
-        let Some((index, _)) = ranked.min_by_key(|(_, candidate)| rank(candidate)) else {
+    while chosen.len() < n_presses && !left.is_empty() {
+        left.shuffle(&mut random);
+        let considered = left[..left.len().div_ceil(2)].iter().enumerate();
+        let unknown = considered.map(|(index, press)| (index, unknown_after(&sum, press)));
+        let Some((index, _)) = unknown.min_by(|a, b| a.1.total_cmp(&b.1)) else {
             break;
         };
-        let next = left.swap_remove(index);
-        *of_file.entry(next.file).or_insert(0) += 1;
-        *of_taxel.entry(next.taxel).or_insert(0) += 1;
-        chosen.push(next.press);
+        let press = left.swap_remove(index);
+        add(&mut sum, &told[&press]);
+        chosen.push(press);
     }
-    chosen
+    Ok(chosen)
 }
 
-struct Candidate<'a> {
-    press: usize,
-    file: &'a str,
-    /// The taxel that would read the most.
-    taxel: usize,
-    felt_kpa: f64,
-    chance: u64,
+fn add(to: &mut [f64], matrix: &[f64]) {
+    to.iter_mut().zip(matrix).for_each(|(to, value)| *to += value);
 }
 
-/// The taxel with the largest reading of a press, and that reading.
-fn nearest(readings_kpa: &[Vec<f64>]) -> (usize, f64) {
-    let readings = readings_kpa.iter().flat_map(|row| row.iter().copied().enumerate());
-    readings.fold((0, 0.0), |most, reading| {
-        if reading.1 > most.1 { reading } else { most }
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-    use crate::synthetic::Truth;
-
-    #[test]
-    fn presses_are_spread_over_files_then_taxels_and_the_seed_decides() {
-        let recording = Truth::new().recording(21);
-        let predicted_kpa: Vec<Vec<Vec<f64>>> = recording
-            .presses
-            .iter()
-            .map(|press| press.taxels_kpa.clone())
-            .collect();
-        let all: Vec<usize> = (0..recording.presses.len()).collect();
-        let choose = |n_presses, seed| choose_presses(&recording, &all, &predicted_kpa, n_presses, seed);
-        let chosen = choose(4, 1);
-        let files: BTreeSet<&str> = chosen
-            .iter()
-            .map(|&press| &recording.presses[press].mounting[..])
-            .collect();
-        assert_eq!((chosen.len(), files.len()), (4, 2));
-        let taxels: BTreeSet<usize> = chosen.iter().map(|&press| nearest(&predicted_kpa[press]).0).collect();
-        assert!(taxels.len() >= 3, "{taxels:?}");
-        assert_eq!(chosen, choose(4, 1));
-        assert_ne!(chosen, choose(4, 2));
-        assert_eq!(choose(1000, 1).len(), all.len());
-    }
+/// Of a symmetric matrix with one of which the lower triangle counts.
+fn trace_of_product(symmetric: &[f64], lower: &[f64], n: usize) -> f64 {
+    let row = |i: usize| -> f64 {
+        let below: f64 = (0..i).map(|j| symmetric[i * n + j] * lower[i * n + j]).sum();
+        2.0 * below + symmetric[i * n + i] * lower[i * n + i]
+    };
+    (0..n).map(row).sum()
 }

@@ -12,7 +12,7 @@ mod smooth_factor;
 
 pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;
-pub(crate) use learned::fit_near_learned_bench;
+pub(crate) use learned::LearnedBench;
 pub(crate) use places::deepest_pose;
 pub use places::{PlaceSettings, Places};
 pub use port_correction::PortCorrection;

@@ -6,8 +6,8 @@ use std::ops::Range;
 use twintac_depth_table::DepthCurves;
 use twintac_recording::{Control, Press};
 
-use super::smooth_factor::N_TERMS;
 use super::learned::BenchWidths;
+use super::smooth_factor::N_TERMS;
 use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, SmoothFactor, deepest_pose};
 use crate::DigitacError;
 use crate::numerics::{Unknown, median};
@@ -153,7 +153,10 @@ impl<'a> BenchProblem<'a> {
             let shifts = self.axes.iter().map(|axis| port.shift_mm[*axis]);
             values.extend(shifts.map(|shift_mm| (shift_mm, widths.port_mm)));
         }
-        let factors = learned.smooth_factor.iter().flat_map(|factor| &factor.coefficients);
+        let factors = learned
+            .smooth_factor
+            .iter()
+            .flat_map(|factor| &factor.coefficients);
         values.extend(factors.map(|coefficient| (*coefficient, widths.factor)));
         values
     }

@@ -129,21 +129,7 @@ pub(crate) fn fit_near_learned(
     prior: Prior,
     left_out: &BTreeSet<usize>,
 ) -> Result<Posterior, DigitacError> {
-    let mut unknowns = elastic.unknowns();
-    let largest_kpa = series.per_kpa.iter().filter(|p| **p > 0.0).map(|p| p.recip());
-    let layout = Layout {
-        n_elastic: unknowns.len(),
-        n_constants: learned.time_constants_s.len(),
-        largest_kpa: largest_kpa.fold(0.0, f64::max),
-        usual_gain: usual_gain(learned, left_out),
-    };
-    let model = BarometerModel {
-        time_constants_s: learned.time_constants_s.clone(),
-        has_port_law: learned.stiffening_per_kpa.iter().any(|growth| *growth != 0.0),
-    };
-    let mut barometers = layout.unknowns(learned, &model);
-    layout.pull(&mut barometers, prior);
-    unknowns.extend(barometers);
+    let (layout, unknowns) = near_learned(elastic, series, learned, prior, left_out);
     let problem = Problem {
         elastic,
         series,
@@ -163,6 +149,68 @@ pub(crate) fn fit_near_learned(
         layout,
         x,
     })
+}
+
+/// How much each press of a series would say of the unknowns, at the values that were learned: matrices, row by row, of which the lower triangle
+/// counts; `[n_presses][n * n]`. Beside them what is known beforehand of each unknown; `[n]`.
+pub(crate) fn information(
+    elastic: &dyn Elastic,
+    series: &Series,
+    learned: &Gains,
+    prior: Prior,
+    left_out: &BTreeSet<usize>,
+) -> Result<(Vec<Vec<f64>>, Vec<f64>), DigitacError> {
+    let (layout, unknowns) = near_learned(elastic, series, learned, prior, left_out);
+    let problem = Problem {
+        elastic,
+        series,
+        left_out,
+        layout: &layout,
+    };
+    let x: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
+    let n = x.len();
+    let pressures = elastic.pressures(&x[..layout.n_elastic], true)?;
+    let fadings = problem.fadings(learned);
+    let mut matrices = vec![vec![0.0; n * n]; series.presses.len()];
+    let kept = (0..series.weights.len()).filter(|k| !left_out.contains(k));
+    for k in kept {
+        let pass = problem.pass(k, &pressures.kpa[k], learned, &fadings);
+        let columns = problem.columns(k, &pass, &pressures, &x, &fadings);
+        for (matrix, press) in matrices.iter_mut().zip(&series.presses) {
+            add_products(&columns, &series.weights[k], press, matrix, n);
+        }
+    }
+    for matrix in &mut matrices {
+        Prior::information(matrix, series.presses.len());
+    }
+    let known = unknowns.iter().map(|unknown| prior.known(unknown)).collect();
+    Ok((matrices, known))
+}
+
+/// Layout and unknowns of a fit near learned values.
+fn near_learned(
+    elastic: &dyn Elastic,
+    series: &Series,
+    learned: &Gains,
+    prior: Prior,
+    left_out: &BTreeSet<usize>,
+) -> (Layout, Vec<Unknown>) {
+    let mut unknowns = elastic.unknowns();
+    let largest_kpa = series.per_kpa.iter().filter(|p| **p > 0.0).map(|p| p.recip());
+    let layout = Layout {
+        n_elastic: unknowns.len(),
+        n_constants: learned.time_constants_s.len(),
+        largest_kpa: largest_kpa.fold(0.0, f64::max),
+        usual_gain: usual_gain(learned, left_out),
+    };
+    let model = BarometerModel {
+        time_constants_s: learned.time_constants_s.clone(),
+        has_port_law: learned.stiffening_per_kpa.iter().any(|growth| *growth != 0.0),
+    };
+    let mut barometers = layout.unknowns(learned, &model);
+    layout.pull(&mut barometers, prior);
+    unknowns.extend(barometers);
+    (layout, unknowns)
 }
 
 /// Nonnegative gains and shares that fit best at the time constants, by least absolute deviations.
@@ -580,6 +628,25 @@ impl Problem<'_> {
     }
 }
 
+/// Adds the weighted products of columns over some frames.
+fn add_products(columns: &[Column], weights: &[f64], frames: &Range<usize>, matrix: &mut [f64], n: usize) {
+    for (a, column) in columns.iter().enumerate() {
+        for other in &columns[..=a] {
+            let start = frames.start.max(column.frames.start).max(other.frames.start);
+            let end = frames.end.min(column.frames.end).min(other.frames.end);
+            let value = |column: &Column, frame: usize| column.values[frame - column.frames.start];
+            let sum: f64 = (start..end)
+                .map(|frame| weights[frame] * value(column, frame) * value(other, frame))
+                .sum();
+            let (i, j) = (
+                column.unknown.max(other.unknown),
+                column.unknown.min(other.unknown),
+            );
+            matrix[i * n + j] += sum;
+        }
+    }
+}
+
 /// Derivative of a taxel's deviations by one unknown, over some frames; zero elsewhere.
 #[derive(Clone)]
 struct Column {
@@ -724,7 +791,9 @@ mod tests {
             left_out: &BTreeSet::new(),
             layout: &layout,
         };
-        let x = [0.1, -1.2, 1.5, 0.4, 0.05, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2];
+        let x = [
+            0.1, -1.2, 1.5, 0.4, 0.05, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2,
+        ];
         let gradient = problem.near(&x).unwrap().gradient;
         for (i, slope) in gradient.iter().enumerate() {
             let moved = |by: f64| {

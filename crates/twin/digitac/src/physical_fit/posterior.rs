@@ -27,7 +27,12 @@ impl Posterior {
     /// The standard deviation of what follows from the unknowns of the port pressures and from the barometers.
     pub(crate) fn uncertainty(&self, value: &dyn Fn(&[f64], &Gains) -> f64) -> f64 {
         let n = self.x.len();
-        let at = |x: &[f64]| value(self.layout.of_elastic(x), &self.layout.gains(x, self.gains.gain.len()));
+        let at = |x: &[f64]| {
+            value(
+                self.layout.of_elastic(x),
+                &self.layout.gains(x, self.gains.gain.len()),
+            )
+        };
         let slope = |i: usize| {
             let moved = |by: f64| {
                 let mut x = self.x.clone();

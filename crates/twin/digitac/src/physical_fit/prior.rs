@@ -31,6 +31,18 @@ impl Prior {
         unknown.pull = 0.5 * self.cost / width.powi(2);
     }
 
+    /// How much one press says of the unknowns, from its part of the cost's curvature for deviations of one, where the weights of `n_presses` add up
+    /// to one.
+    pub(crate) fn information(curvature: &mut [f64], n_presses: usize) {
+        let of_press = READINGS_OF_PRESS * n_presses as f64 / USUAL_DEVIATION.powi(2);
+        curvature.iter_mut().for_each(|value| *value *= of_press);
+    }
+
+    /// How much is known of an unknown beforehand.
+    pub(crate) fn known(&self, unknown: &Unknown) -> f64 {
+        2.0 * unknown.pull / self.cost
+    }
+
     /// What is left unknown, from the inverse of the cost's curvature.
     pub(crate) fn covariance(&self, mut inverse_curvature: Vec<f64>) -> Vec<f64> {
         inverse_curvature.iter_mut().for_each(|value| *value *= self.cost);
@@ -57,7 +69,7 @@ impl BarometerWidths {
         common_growth: 0.3,
         own_growth: 0.15,
         common_ln_gain: 1.0,
-        own_ln_gain: 0.4,
+        own_ln_gain: 0.2,
         share: 0.15,
     };
 }
