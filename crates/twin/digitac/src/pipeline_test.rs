@@ -373,6 +373,41 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
 }
 
 #[test]
+fn presses_to_adapt_with_are_spread_over_files_and_taxels() {
+    let truth = Truth::new();
+    let made = make(&truth, 21);
+    let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 1))
+        .remove(0)
+        .twin;
+    let other = truth.recording(21);
+    let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
+    let places = places.at_bench(&made.bench);
+    let tables = Formula.depth_tables(&places.requests).unwrap();
+    let all: Vec<usize> = (0..other.presses.len()).collect();
+    let choose = |n_presses, seed| {
+        let (pressed, learned) = ((&places, &tables[..]), (&twin, &made.bench));
+        choose_presses(&other, pressed, &all, learned, &BTreeSet::new(), n_presses, seed).unwrap()
+    };
+    let chosen = choose(5, 1);
+    let files: BTreeSet<&str> = chosen
+        .iter()
+        .map(|&press| &other.presses[press].mounting[..])
+        .collect();
+    assert_eq!((chosen.len(), files.len()), (5, 2));
+    let x_mm = |press: usize| other.presses[press].gel_from_indenter[0].position_mm.x;
+    let spread_mm = |side: f64| {
+        chosen
+            .iter()
+            .map(|&press| side * x_mm(press))
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    assert!(spread_mm(1.0) + spread_mm(-1.0) > 8.0, "{chosen:?}");
+    assert_eq!(chosen, choose(5, 1));
+    assert_ne!(choose(20, 1), choose(20, 2));
+    assert_eq!(choose(1000, 1).len(), all.len());
+}
+
+#[test]
 fn what_is_held_out_is_judged_by_what_teaches() {
     let mut truth = Truth::new();
     truth.gains.memory = vec![vec![0.2, 0.1]; 4];

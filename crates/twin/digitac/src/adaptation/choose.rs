@@ -17,8 +17,10 @@ use crate::{DigitacError, Twin, seed};
 
 /// Of more candidates, chance takes so many.
 const MAX_CANDIDATES: usize = 120;
+/// At each step chance leaves one in so many aside.
+const ASIDE: usize = 5;
 
-/// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. At each step chance leaves half of
+/// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. At each step chance leaves a fifth of
 /// the candidates aside. `tables` answer `places.requests`; `bench` is what was found where the twin was trained; taxels in `left_out` do not count.
 ///
 /// # Errors
@@ -63,7 +65,7 @@ pub fn choose_presses(
     let mut chosen = Vec::new();
     while chosen.len() < n_presses && !left.is_empty() {
         left.shuffle(&mut random);
-        let considered = left[..left.len().div_ceil(2)].iter().enumerate();
+        let considered = left[..left.len() - left.len() / ASIDE].iter().enumerate();
         let unknown = considered.map(|(index, press)| (index, unknown_after(&sum, press)));
         let Some((index, _)) = unknown.min_by(|a, b| a.1.total_cmp(&b.1)) else {
             break;

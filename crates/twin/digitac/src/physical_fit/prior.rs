@@ -65,7 +65,7 @@ pub(super) struct BarometerWidths {
 impl BarometerWidths {
     /// Chips of one gel differ by up to a factor of 2.8 in gain, gels by more; relaxation differs from chip to chip.
     pub(super) const USUAL: Self = Self {
-        ln_time_constant: 0.3,
+        ln_time_constant: 0.6,
         common_growth: 0.3,
         own_growth: 0.15,
         common_ln_gain: 1.0,
