@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Train(Train),
     /// Evaluate a twin on recordings.
     Evaluate(Evaluate),
+    /// Adapt a trained twin to another sensor of the same kind with a few presses.
+    Adapt(Adapt),
     /// Judge twins of a run's recordings for several seeds and ways to hold presses out.
     CrossValidate(CrossValidate),
     /// Print what a sensor would read along a path or a protocol, by its trained twin.
@@ -380,11 +382,46 @@ pub(crate) struct Evaluate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
-    /// Fit gains and one contact height to the first N presses that are felt well, which are not scored: for another sensor of the same
-    /// description [default: contact heights of new files alone].
-    #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) adapt: Option<u64>,
     /// Print the figures as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Gains, port law, memory, contact heights and stiffness are fitted at once, and pulled to what was learned: what few presses cannot tell
+/// stays. Presses are chosen by their poses: spread over files, then over taxels; chance decides among equals. The rest judge.
+#[derive(Args, Debug)]
+pub(crate) struct Adapt {
+    /// Folder of the model to start from: a run's `model`.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) model: PathBuf,
+    /// Presses of the new sensor: CSV files, presses.parquet files, or patterns.
+    #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "run")]
+    pub(crate) recordings: Vec<String>,
+    /// Description of the new sensor (TOML) [default: the model's].
+    #[arg(long, value_name = "FILE", conflicts_with = "run")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// How to read CSV recordings (TOML) [default: the file that --sensor names].
+    #[arg(long, value_name = "FILE", conflicts_with = "run")]
+    pub(crate) import: Option<PathBuf>,
+    /// How many presses to adapt with.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "curve")]
+    pub(crate) presses: u64,
+    /// Seed of what the choice of presses leaves to chance.
+    #[arg(long, value_name = "S", default_value_t = 1, conflicts_with = "curve")]
+    pub(crate) seed: u64,
+    /// Folder to write to: the adapted model is its `model`.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// With --run: errors over these numbers of presses.
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', requires = "run", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) curve: Vec<u64>,
+    /// Folder of an evaluated run of the new sensor: its teaching presses adapt, its held-out presses judge, beside its own twin.
+    #[arg(long, value_name = "DIR", requires = "curve", conflicts_with = "recordings")]
+    pub(crate) run: Option<PathBuf>,
+    /// With --curve: how many times presses are chosen, with seeds from 1 on.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), requires = "curve")]
+    pub(crate) seeds: u64,
+    /// Print everything as JSON.
     #[arg(long)]
     pub(crate) json: bool,
 }

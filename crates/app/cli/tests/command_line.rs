@@ -43,6 +43,7 @@ fn help_on_each_command() {
         "align",
         "train",
         "evaluate",
+        "adapt",
         "cross-validate",
         "predict",
         "report",

@@ -140,6 +140,42 @@ impl Files {
         assert!(run.join("cross_validation/errors.png").exists());
     }
 
+    /// It is adapted with two presses of another recording; the third judges. Presses that taught it are refused.
+    fn adapt(&self) {
+        let root = self.folder.path().to_str().unwrap();
+        let [reality, settings] = ["reality.toml", "settings.toml"].map(|name| format!("{root}/{name}"));
+        let protocol = self.write("three.toml", &PROTOCOL.replace("count = 10", "count = 3"));
+        let (run, out) = (format!("{root}/other"), format!("{root}/adapted"));
+        let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];
+        let of_seed = ["--seed", "2", "--settings", &settings, "--out", &run];
+        done(&[&record[..], &of_seed].concat());
+        let model = format!("{root}/run/model");
+        let adapt = |presses: &str, out: &str| {
+            let adapt = ["adapt", "--model", &model, "--recordings", presses, "--out", out];
+            twintac(&[&adapt[..], &["--presses", "2", "--json"]].concat())
+        };
+        let output = adapt(&format!("{run}/recordings/presses.parquet"), &out);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(found["provenance"], "emulated");
+        assert_eq!(found["judged_presses"], 1);
+        assert_eq!(found["adaptation"]["used"].as_array().unwrap().len(), 2);
+        for gain in found["adaptation"]["gain"].as_array().unwrap() {
+            assert!(gain["value"].as_f64().unwrap() > 0.0 && gain["uncertainty"].as_f64().unwrap() > 0.0);
+        }
+        assert!(found["twin"]["all_percent"].as_f64().unwrap() < 20.0, "{found}");
+        let path = self.write("path.toml", PATH);
+        done(&["predict", "--model", &format!("{out}/model"), "--path", &path]);
+
+        let refused = format!("{root}/refused");
+        let output = adapt(&format!("{root}/run/recordings/presses.parquet"), &refused);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("10 of 10 presses taught this model"), "{said}");
+        assert!(!Path::new(&refused).exists());
+    }
+
     /// What is printed as JSON.
     fn predicted(&self, arguments: &[&str]) -> Value {
         let output = self.predict(&[arguments, &["--json"]].concat());
@@ -188,6 +224,7 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let files = Files::with_twin();
     files.refuse_what_taught();
     files.judge_again();
+    files.adapt();
     let [path, protocol, ball] = [("path.toml", PATH), ("one.toml", ONE_PRESS), ("ball.toml", BALL)]
         .map(|(name, text)| files.write(name, text));
 

@@ -95,7 +95,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    fn of(values: &[f64]) -> Self {
+    pub(crate) fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean_percent = values.iter().sum::<f64>() / n.max(1.0);
         let squares: f64 = values.iter().map(|v| (v - mean_percent).powi(2)).sum();

@@ -35,10 +35,11 @@
 //!
 //! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`] hears. What is wrong is a [`RunError`].
 //!
-//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, a [`Predictor`] takes one along a path or a protocol, [`calibration`] fits a gel's material, [`characterization`] reads
+//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`adapt_model`] adapts one to another sensor, a [`Predictor`] takes one along a path or a protocol, [`calibration`] fits a gel's material, [`characterization`] reads
 //! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
 //! out, [`export`](mod@export) makes tables of logs.
 
+mod adaptation;
 pub mod bench;
 pub mod built_in;
 mod cache;
@@ -68,6 +69,9 @@ pub mod simulated;
 mod stages;
 mod unseen;
 
+pub use adaptation::{
+    AdaptationCurve, AdaptationPlan, AdaptationPoint, AdaptedModel, CurvePlan, adapt_model, adaptation_curve,
+};
 pub use caller::Caller;
 pub use cross_validation::{CrossValidated, CrossValidation, CrossValidationPlan, OfSeed, Spread, Without};
 pub use digitac::HeldOut;

@@ -1,6 +1,7 @@
 //! A trained twin's folder, and the gel that it was trained with.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use digitac::Model;
 use twintac_simulate::{Gel, SimulateSettings};
@@ -9,9 +10,16 @@ use crate::{RunError, SensorFile};
 
 /// The gel of a model's sensor, simulated as it was for training.
 pub(crate) fn gel_of(model: &Model, folder: &Path) -> Result<Gel, RunError> {
-    let path = folder.join("twin.json");
-    let sensor = SensorFile::parse(&path, &model.record.sensor)?.sensor;
-    let settings: SimulateSettings = serde_json::from_value(model.record.simulation.clone())
-        .map_err(|source| RunError::Damaged { path, source })?;
-    Ok(Gel::new(sensor, settings))
+    let sensor = SensorFile::parse(&folder.join("twin.json"), &model.record.sensor)?;
+    gel_like(model, folder, &sensor)
+}
+
+/// The gel of another sensor, simulated in the same way.
+pub(crate) fn gel_like(model: &Model, folder: &Path, sensor: &SensorFile) -> Result<Gel, RunError> {
+    let settings: SimulateSettings =
+        serde_json::from_value(model.record.simulation.clone()).map_err(|source| RunError::Damaged {
+            path: folder.join("twin.json"),
+            source,
+        })?;
+    Ok(Gel::new(Arc::clone(&sensor.sensor), settings))
 }

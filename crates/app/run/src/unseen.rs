@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use digitac::{
-    Adaptation, Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale, Twin,
-    adapt, evaluate, pair, recalibrate, repeatability,
+    BenchEstimate, Estimate, Evaluation, Model, ModelRecord, Places, Recalibration, Repeatability, Scale,
+    Twin, evaluate, pair, recalibrate, repeatability,
 };
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
@@ -36,7 +36,7 @@ pub struct UnseenEvaluation {
     pub variant: String,
     /// Presses that were scored.
     pub presses: usize,
-    /// Errors after each new file's contact height, or the adaptation, was fitted to its first presses, which are not scored.
+    /// Errors after each new file's contact height was fitted to its first presses, which are not scored.
     #[serde(flatten)]
     pub twin: TwinFigures,
     /// Errors on the same presses with contact heights as at training: what the twin says without having touched the gel once.
@@ -45,66 +45,50 @@ pub struct UnseenEvaluation {
     pub baselines: BaselineFigures,
     /// How well the presses themselves repeat.
     pub repeatability: Option<Figures>,
-    /// Contact heights of files that the model had not seen; none if it was adapted.
+    /// Contact heights of files that the model had not seen.
     pub contact: Vec<Recalibration>,
-    /// What was adapted to the sensor of the recordings, if that was asked for.
-    pub adaptation: Option<Adaptation>,
 }
 
 /// Judges a model on other recordings of its sensor: simulates their places, fits each new file's contact height to its first presses,
-/// and scores the rest. With `adapt_with` presses, gains and one contact height are fitted to the first ones instead: for another sensor of
-/// the same description.
+/// and scores the rest.
 ///
 /// # Errors
-/// A model that cannot be read, or that reads other taxels; too few presses to adapt with; presses that taught the model; a place that cannot be pressed.
+/// A model that cannot be read, or that reads other taxels; presses that taught the model; a place that cannot be pressed.
 pub fn evaluate_elsewhere(
     model_folder: &Path,
     recording: &Recording,
-    adapt_with: Option<usize>,
     progress: &dyn Progress,
 ) -> Result<UnseenEvaluation, RunError> {
     let model = Model::load(model_folder)?;
     let record = &model.record;
-    if recording.taxels != record.taxels {
-        return Err(RunError::Input(format!(
-            "the model reads taxels {:?}, the recordings have {:?}",
-            record.taxels, recording.taxels
-        )));
-    }
+    refuse_other_taxels(recording, record)?;
     refuse_known(recording, record)?;
     let gel = gel_of(&model, model_folder)?;
     let left_out = left_out(gel.sensor());
-    let (places, tables) = simulate(&gel, recording, &model, progress)?;
+    let folder = tempfile::tempdir().map_err(RunError::file(
+        "making",
+        Path::new("a temporary folder for simulations"),
+    ))?;
+    let (places, tables) = simulate(&gel, recording, &record.bench, folder.path(), progress)?;
     let pressed = Pressed {
         recording,
         places: &places,
         tables: &tables,
         left_out: &left_out,
     };
-    let adaptation = match adapt_with {
-        Some(n_presses) => Some(pressed.adaptation(&model, n_presses)?),
-        None => None,
-    };
-    let mut contact = Vec::new();
-    let (twin, bench) = if let Some(adaptation) = &adaptation {
-        adaptation.apply(&model.twin, &record.bench)
-    } else {
-        contact = pressed.contact_heights(&model)?;
-        let mut bench = record.bench.clone();
-        let heights = contact.iter();
-        bench
-            .contact_offset_mm
-            .extend(heights.map(|found| (found.file.clone(), found.contact_offset_mm)));
-        (model.twin.clone(), bench)
-    };
-    let used = contact.iter().map(|found| &found.used);
-    let spent: BTreeSet<usize> = used
-        .chain(adaptation.iter().map(|found| &found.used))
-        .flatten()
-        .copied()
+    let contact = pressed.contact_heights(&model)?;
+    let mut bench = record.bench.clone();
+    let heights = contact.iter();
+    bench
+        .contact_offset_mm
+        .extend(heights.map(|found| (found.file.clone(), found.contact_offset_mm)));
+    let used = contact.iter().flat_map(|found| &found.used);
+    let spent: BTreeSet<usize> = used.copied().collect();
+    let scored: Vec<usize> = (0..recording.presses.len())
+        .filter(|index| !spent.contains(index))
         .collect();
-    let (evaluation, repeats) = pressed.judge(&twin, &bench, &spent)?;
-    let (uncalibrated, _) = pressed.judge(&model.twin, &record.bench, &spent)?;
+    let (evaluation, repeats) = pressed.judge(&model.twin, &bench, &scored)?;
+    let (uncalibrated, _) = pressed.judge(&model.twin, &record.bench, &scored)?;
     Ok(UnseenEvaluation {
         provenance: recording.provenance,
         definition: evaluation.twin.definition.clone(),
@@ -116,12 +100,22 @@ pub fn evaluate_elsewhere(
         baselines: baselines(&evaluation),
         repeatability: metrics::repeatability(repeats.as_ref()),
         contact,
-        adaptation,
     })
 }
 
+/// A model reads the taxels that it was trained with.
+pub(crate) fn refuse_other_taxels(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
+    if recording.taxels == record.taxels {
+        return Ok(());
+    }
+    Err(RunError::Input(format!(
+        "the model reads taxels {:?}, the recordings have {:?}",
+        record.taxels, recording.taxels
+    )))
+}
+
 /// Presses that taught a model are not unseen.
-fn refuse_known(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
+pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
     let known: Vec<&Press> = recording
         .presses
         .iter()
@@ -139,31 +133,27 @@ fn refuse_known(recording: &Recording, record: &ModelRecord) -> Result<(), RunEr
     )))
 }
 
-/// A table over depth for each place that a recording presses.
-fn simulate(
+/// A table over depth for each place that a recording presses; tables are kept in a folder.
+pub(crate) fn simulate(
     gel: &Gel,
     recording: &Recording,
-    model: &Model,
+    bench: &BenchEstimate,
+    folder: &Path,
     progress: &dyn Progress,
 ) -> Result<(Places, Vec<DepthTable>), RunError> {
-    let folder = tempfile::tempdir().map_err(RunError::file(
-        "making",
-        Path::new("a temporary folder for simulations"),
-    ))?;
     let _work = Work::start(progress, "simulating", 0);
-    let store = DepthTableStore::new(gel, folder.path().to_owned(), progress);
-    let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?;
-    let places = places.at_bench(&model.record.bench);
+    let store = DepthTableStore::new(gel, folder.to_owned(), progress);
+    let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?.at_bench(bench);
     let tables = store.depth_tables(&places.requests)?;
     Ok((places, tables))
 }
 
 /// A recording beside what the gel does at its places.
-struct Pressed<'a> {
-    recording: &'a Recording,
-    places: &'a Places,
-    tables: &'a [DepthTable],
-    left_out: &'a BTreeSet<usize>,
+pub(crate) struct Pressed<'a> {
+    pub(crate) recording: &'a Recording,
+    pub(crate) places: &'a Places,
+    pub(crate) tables: &'a [DepthTable],
+    pub(crate) left_out: &'a BTreeSet<usize>,
 }
 
 impl Pressed<'_> {
@@ -185,41 +175,18 @@ impl Pressed<'_> {
         Ok(contact)
     }
 
-    /// What the first presses say of gains and contact height.
-    fn adaptation(&self, model: &Model, n_presses: usize) -> Result<Adaptation, RunError> {
-        let found = adapt(
-            self.recording,
-            (self.places, self.tables),
-            &model.record.bench,
-            &model.twin,
-            n_presses,
-            CONTACT_LIMIT_MM,
-            self.left_out,
-        )?;
-        found.ok_or_else(|| {
-            RunError::Input(format!(
-                "{n_presses} presses to adapt with and some to judge are needed; the recordings have {} presses, those with a prescribed \
-                 force do not count",
-                self.recording.presses.len()
-            ))
-        })
-    }
-
-    /// The errors of presses that are not spent, on a bench.
-    fn judge(
+    /// The errors of some presses, on a bench.
+    pub(crate) fn judge(
         &self,
         twin: &Twin,
-        bench: &digitac::BenchEstimate,
-        spent: &BTreeSet<usize>,
+        bench: &BenchEstimate,
+        scored: &[usize],
     ) -> Result<(Evaluation, Option<Repeatability>), RunError> {
         let settings = digitac::PairSettings::default();
         let presses = pair(self.recording, self.places, self.tables, bench, &settings)?;
         let scale = Scale::of(&presses, self.left_out.clone());
-        let scored: Vec<usize> = (0..presses.len())
-            .filter(|index| !spent.contains(index))
-            .collect();
         Ok((
-            evaluate(twin, &presses, &scored, &scale, None),
+            evaluate(twin, &presses, scored, &scale, None),
             repeatability(&presses, &scale),
         ))
     }

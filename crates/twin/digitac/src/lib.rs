@@ -10,8 +10,9 @@
 //! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
 //! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this
 //! crate are called, says at its front what it does; `numerics` and `features` come first, then `bench_fit`, `alignment`, `network`,
-//! `prediction`, `evaluation`, `training`, `cross_validation` and `model_folder`.
+//! `prediction`, `evaluation`, `adaptation`, `training`, `cross_validation` and `model_folder`.
 
+mod adaptation;
 mod alignment;
 mod bench_fit;
 mod cross_validation;
@@ -30,6 +31,7 @@ mod seed;
 mod synthetic;
 mod training;
 
+pub use adaptation::{Adaptation, Adapted, adapt, choose_presses};
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
     BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate,
@@ -38,8 +40,8 @@ pub use bench_fit::{
 pub use cross_validation::{Bench, Judgement, judge};
 pub use error::DigitacError;
 pub use evaluation::{
-    Adaptation, Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale,
-    Score, adapt, evaluate, recalibrate, repeatability,
+    Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score,
+    evaluate, recalibrate, repeatability,
 };
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};

@@ -333,37 +333,78 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
     let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
     let places = places.at_bench(&made.bench);
     let tables = Formula.depth_tables(&places.requests).unwrap();
-    let adapted = |n_presses: usize| {
+    let adapted = |used: &[usize]| {
         let pressed = (&places, &tables[..]);
-        adapt(
-            &other,
-            pressed,
-            &made.bench,
-            &twin,
-            n_presses,
-            0.3,
-            &BTreeSet::new(),
-        )
-        .unwrap()
+        adapt(&other, pressed, used, &twin, &made.bench, &BTreeSet::new()).unwrap()
     };
-    let found = adapted(16).unwrap();
-    assert_eq!(found.used.len(), 16);
-    assert!(
-        (found.contact_offset_mm - center_mm - 0.06).abs() < 0.015,
-        "{found:?}"
-    );
-    for (found, factor) in found.gain_factors.iter().zip(factors) {
-        assert!((found / factor - 1.0).abs() < 0.03, "{found}, truly {factor}");
+    let used = [2, 7, 12, 16, 19];
+    let found = adapted(&used);
+    let height = found.adaptation.contact_offset_mm["file0"];
+    assert!((height.value - center_mm - 0.06).abs() < 0.03, "{height:?}");
+    let learned = &twin.gains().gain;
+    for ((found, factor), learned) in found.adaptation.gain.iter().zip(factors).zip(learned) {
+        let factor_found = found.value / learned;
+        assert!(
+            (factor_found / factor - 1.0).abs() < 0.05,
+            "{factor_found}, truly {factor}"
+        );
     }
-    let (adapted_twin, bench) = found.apply(&twin, &made.bench);
-    let pairs = pair(&other, &places, &tables, &bench, &PairSettings::default()).unwrap();
-    let rest: Vec<usize> = (0..21).filter(|press| !found.used.contains(press)).collect();
+    let pairs = pair(&other, &places, &tables, &found.bench, &PairSettings::default()).unwrap();
+    let rest: Vec<usize> = (0..21).filter(|press| !used.contains(press)).collect();
     let error = |twin: &Twin| {
         let errors = evaluate(twin, &pairs, &rest, &made.scale, None).twin.overall;
         errors.nearest_in_contact.percent
     };
-    assert!(error(&adapted_twin) < 1.0 && error(&twin) > 5.0);
-    assert!(adapted(0).is_none() && adapted(21).is_none());
+    assert!(error(&found.twin) < 1.0 && error(&twin) > 5.0);
+
+    // One press beside the first taxel tells the others no more than that whole gels differ.
+    let by_one = adapted(&[1]);
+    let relative = |adapted: &Adapted, taxel: usize| {
+        adapted.adaptation.gain[taxel].uncertainty / adapted.adaptation.gain[taxel].value
+    };
+    assert!(relative(&by_one, 0) < 0.15, "{:?}", by_one.adaptation.gain);
+    assert!(relative(&by_one, 3) > 0.3, "{:?}", by_one.adaptation.gain);
+    assert!(relative(&found, 3) < 0.15, "{:?}", found.adaptation.gain);
+    let moved = by_one.adaptation.gain[3].value / learned[3];
+    let by_first = by_one.adaptation.gain[0].value / learned[0];
+    assert!((moved / by_first - 1.0).abs() < 0.2, "{moved} and {by_first}");
+    let constant_s = by_one.adaptation.time_constants_s[1].value / twin.gains().time_constants_s[1];
+    assert!((constant_s - 1.0).abs() < 0.3, "{constant_s}");
+}
+
+#[test]
+fn presses_to_adapt_with_are_spread_over_files_and_taxels() {
+    let truth = Truth::new();
+    let made = make(&truth, 21);
+    let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 1))
+        .remove(0)
+        .twin;
+    let other = truth.recording(21);
+    let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
+    let places = places.at_bench(&made.bench);
+    let tables = Formula.depth_tables(&places.requests).unwrap();
+    let all: Vec<usize> = (0..other.presses.len()).collect();
+    let choose = |n_presses, seed| {
+        let (pressed, learned) = ((&places, &tables[..]), (&twin, &made.bench));
+        choose_presses(&other, pressed, &all, learned, &BTreeSet::new(), n_presses, seed).unwrap()
+    };
+    let chosen = choose(5, 1);
+    let files: BTreeSet<&str> = chosen
+        .iter()
+        .map(|&press| &other.presses[press].mounting[..])
+        .collect();
+    assert_eq!((chosen.len(), files.len()), (5, 2));
+    let x_mm = |press: usize| other.presses[press].gel_from_indenter[0].position_mm.x;
+    let spread_mm = |side: f64| {
+        chosen
+            .iter()
+            .map(|&press| side * x_mm(press))
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    assert!(spread_mm(1.0) + spread_mm(-1.0) > 8.0, "{chosen:?}");
+    assert_eq!(chosen, choose(5, 1));
+    assert_ne!(choose(20, 1), choose(20, 2));
+    assert_eq!(choose(1000, 1).len(), all.len());
 }
 
 #[test]

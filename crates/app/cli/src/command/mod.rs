@@ -1,5 +1,6 @@
 //! What each command does.
 
+mod adapt;
 mod calibrate;
 mod characterize;
 mod cross_validate;
@@ -41,6 +42,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Align(arguments) => stages::align(&arguments),
         Command::Train(arguments) => stages::train(&arguments),
         Command::Evaluate(arguments) => stages::evaluate(&arguments),
+        Command::Adapt(arguments) => adapt::run(&arguments),
         Command::CrossValidate(arguments) => cross_validate::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments),

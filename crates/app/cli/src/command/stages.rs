@@ -44,8 +44,7 @@ pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
         Some(import) => import_files(import, &files)?.0,
         None => read_recordings(&files)?,
     };
-    let adapt_with = arguments.adapt.map(|count| count as usize);
-    let found = evaluate_elsewhere(model, &recording, adapt_with, &Bars::default())?;
+    let found = evaluate_elsewhere(model, &recording, &Bars::default())?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
     }
@@ -130,18 +129,6 @@ fn unseen(found: &UnseenEvaluation) -> String {
             contact.file, height.value, height.uncertainty
         ));
         lines.extend(contact.doubts.iter().cloned());
-    }
-    if let Some(adaptation) = &found.adaptation {
-        let gains = adaptation
-            .gain_factors
-            .iter()
-            .map(|factor| format!("{factor:.3}"));
-        lines.push(format!(
-            "adapted with {} presses, which are not scored: contact {:+.3} mm, gains times {}",
-            adaptation.used.len(),
-            adaptation.contact_offset_mm,
-            gains.collect::<Vec<_>>().join(" ")
-        ));
     }
     lines.push(found.definition.clone());
     lines.join("\n")

@@ -63,6 +63,15 @@ impl BenchEstimate {
             .map_or(self.contact_offset_elsewhere_mm, |offset| offset.value)
     }
 
+    /// The same for a sensor whose ports are described to be elsewhere in the gel's plane, mm; `[n_taxels]`.
+    #[must_use]
+    pub fn with_ports_at(mut self, ports_mm: &[[f64; 2]]) -> Self {
+        if let Some(factor) = &mut self.smooth_factor {
+            factor.ports_mm = ports_mm.to_vec();
+        }
+        self
+    }
+
     /// The gel's stiffness over the simulated gel's.
     #[must_use]
     pub fn stiffness(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 mod bench_estimate;
 mod estimate;
+mod learned;
 mod places;
 mod port_correction;
 mod problem;
@@ -11,6 +12,7 @@ mod smooth_factor;
 
 pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;
+pub(crate) use learned::LearnedBench;
 pub(crate) use places::deepest_pose;
 pub use places::{PlaceSettings, Places};
 pub use port_correction::PortCorrection;

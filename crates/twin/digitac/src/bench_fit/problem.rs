@@ -6,6 +6,7 @@ use std::ops::Range;
 use twintac_depth_table::DepthCurves;
 use twintac_recording::{Control, Press};
 
+use super::learned::BenchWidths;
 use super::smooth_factor::N_TERMS;
 use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, SmoothFactor, deepest_pose};
 use crate::DigitacError;
@@ -127,6 +128,39 @@ impl<'a> BenchProblem<'a> {
         }
     }
 
+    /// The same with ports and a smooth factor that may differ from what was learned wherever something was.
+    pub(super) fn as_learned(mut self, learned: &BenchEstimate) -> Self {
+        let is_shifted = |axis: usize| learned.ports.iter().any(|port| port.shift_mm[axis] != 0.0);
+        self.axes = (0..2).filter(|axis| is_shifted(*axis)).collect();
+        self.form.clone_from(&learned.smooth_factor);
+        self
+    }
+
+    /// What was learned of each unknown, and by how much another bench may differ from it: standard deviations.
+    pub(super) fn learned(&self, learned: &BenchEstimate, widths: &BenchWidths) -> Vec<(f64, f64)> {
+        let heights = self.mountings.iter();
+        let mut values: Vec<(f64, f64)> = heights
+            .map(|(mounting, _)| (learned.contact_offset_mm(mounting), widths.contact_offset_mm))
+            .collect();
+        if self.fits_stiffness() {
+            values.push((learned.stiffness().ln(), widths.ln_stiffness));
+        }
+        if self.fits_port_radius() {
+            let wider_mm = learned.ports.first().map_or(0.0, |port| port.wider_mm);
+            values.push((wider_mm, widths.port_mm));
+        }
+        for port in &learned.ports {
+            let shifts = self.axes.iter().map(|axis| port.shift_mm[*axis]);
+            values.extend(shifts.map(|shift_mm| (shift_mm, widths.port_mm)));
+        }
+        let factors = learned
+            .smooth_factor
+            .iter()
+            .flat_map(|factor| &factor.coefficients);
+        values.extend(factors.map(|coefficient| (*coefficient, widths.factor)));
+        values
+    }
+
     fn fits_radius(&self) -> bool {
         self.ln_radii.len() > 1
     }
@@ -172,18 +206,16 @@ impl<'a> BenchProblem<'a> {
         }
     }
 
-    /// The estimate that values stand for, with those of fits that each leave out some presses. Mountings that taught nothing have none.
+    /// The estimate that values stand for; `estimate` says how well what follows from values is known. Mountings that taught nothing have none.
     pub(crate) fn estimate(
         &self,
         values: &[f64],
-        without: &[Vec<f64>],
+        estimate: &dyn Fn(&dyn Fn(&[f64]) -> f64) -> Estimate,
         has_taught: &dyn Fn(&str) -> bool,
     ) -> BenchEstimate {
         let guess = self.guess(values);
-        let others: Vec<Guess<'_>> = without.iter().map(|values| self.guess(values)).collect();
-        let estimate = |value: &dyn Fn(&Guess<'_>) -> f64| {
-            Estimate::jackknife(value(&guess), &others.iter().map(value).collect::<Vec<_>>())
-        };
+        let estimate =
+            |value: &dyn Fn(&Guess<'_>) -> f64| estimate(&|values: &[f64]| value(&self.guess(values)));
         let offsets = self.mountings.iter().enumerate();
         let contact_offset_mm: BTreeMap<String, Estimate> = offsets
             .filter(|(_, (name, _))| has_taught(name))

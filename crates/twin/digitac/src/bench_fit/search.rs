@@ -328,11 +328,15 @@ impl<'a> Fit<'a> {
                 Ok(found.values)
             })
             .collect::<Result<_, DigitacError>>()?;
+        let jackknife = |value: &dyn Fn(&[f64]) -> f64| {
+            let others: Vec<f64> = without.iter().map(|values| value(values)).collect();
+            Estimate::jackknife(value(&everywhere.values), &others)
+        };
         Ok(BenchEstimate {
             has_history: self.has_history,
-            gains: Some(everywhere.gains),
+            gains: Some(everywhere.gains.clone()),
             deviation_percent: 100.0 * everywhere.deviation,
-            ..problem.estimate(&everywhere.values, &without, &|mounting| {
+            ..problem.estimate(&everywhere.values, &jackknife, &|mounting| {
                 self.used
                     .iter()
                     .any(|&index| self.press(index).mounting == mounting)

@@ -1,6 +1,5 @@
 //! The errors of a twin, those of the baselines it is compared with, and how well measured presses repeat.
 
-mod adapt;
 mod baseline;
 mod evaluate;
 mod kernel;
@@ -8,7 +7,6 @@ pub(crate) mod metric;
 mod recalibrate;
 mod repeatability;
 
-pub use adapt::{Adaptation, adapt};
 pub(crate) use baseline::StaticPolynomial;
 pub(crate) use evaluate::score_some;
 pub use evaluate::{Baselines, Evaluation, PressEvaluation, evaluate};

@@ -128,7 +128,7 @@ pub fn recalibrate(
 }
 
 /// The first presses that a twin would feel at least half as much as the most; poses alone decide.
-pub(super) fn felt(
+fn felt(
     presses: &[usize],
     along: &dyn Fn(usize) -> Result<Features, DigitacError>,
     twin: &Twin,

@@ -22,6 +22,11 @@ pub(super) fn card(model: &Model) -> String {
         .test
         .as_ref()
         .map_or(String::new(), |score| row("test", split.test.len(), score));
+    // An adapted twin has no presses between those that taught it and those that judge.
+    let validation = match split.validation.len() {
+        0 => row("adapted with", split.train.len(), &record.validation),
+        n_presses => row("validation", n_presses, &record.validation),
+    };
     let mut text = format!(
         "# A twin of {n_taxels} barometers\n\n\
          It says what the barometers would read, from what a finite-element gel shows when it is pressed. Learned from `{provenance}` recordings; what it \
@@ -38,7 +43,7 @@ pub(super) fn card(model: &Model) -> String {
         split.train.len(),
         record.files.join(", "),
         record.taxels.join(", "),
-        row("validation", split.validation.len(), &record.validation),
+        validation,
         record.validation.definition,
     );
     if !bench.doubts.is_empty() {

@@ -43,9 +43,9 @@ pub struct ModelRecord {
     pub taught_by: BTreeSet<String>,
     /// Which presses were used for training, validation and test.
     pub split: Split,
-    /// Errors on validation presses.
+    /// Errors on validation presses; of an adapted twin, on those that it was adapted with.
     pub validation: Score,
-    /// Errors on test presses at training.
+    /// Errors on test presses at training; of an adapted twin, on those that it was not adapted with.
     pub test: Option<Score>,
     /// The initial values that the weights are stored relative to; needed to read them.
     pub(crate) start: Start,

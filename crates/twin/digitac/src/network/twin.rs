@@ -44,20 +44,29 @@ impl Twin {
         Self::new(self.taxels().to_vec(), physics, parameters)
     }
 
-    /// The same twin, each of whose taxels reads so many times as much; `[n_taxels]`. The port law goes with the port, not with the reading. No
-    /// factor acts on the paper's variant, which has no gains.
+    /// The same twin with gains that were fitted to another sensor, and with the correction that it has learned or without.
     #[must_use]
-    pub(crate) fn with_gain_factors(&self, factors: &[f64]) -> Self {
-        let (mut physics, mut parameters) = (self.physics().clone(), self.parameters().clone());
-        let own = physics
-            .gains
-            .stiffening_per_kpa
-            .iter_mut()
-            .zip(&mut parameters.gain_change);
-        for ((stiffening, change), factor) in own.zip(factors) {
-            *stiffening /= factor;
-            *change += factor.ln() as f32;
-        }
+    pub(crate) fn adapted(&self, gains: Gains, keeps_correction: bool) -> Self {
+        let variant = self.variant();
+        let physics = Physics {
+            variant: if keeps_correction {
+                variant
+            } else {
+                variant.without_perceptron()
+            },
+            gains,
+            ..self.physics().clone()
+        };
+        let parameters = self.parameters();
+        let parameters = Parameters {
+            gain_change: vec![0.0; parameters.gain_change.len()],
+            memory_change: vec![0.0; parameters.memory_change.len()],
+            layers: if keeps_correction {
+                parameters.layers.clone()
+            } else {
+                Vec::new()
+            },
+        };
         Self::new(self.taxels().to_vec(), physics, parameters)
     }
 

@@ -50,6 +50,16 @@ impl Variant {
         matches!(self, Self::Paper | Self::PressureMlp | Self::PressureMemoryMlp)
     }
 
+    /// The same without its multilayer perceptron; the paper's is nothing else.
+    #[must_use]
+    pub(crate) fn without_perceptron(self) -> Self {
+        match self {
+            Self::PressureMlp => Self::Pressure,
+            Self::PressureMemoryMlp => Self::PressureMemory,
+            other => other,
+        }
+    }
+
     /// Whether its readings depend on earlier frames.
     #[must_use]
     pub(crate) fn has_memory(self) -> bool {

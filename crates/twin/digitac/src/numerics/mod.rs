@@ -14,4 +14,4 @@ pub(crate) use least_absolute_deviations::fit_nonnegative;
 pub(crate) use levenberg_marquardt::{Quadratic, Unknown, minimize_robust};
 pub(crate) use median::median;
 pub(crate) use splines::mirrored_splines;
-pub(crate) use symmetric::solve_symmetric;
+pub(crate) use symmetric::{inverse_symmetric, solve_symmetric};

@@ -6,9 +6,10 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::{Elastic, Pressures, Series};
+use super::prior::{BarometerWidths, Prior};
+use super::{Elastic, Posterior, Pressures, Series};
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
-use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, median, minimize_robust};
+use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, inverse_symmetric, median, minimize_robust};
 use crate::{DigitacError, Features};
 
 /// Deviations below this share of the largest reading count quadratically, larger ones linearly.
@@ -119,6 +120,99 @@ pub(crate) fn fit(
     })
 }
 
+/// Fits to the readings of a series what is pulled to values that were learned elsewhere: `elastic` pulls its own unknowns, `prior` the
+/// barometers to `learned`.
+pub(crate) fn fit_near_learned(
+    elastic: &dyn Elastic,
+    series: &Series,
+    learned: &Gains,
+    prior: Prior,
+    left_out: &BTreeSet<usize>,
+) -> Result<Posterior, DigitacError> {
+    let (layout, unknowns) = near_learned(elastic, series, learned, prior, left_out);
+    let problem = Problem {
+        elastic,
+        series,
+        left_out,
+        layout: &layout,
+    };
+    let (x, _) = minimize_robust(&unknowns, |x| problem.near(x), |x| problem.cost(x))?;
+    let mut curvature = problem.near(&x)?.matrix;
+    for (i, unknown) in unknowns.iter().enumerate() {
+        curvature[i * unknowns.len() + i] += 2.0 * unknown.pull;
+    }
+    let is_free: Vec<bool> = unknowns.iter().map(|u| u.bounds[0] < u.bounds[1]).collect();
+    Ok(Posterior {
+        deviation: problem.deviation(&x)?,
+        covariance: prior.covariance(inverse_symmetric(&curvature, &is_free)),
+        gains: layout.gains(&x, series.weights.len()),
+        layout,
+        x,
+    })
+}
+
+/// How much each press of a series would say of the unknowns, at the values that were learned: matrices, row by row, of which the lower triangle
+/// counts; `[n_presses][n * n]`. Beside them what is known beforehand of each unknown; `[n]`.
+pub(crate) fn information(
+    elastic: &dyn Elastic,
+    series: &Series,
+    learned: &Gains,
+    prior: Prior,
+    left_out: &BTreeSet<usize>,
+) -> Result<(Vec<Vec<f64>>, Vec<f64>), DigitacError> {
+    let (layout, unknowns) = near_learned(elastic, series, learned, prior, left_out);
+    let problem = Problem {
+        elastic,
+        series,
+        left_out,
+        layout: &layout,
+    };
+    let x: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
+    let n = x.len();
+    let pressures = elastic.pressures(&x[..layout.n_elastic], true)?;
+    let fadings = problem.fadings(learned);
+    let mut matrices = vec![vec![0.0; n * n]; series.presses.len()];
+    let kept = (0..series.weights.len()).filter(|k| !left_out.contains(k));
+    for k in kept {
+        let pass = problem.pass(k, &pressures.kpa[k], learned, &fadings);
+        let columns = problem.columns(k, &pass, &pressures, &x, &fadings);
+        for (matrix, press) in matrices.iter_mut().zip(&series.presses) {
+            add_products(&columns, &series.weights[k], press, matrix, n);
+        }
+    }
+    for matrix in &mut matrices {
+        Prior::information(matrix, series.presses.len());
+    }
+    let known = unknowns.iter().map(|unknown| prior.known(unknown)).collect();
+    Ok((matrices, known))
+}
+
+/// Layout and unknowns of a fit near learned values.
+fn near_learned(
+    elastic: &dyn Elastic,
+    series: &Series,
+    learned: &Gains,
+    prior: Prior,
+    left_out: &BTreeSet<usize>,
+) -> (Layout, Vec<Unknown>) {
+    let mut unknowns = elastic.unknowns();
+    let largest_kpa = series.per_kpa.iter().filter(|p| **p > 0.0).map(|p| p.recip());
+    let layout = Layout {
+        n_elastic: unknowns.len(),
+        n_constants: learned.time_constants_s.len(),
+        largest_kpa: largest_kpa.fold(0.0, f64::max),
+        usual_gain: usual_gain(learned, left_out),
+    };
+    let model = BarometerModel {
+        time_constants_s: learned.time_constants_s.clone(),
+        has_port_law: learned.stiffening_per_kpa.iter().any(|growth| *growth != 0.0),
+    };
+    let mut barometers = layout.unknowns(learned, &model);
+    layout.pull(&mut barometers, prior);
+    unknowns.extend(barometers);
+    (layout, unknowns)
+}
+
 /// Nonnegative gains and shares that fit best at the time constants, by least absolute deviations.
 fn start_gains(pressures: &Pressures, series: &Series, time_constants_s: &[f64]) -> Gains {
     let all = 0..series.n_frames();
@@ -167,12 +261,14 @@ fn usual_gain(gains: &Gains, left_out: &BTreeSet<usize>) -> f64 {
     (sum / kept().count().max(1) as f64).exp()
 }
 
-/// Which unknown stands where: those of the port pressures, ln time constants, the relative growth that is common to all taxels, and of
-/// each taxel ln gain, its own relative growth, and shares of the overstresses.
+/// Which unknown stands where: those of the port pressures, ln time constants, the relative growth and the ln gain that are common to all
+/// taxels, and of each taxel its own ln gain, its own relative growth, and shares of the overstresses.
+///
+/// The common ln gain is zero but where gains are pulled to others: a whole sensor may read more than another.
 ///
 /// The common growth belongs to the gel: it is the same at the same port pressure, whatever the gain. It is given at the largest reading of
 /// a taxel of usual gain; a taxel's own growth, at the largest reading.
-struct Layout {
+pub(super) struct Layout {
     n_elastic: usize,
     n_constants: usize,
     largest_kpa: f64,
@@ -201,6 +297,7 @@ impl Layout {
             .map(|(gain, per_kpa)| self.largest_kpa * per_kpa * gain / self.usual_gain);
         let common = median(at_usual_gain.collect());
         unknowns.push(unknown(common, limits, STIFFENING_PULL));
+        unknowns.push(around(0.0, 0.0));
         for (k, (gain, shares)) in gains.gain.iter().zip(&gains.memory).enumerate() {
             let gain = gain.max(SMALLEST_GAIN * largest);
             unknowns.push(around(gain.ln(), GAIN_REACH.ln()));
@@ -211,22 +308,48 @@ impl Layout {
         unknowns
     }
 
+    /// Pulls the unknowns of the barometers to where they start, and lets the common gain go.
+    fn pull(&self, unknowns: &mut [Unknown], prior: Prior) {
+        let widths = BarometerWidths::USUAL;
+        let common = self.common() - self.n_elastic;
+        unknowns[common + 1].bounds = [-GAIN_REACH.ln(), GAIN_REACH.ln()];
+        for (i, unknown) in unknowns.iter_mut().enumerate() {
+            let width = match i {
+                i if i < common => widths.ln_time_constant,
+                i if i == common => widths.common_growth,
+                i if i == common + 1 => widths.common_ln_gain,
+                i => match (i - common - 2) % (2 + self.n_constants) {
+                    0 => widths.own_ln_gain,
+                    1 => widths.own_growth,
+                    _ => widths.share,
+                },
+            };
+            prior.pull(unknown, unknown.start, width);
+        }
+    }
+
     /// Where the growth that is common to all taxels stands.
     fn common(&self) -> usize {
         self.n_elastic + self.n_constants
     }
 
-    /// Where the unknowns of a taxel start.
-    fn of_taxel(&self, k: usize) -> usize {
-        self.common() + 1 + k * (2 + self.n_constants)
+    /// The unknowns of the port pressures.
+    pub(super) fn of_elastic<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        &x[..self.n_elastic]
     }
 
-    fn gains(&self, x: &[f64], n_taxels: usize) -> Gains {
+    /// Where the unknowns of a taxel start.
+    fn of_taxel(&self, k: usize) -> usize {
+        self.common() + 2 + k * (2 + self.n_constants)
+    }
+
+    pub(super) fn gains(&self, x: &[f64], n_taxels: usize) -> Gains {
         let of = |k: usize| &x[self.of_taxel(k)..self.of_taxel(k + 1)];
         let constants = &x[self.n_elastic..self.common()];
-        let stiffening = |k: usize| of(k)[1] + x[self.common()] * self.usual_gain / of(k)[0].exp();
+        let gain = |k: usize| (of(k)[0] + x[self.common() + 1]).exp();
+        let stiffening = |k: usize| of(k)[1] + x[self.common()] * self.usual_gain / gain(k);
         Gains {
-            gain: (0..n_taxels).map(|k| of(k)[0].exp()).collect(),
+            gain: (0..n_taxels).map(gain).collect(),
             stiffening_per_kpa: (0..n_taxels)
                 .map(|k| stiffening(k) / self.largest_kpa.max(f64::MIN_POSITIVE))
                 .collect(),
@@ -417,16 +540,19 @@ impl Problem<'_> {
             .zip(&pass.elastic_kpa)
             .map(|([slope, by_law], e)| slope * e - by_law * falls);
         let of_stiffening = law.iter().map(|[_, slope]| slope / self.layout.largest_kpa);
-        let mut columns = vec![
-            remember(own, all.clone(), of_gain.collect()),
-            remember(own + 1, all.clone(), of_stiffening.collect()),
-        ];
+        let of_gain = remember(own, all.clone(), of_gain.collect());
+        let of_common_gain = Column {
+            unknown: self.layout.common() + 1,
+            ..of_gain.clone()
+        };
+        let mut columns = vec![of_gain, remember(own + 1, all.clone(), of_stiffening.collect())];
         for (j, q) in pass.overstress_kpa.iter().enumerate() {
             columns.push(self.column(own + 2 + j, all.clone(), q.clone()));
         }
         if self.left_out.contains(&k) {
             return columns;
         }
+        columns.push(of_common_gain);
         let of_common = law.iter().map(|[_, slope]| share * slope);
         columns.push(remember(self.layout.common(), all.clone(), of_common.collect()));
         for (j, (fading, q)) in fadings.iter().zip(&pass.overstress_kpa).enumerate() {
@@ -502,7 +628,27 @@ impl Problem<'_> {
     }
 }
 
+/// Adds the weighted products of columns over some frames.
+fn add_products(columns: &[Column], weights: &[f64], frames: &Range<usize>, matrix: &mut [f64], n: usize) {
+    for (a, column) in columns.iter().enumerate() {
+        for other in &columns[..=a] {
+            let start = frames.start.max(column.frames.start).max(other.frames.start);
+            let end = frames.end.min(column.frames.end).min(other.frames.end);
+            let value = |column: &Column, frame: usize| column.values[frame - column.frames.start];
+            let sum: f64 = (start..end)
+                .map(|frame| weights[frame] * value(column, frame) * value(other, frame))
+                .sum();
+            let (i, j) = (
+                column.unknown.max(other.unknown),
+                column.unknown.min(other.unknown),
+            );
+            matrix[i * n + j] += sum;
+        }
+    }
+}
+
 /// Derivative of a taxel's deviations by one unknown, over some frames; zero elsewhere.
+#[derive(Clone)]
 struct Column {
     unknown: usize,
     frames: Range<usize>,
@@ -645,7 +791,9 @@ mod tests {
             left_out: &BTreeSet::new(),
             layout: &layout,
         };
-        let x = [0.1, -1.2, 1.5, 0.4, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2];
+        let x = [
+            0.1, -1.2, 1.5, 0.4, 0.05, -0.1, 0.3, 0.2, 0.3, 0.4, -0.2, 0.1, 0.2,
+        ];
         let gradient = problem.near(&x).unwrap().gradient;
         for (i, slope) in gradient.iter().enumerate() {
             let moved = |by: f64| {

@@ -2,8 +2,12 @@
 
 mod elastic;
 mod fit;
+mod posterior;
+mod prior;
 mod series;
 
 pub(crate) use elastic::{Elastic, Known, Pressures, Slope};
-pub(crate) use fit::{BarometerModel, Solution, fit};
+pub(crate) use fit::{BarometerModel, Solution, fit, fit_near_learned, information};
+pub(crate) use posterior::Posterior;
+pub(crate) use prior::Prior;
 pub(crate) use series::{Fitted, Series};

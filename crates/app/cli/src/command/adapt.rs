@@ -1,0 +1,139 @@
+//! `twintac adapt`: a model adapted to another sensor, and its error over the number of presses.
+
+use std::path::Path;
+
+use anyhow::Result;
+use twintac_run::{
+    AdaptationCurve, AdaptationPlan, AdaptedModel, CurvePlan, Run, SensorFile, adapt_model, adaptation_curve,
+    import_files, read_recordings,
+};
+
+use super::files::expand;
+use crate::arguments::Adapt;
+use crate::caller::caller;
+use crate::output::print;
+use crate::progress::Bars;
+
+pub(crate) fn run(arguments: &Adapt) -> Result<()> {
+    if let Some(run) = &arguments.run {
+        return curve(arguments, run);
+    }
+    let sensor = arguments.sensor.as_deref().map(SensorFile::read).transpose()?;
+    let named = sensor.as_ref().and_then(SensorFile::import);
+    let import = arguments.import.clone().or(named);
+    let files = expand(&arguments.recordings)?;
+    let is_csv = |file: &Path| file.extension().is_some_and(|ending| ending == "csv");
+    let recording = match import {
+        Some(import) if files.iter().all(|file| is_csv(file)) => import_files(&import, &files)?.0,
+        _ => read_recordings(&files)?,
+    };
+    let plan = AdaptationPlan {
+        model: &arguments.model,
+        sensor: sensor.as_ref(),
+        recording: &recording,
+        presses: arguments.presses as usize,
+        seed: arguments.seed,
+        out: &arguments.out,
+    };
+    let found = adapt_model(&plan, &Bars::default())?;
+    if arguments.json {
+        return print(&serde_json::to_string_pretty(&found)?);
+    }
+    print(&adapted(&found))
+}
+
+fn curve(arguments: &Adapt, run: &Path) -> Result<()> {
+    let run = Run::open(run, caller()?)?;
+    let plan = CurvePlan {
+        presses: arguments.curve.iter().map(|count| *count as usize).collect(),
+        seeds: arguments.seeds,
+    };
+    let found = adaptation_curve(&arguments.model, &run, &plan, &arguments.out, &Bars::default())?;
+    if arguments.json {
+        return print(&serde_json::to_string_pretty(&found)?);
+    }
+    print(&table(&found))
+}
+
+fn adapted(found: &AdaptedModel) -> String {
+    let adaptation = &found.adaptation;
+    let mut lines = vec![format!(
+        "`{}`, trained on {} data, adapted with {} presses ({} data): {}",
+        found.variant,
+        found.trained_on,
+        found.adapted_with.len(),
+        found.provenance,
+        found.adapted_with.join(", ")
+    )];
+    for (file, height) in &adaptation.contact_offset_mm {
+        lines.push(format!(
+            "{file}: contact {:+.3} mm ± {:.3}",
+            height.value, height.uncertainty
+        ));
+    }
+    if let Some(stiffness) = &adaptation.stiffness {
+        lines.push(format!(
+            "stiffness over the simulated one {:.3} ± {:.3}",
+            stiffness.value, stiffness.uncertainty
+        ));
+    }
+    let taxels = found.taxels.iter().zip(&adaptation.gain).zip(&found.learned_gain);
+    for (taxel, ((name, gain), learned)) in taxels.enumerate() {
+        let mut line = format!(
+            "{name}: gain {:.4} ± {:.4} (learned {learned:.4})",
+            gain.value, gain.uncertainty
+        );
+        if let Some(law) = adaptation.stiffening_per_kpa.get(taxel) {
+            line += &format!(", port law {:+.4} ± {:.4} per kPa", law.value, law.uncertainty);
+        }
+        for share in adaptation.memory.get(taxel).into_iter().flatten() {
+            line += &format!(", memory {:.3} ± {:.3}", share.value, share.uncertainty);
+        }
+        lines.push(line);
+    }
+    let constants = adaptation.time_constants_s.iter();
+    lines.extend(constants.map(|constant_s| {
+        format!(
+            "time constant {:.2} s ± {:.2}",
+            constant_s.value, constant_s.uncertainty
+        )
+    }));
+    if let (Some(twin), Some(learned)) = (&found.twin, &found.as_learned) {
+        lines.push(format!(
+            "nearest in contact {:6.2} %, all {:6.2} %, on {} presses that it was not adapted with; as learned {:.2} %",
+            twin.overall.nearest_in_contact_percent,
+            twin.overall.all_percent,
+            found.judged_presses,
+            learned.nearest_in_contact_percent
+        ));
+        lines.push(found.definition.clone());
+    }
+    lines.push(format!("model   {}", found.model.display()));
+    lines.join("\n")
+}
+
+fn table(found: &AdaptationCurve) -> String {
+    let mut lines = vec![
+        format!(
+            "{} ({} data), {} presses that no twin saw; nearest taxel, frames in contact",
+            found.sensor, found.provenance, found.judged_presses
+        ),
+        format!(
+            "as learned         {:6.2} %",
+            found.as_learned.nearest_in_contact_percent
+        ),
+    ];
+    lines.extend(found.points.iter().map(|point| {
+        let error = &point.nearest_in_contact;
+        format!(
+            "{:3} presses        {:6.2} ± {:4.2} %   {:.2} times",
+            point.presses, error.mean_percent, error.deviation_percent, point.over_trained_on_all
+        )
+    }));
+    lines.push(format!(
+        "trained on all {:3} {:6.2} %",
+        found.teaching_presses, found.trained_on_all.nearest_in_contact_percent
+    ));
+    lines.push(found.definition.clone());
+    lines.join("\n")
+}

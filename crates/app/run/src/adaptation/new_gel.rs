@@ -1,0 +1,123 @@
+//! Another gel, pressed and simulated, before a twin that does not know it yet.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use digitac::{
+    Adapted, BenchEstimate, Estimate, Evaluation, Model, Places, Twin, Variant, adapt, choose_presses,
+};
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+
+use crate::doubtful::left_out;
+use crate::model::{gel_like, gel_of};
+use crate::settings::ports_mm;
+use crate::unseen::{Pressed, refuse_known, refuse_other_taxels, simulate};
+use crate::{Progress, RunError, SensorFile};
+
+/// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
+const SOFTEST: f64 = 0.7;
+
+/// Another gel, pressed and simulated, before a twin that does not know it yet.
+pub(super) struct NewGel<'a> {
+    pub(super) recording: &'a Recording,
+    pub(super) twin: &'a Twin,
+    /// The bench as it was learned, with the ports where this gel's sensor has them.
+    bench: BenchEstimate,
+    pub(super) left_out: BTreeSet<usize>,
+    places: Places,
+    tables: Vec<DepthTable>,
+}
+
+impl<'a> NewGel<'a> {
+    /// Simulates the places of a recording; tables over depth are kept in `tables_folder`. `sensor` describes the gel where it is not as the
+    /// model's description says.
+    pub(super) fn open(
+        (model, model_folder): (&'a Model, &Path),
+        sensor: Option<&SensorFile>,
+        recording: &'a Recording,
+        tables_folder: &Path,
+        progress: &dyn Progress,
+    ) -> Result<Self, RunError> {
+        let record = &model.record;
+        if record.variant == Variant::Paper {
+            return Err(RunError::Input(format!(
+                "{}: the paper's network has no gains to adapt; give the model of another variant",
+                model_folder.display()
+            )));
+        }
+        refuse_other_taxels(recording, record)?;
+        refuse_known(recording, record)?;
+        let gel = match sensor {
+            Some(sensor) => gel_like(model, model_folder, sensor)?,
+            None => gel_of(model, model_folder)?,
+        };
+        let bench = record.bench.clone().with_ports_at(&ports_mm(gel.sensor()));
+        let softer = BenchEstimate {
+            stiffness: Some(Estimate {
+                value: SOFTEST * bench.stiffness(),
+                uncertainty: 0.0,
+            }),
+            ..bench.clone()
+        };
+        let (places, tables) = simulate(&gel, recording, &softer, tables_folder, progress)?;
+        Ok(Self {
+            recording,
+            twin: &model.twin,
+            bench,
+            left_out: left_out(gel.sensor()),
+            places,
+            tables,
+        })
+    }
+
+    /// The presses to adapt with.
+    pub(super) fn choose(
+        &self,
+        candidates: &[usize],
+        n_presses: usize,
+        seed: u64,
+    ) -> Result<Vec<usize>, RunError> {
+        Ok(choose_presses(
+            self.recording,
+            (&self.places, &self.tables),
+            candidates,
+            (self.twin, &self.bench),
+            &self.left_out,
+            n_presses,
+            seed,
+        )?)
+    }
+
+    /// The twin and its bench, adapted with some presses.
+    pub(super) fn adapt(&self, used: &[usize]) -> Result<Adapted, RunError> {
+        Ok(adapt(
+            self.recording,
+            (&self.places, &self.tables),
+            used,
+            self.twin,
+            &self.bench,
+            &self.left_out,
+        )?)
+    }
+
+    /// The errors of some presses.
+    pub(super) fn judge(&self, adapted: &Adapted, scored: &[usize]) -> Result<Evaluation, RunError> {
+        self.judge_on(&adapted.twin, &adapted.bench, scored)
+    }
+
+    /// The errors of some presses if the twin stays as it was learned.
+    pub(super) fn judge_as_learned(&self, scored: &[usize]) -> Result<Evaluation, RunError> {
+        self.judge_on(self.twin, &self.bench, scored)
+    }
+
+    fn judge_on(&self, twin: &Twin, bench: &BenchEstimate, scored: &[usize]) -> Result<Evaluation, RunError> {
+        let pressed = Pressed {
+            recording: self.recording,
+            places: &self.places,
+            tables: &self.tables,
+            left_out: &self.left_out,
+        };
+        Ok(pressed.judge(twin, bench, scored)?.0)
+    }
+}

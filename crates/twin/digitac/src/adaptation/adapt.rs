@@ -1,0 +1,158 @@
+//! What few presses say of another sensor of the same kind.
+//!
+//! Two casts differ in their gains, two mountings in their contact heights, and less so in all else. Everything is fitted at once, and pulled to
+//! what was learned as strongly as casts are alike: what few presses cannot tell stays. The more presses, the less pull. Presses of prescribed
+//! force tell the stiffness; of others, gains take it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+
+use crate::bench_fit::{BenchEstimate, Estimate, LearnedBench, Places, features};
+use crate::features::Sample;
+use crate::physical_fit::Posterior;
+use crate::{DigitacError, Features, Gains, Twin, Variant};
+
+/// What was adapted, and how sure it is: standard deviations of what the presses leave unknown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adaptation {
+    /// The presses that all was fitted to, by number.
+    pub used: Vec<usize>,
+    /// By how much the tip is deeper than recordings say, mm, by file.
+    pub contact_offset_mm: BTreeMap<String, Estimate>,
+    /// The gel's stiffness over the simulated gel's; `None` without presses of prescribed force, where gains take it.
+    pub stiffness: Option<Estimate>,
+    /// Readings over port pressures; `[n_taxels]`.
+    pub gain: Vec<Estimate>,
+    /// Port law: relative growth of a reading, 1/kPa; `[n_taxels]`, or empty if the twin has none.
+    pub stiffening_per_kpa: Vec<Estimate>,
+    /// Shares of the overstresses in the readings; `[n_taxels][n_time_constants]`.
+    pub memory: Vec<Vec<Estimate>>,
+    /// Time constants of the memory, s.
+    pub time_constants_s: Vec<Estimate>,
+    /// Whether the correction by the twin's perceptron was kept. It is dropped where it would raise the error of these presses.
+    pub keeps_correction: bool,
+}
+
+/// A twin of another sensor, and its bench.
+#[derive(Clone, Debug)]
+pub struct Adapted {
+    /// The twin.
+    pub twin: Twin,
+    /// The bench that its presses were made on.
+    pub bench: BenchEstimate,
+    /// What was adapted.
+    pub adaptation: Adaptation,
+}
+
+/// Adapts a twin and what was found of its bench to the presses `used` of another sensor. Taxels in `left_out` do not count for what all taxels
+/// share. `tables` answer `places.requests`.
+///
+/// # Errors
+/// The paper's variant, which has no gains; no presses; tables that do not go with the places; damaged presses.
+pub fn adapt(
+    recording: &Recording,
+    (places, tables): (&Places, &[DepthTable]),
+    used: &[usize],
+    twin: &Twin,
+    bench: &BenchEstimate,
+    left_out: &BTreeSet<usize>,
+) -> Result<Adapted, DigitacError> {
+    if twin.variant() == Variant::Paper {
+        return Err(DigitacError::Setting {
+            setting: "variant",
+            expected: "a twin with gains, which few presses can tell",
+            found: Variant::Paper.to_string(),
+        });
+    }
+    if used.is_empty() {
+        return Err(DigitacError::TooFew {
+            expected: "presses to adapt with".into(),
+            found: "none".into(),
+        });
+    }
+    let learned = LearnedBench {
+        recording,
+        places,
+        tables,
+        bench,
+        gains: twin.gains(),
+        left_out,
+    };
+    let chosen: BTreeSet<usize> = used.iter().copied().collect();
+    let (bench, posterior) = learned.fit(&chosen)?;
+    let features = features(recording, places, tables, &bench)?;
+    let with = twin.adapted(posterior.gains.clone(), true);
+    let without = twin.adapted(posterior.gains.clone(), false);
+    let deviation_kpa = |twin: &Twin| deviation_kpa(twin, recording, &features, &chosen, left_out);
+    let keeps_correction = twin.variant().has_perceptron() && deviation_kpa(&with) < deviation_kpa(&without);
+    let adaptation = Adaptation {
+        used: used.to_vec(),
+        contact_offset_mm: bench.contact_offset_mm.clone(),
+        stiffness: bench.stiffness,
+        keeps_correction,
+        ..barometers(&posterior)
+    };
+    Ok(Adapted {
+        twin: if keeps_correction { with } else { without },
+        bench,
+        adaptation,
+    })
+}
+
+/// The barometers, and how well each number is known.
+fn barometers(posterior: &Posterior) -> Adaptation {
+    let gains = &posterior.gains;
+    let estimate = |value: &dyn Fn(&Gains) -> f64| Estimate {
+        value: value(gains),
+        uncertainty: posterior.uncertainty(&|_, gains| value(gains)),
+    };
+    let (taxels, constants) = (0..gains.gain.len(), 0..gains.time_constants_s.len());
+    let has_port_law = gains.stiffening_per_kpa.iter().any(|growth| *growth != 0.0);
+    Adaptation {
+        used: Vec::new(),
+        contact_offset_mm: BTreeMap::new(),
+        stiffness: None,
+        gain: taxels.clone().map(|k| estimate(&|gains| gains.gain[k])).collect(),
+        stiffening_per_kpa: taxels
+            .clone()
+            .filter(|_| has_port_law)
+            .map(|k| estimate(&|gains| gains.stiffening_per_kpa[k]))
+            .collect(),
+        memory: taxels
+            .map(|k| {
+                let constants = constants.clone();
+                constants.map(|j| estimate(&|gains| gains.memory[k][j])).collect()
+            })
+            .collect(),
+        time_constants_s: constants
+            .clone()
+            .map(|j| estimate(&|gains| gains.time_constants_s[j]))
+            .collect(),
+        keeps_correction: false,
+    }
+}
+
+/// Sum of a twin's absolute deviations from the readings of some presses, kPa.
+fn deviation_kpa(
+    twin: &Twin,
+    recording: &Recording,
+    features: &[Features],
+    chosen: &BTreeSet<usize>,
+    left_out: &BTreeSet<usize>,
+) -> f64 {
+    let predicted = twin.predict(&features.iter().collect::<Vec<_>>());
+    let presses = recording.presses.iter().zip(&predicted).enumerate();
+    let chosen = presses.filter(|(index, _)| chosen.contains(index));
+    chosen
+        .map(|(_, (press, predicted))| {
+            let sample = Sample {
+                readings_kpa: &press.taxels_kpa,
+                valid: &press.valid,
+            };
+            sample.deviation_kpa(predicted, left_out)
+        })
+        .sum()
+}

@@ -1,0 +1,91 @@
+//! The few presses that a twin is adapted with: those that tell the most.
+//!
+//! Poses and the twin that is there choose; what was measured does not. The presses that are chosen are to leave as little as they can unknown of
+//! what all presses would read: each next one is the one after which the sum of the variances of all predictions is the smallest (I-optimal design,
+//! Atkinson, Donev and Tobias 2007, chapter 10; one after the other). That spreads them over files, whose contact heights differ, over taxels, and
+//! over distances from these.
+
+use std::collections::BTreeSet;
+
+use rand::seq::SliceRandom;
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+
+use crate::bench_fit::{BenchEstimate, LearnedBench, Places, features};
+use crate::numerics::inverse_symmetric;
+use crate::{DigitacError, Twin, seed};
+
+/// Of more candidates, chance takes so many.
+const MAX_CANDIDATES: usize = 120;
+/// At each step chance leaves one in so many aside.
+const ASIDE: usize = 5;
+
+/// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. At each step chance leaves a fifth of
+/// the candidates aside. `tables` answer `places.requests`; `bench` is what was found where the twin was trained; taxels in `left_out` do not count.
+///
+/// # Errors
+/// Tables that do not go with the places; damaged presses.
+pub fn choose_presses(
+    recording: &Recording,
+    (places, tables): (&Places, &[DepthTable]),
+    candidates: &[usize],
+    (twin, bench): (&Twin, &BenchEstimate),
+    left_out: &BTreeSet<usize>,
+    n_presses: usize,
+    seed_number: u64,
+) -> Result<Vec<usize>, DigitacError> {
+    let mut random = seed::stream(seed_number, "adaptation");
+    let mut left = candidates.to_vec();
+    left.shuffle(&mut random);
+    left.truncate(MAX_CANDIDATES.max(n_presses));
+    let features = features(recording, places, tables, bench)?;
+    let predicted_kpa = twin.predict(&features.iter().collect::<Vec<_>>());
+    let learned = LearnedBench {
+        recording,
+        places,
+        tables,
+        bench,
+        gains: twin.gains(),
+        left_out,
+    };
+    let (told, known) = learned.information(&left.iter().copied().collect(), &predicted_kpa)?;
+    let n = known.len();
+    let mut all = vec![0.0; n * n];
+    told.values().for_each(|matrix| add(&mut all, matrix));
+    let mut sum = vec![0.0; n * n];
+    for (i, known) in known.iter().enumerate() {
+        sum[i * n + i] = *known;
+    }
+    let is_free: Vec<bool> = known.iter().map(|known| *known > 0.0).collect();
+    let unknown_after = |sum: &[f64], press: &usize| {
+        let mut sum = sum.to_vec();
+        add(&mut sum, &told[press]);
+        trace_of_product(&inverse_symmetric(&sum, &is_free), &all, n)
+    };
+    let mut chosen = Vec::new();
+    while chosen.len() < n_presses && !left.is_empty() {
+        left.shuffle(&mut random);
+        let considered = left[..left.len() - left.len() / ASIDE].iter().enumerate();
+        let unknown = considered.map(|(index, press)| (index, unknown_after(&sum, press)));
+        let Some((index, _)) = unknown.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            break;
+        };
+        let press = left.swap_remove(index);
+        add(&mut sum, &told[&press]);
+        chosen.push(press);
+    }
+    Ok(chosen)
+}
+
+fn add(to: &mut [f64], matrix: &[f64]) {
+    to.iter_mut().zip(matrix).for_each(|(to, value)| *to += value);
+}
+
+/// Of a symmetric matrix with one of which the lower triangle counts.
+fn trace_of_product(symmetric: &[f64], lower: &[f64], n: usize) -> f64 {
+    let row = |i: usize| -> f64 {
+        let below: f64 = (0..i).map(|j| symmetric[i * n + j] * lower[i * n + j]).sum();
+        2.0 * below + symmetric[i * n + i] * lower[i * n + i]
+    };
+    (0..n).map(row).sum()
+}

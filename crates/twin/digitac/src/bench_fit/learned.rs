@@ -1,0 +1,176 @@
+//! A bench, and its barometers, fitted to few presses: what these cannot tell stays near what was learned of another sensor.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+
+use super::problem::{Along, BenchProblem};
+use super::search::in_order;
+use super::simulated::{bare_features, curves, follow_each_other};
+use super::{BenchEstimate, BenchSettings, Estimate, Places};
+use crate::numerics::Unknown;
+use crate::physical_fit::{
+    Elastic, Fitted, Posterior, Pressures, Prior, Series, fit_near_learned, information,
+};
+use crate::{DigitacError, Features, Gains};
+
+/// Presses before one that is fitted to, which the gel still remembers.
+const REMEMBERED: usize = 2;
+
+/// By how much two benches differ: standard deviations of the unknowns of a fit.
+pub(super) struct BenchWidths {
+    pub(super) contact_offset_mm: f64,
+    pub(super) ln_stiffness: f64,
+    /// Of a port's place along an axis, and of all ports' radius.
+    pub(super) port_mm: f64,
+    /// Of a coefficient of the smooth factor.
+    pub(super) factor: f64,
+}
+
+/// Mountings differ by some hundredths of a millimetre, ports of one board less; a tip that nobody documented leaves the most unknown.
+const USUAL: BenchWidths = BenchWidths {
+    contact_offset_mm: 0.05,
+    ln_stiffness: 0.3,
+    port_mm: 0.05,
+    factor: 0.3,
+};
+
+/// A bench and its barometers, as they were learned elsewhere, before presses that they do not know.
+#[derive(Clone, Copy)]
+pub(crate) struct LearnedBench<'a> {
+    pub(crate) recording: &'a Recording,
+    pub(crate) places: &'a Places,
+    pub(crate) tables: &'a [DepthTable],
+    pub(crate) bench: &'a BenchEstimate,
+    pub(crate) gains: &'a Gains,
+    pub(crate) left_out: &'a BTreeSet<usize>,
+}
+
+impl LearnedBench<'_> {
+    /// Fits bench and barometers to the presses `used`. Of the bench, its contact heights and stiffness are fitted, and ports and smooth factor
+    /// where it has them; of the barometers, gains, port law and memory.
+    pub(crate) fn fit(&self, used: &BTreeSet<usize>) -> Result<(BenchEstimate, Posterior), DigitacError> {
+        let measured = |index: usize| &self.recording.presses[index].taxels_kpa[..];
+        self.with_presses(used, &measured, |near, series| {
+            let posterior = fit_near_learned(near, series, self.gains, near.prior, self.left_out)?;
+            let estimate = |value: &dyn Fn(&[f64]) -> f64| Estimate {
+                value: value(posterior.values()),
+                uncertainty: posterior.uncertainty(&|values, _| value(values)),
+            };
+            let has_taught = |mounting: &str| {
+                let mut mountings = used.iter().map(|&index| &self.recording.presses[index].mounting);
+                mountings.any(|taught| taught == mounting)
+            };
+            let bench = BenchEstimate {
+                tip_radius_mm: self.bench.tip_radius_mm,
+                has_history: self.bench.has_history,
+                gains: Some(posterior.gains.clone()),
+                deviation_percent: 100.0 * posterior.deviation,
+                ..near.problem.estimate(posterior.values(), &estimate, &has_taught)
+            };
+            Ok((bench, posterior))
+        })
+    }
+
+    /// How much each of some presses would say of all unknowns, if it read what is predicted, `[n_presses][n_frames][n_taxels]` of the recording;
+    /// and what is known of each beforehand: see [`information`].
+    pub(crate) fn information(
+        &self,
+        presses: &BTreeSet<usize>,
+        predicted_kpa: &[Vec<Vec<f64>>],
+    ) -> Result<(BTreeMap<usize, Vec<f64>>, Vec<f64>), DigitacError> {
+        let predicted = |index: usize| &predicted_kpa[index][..];
+        self.with_presses(presses, &predicted, |near, series| {
+            let (matrices, known) = information(near, series, self.gains, near.prior, self.left_out)?;
+            let all = remembered(self.recording, presses).into_iter().zip(matrices);
+            Ok((all.filter(|(index, _)| presses.contains(index)).collect(), known))
+        })
+    }
+
+    /// Does something with the presses `used` and those that the gel remembers then.
+    fn with_presses<'r, T>(
+        &'r self,
+        used: &BTreeSet<usize>,
+        readings_kpa: &dyn Fn(usize) -> &'r [Vec<f64>],
+        work: impl FnOnce(&NearLearned<'_>, &Series) -> Result<T, DigitacError>,
+    ) -> Result<T, DigitacError> {
+        let (recording, places) = (self.recording, self.places);
+        let n_taxels = recording.taxels.len();
+        let curves = vec![curves(places, self.tables, n_taxels)?];
+        let presses = remembered(recording, used);
+        let touch_z_mm = |index: usize| {
+            let request = &places.requests[places.of_press[index]];
+            request.gel_from_indenter_at_touch.position_mm.z
+        };
+        let all = recording.presses.iter().enumerate();
+        let mut features: Vec<Features> = all
+            .map(|(index, press)| bare_features(press, touch_z_mm(index)))
+            .collect();
+        if self.bench.has_history && !features.is_empty() {
+            follow_each_other(&recording.presses, &mut features);
+        }
+        for index in 0..features.len() {
+            if index == 0 || !presses.contains(&(index - 1)) {
+                features[index].since_previous_s = None;
+            }
+        }
+        let along = |&index: &usize| Along {
+            press: &recording.presses[index],
+            place: places.of_press[index],
+            touch_z_mm: touch_z_mm(index),
+            is_used: used.contains(&index),
+        };
+        let fitted = |&index: &usize| Fitted {
+            mounting: &recording.presses[index].mounting,
+            features: &features[index],
+            readings_kpa: readings_kpa(index),
+            valid: &recording.presses[index].valid,
+            is_used: used.contains(&index),
+        };
+        let settings = BenchSettings {
+            tip_radii_mm: Vec::new(),
+            ..BenchSettings::default()
+        };
+        let along = presses.iter().map(along).collect();
+        let problem = BenchProblem::new(along, &curves, &[], n_taxels, &settings);
+        let near = NearLearned {
+            problem: problem.as_learned(self.bench),
+            learned: self.bench,
+            prior: Prior::beside(used.len()),
+        };
+        let fitted: Vec<Fitted<'_>> = presses.iter().map(fitted).collect();
+        work(&near, &Series::new(&fitted, n_taxels, self.left_out))
+    }
+}
+
+/// The presses `used` with those before them that the gel remembers, in the order in which it felt them.
+fn remembered(recording: &Recording, used: &BTreeSet<usize>) -> Vec<usize> {
+    let is_remembered = |index: usize| (index..=index + REMEMBERED).any(|later| used.contains(&later));
+    let mountings = recording.presses.iter().map(|press| &press.mounting[..]);
+    let ordered = in_order(mountings).into_iter();
+    ordered.filter(|&index| is_remembered(index)).collect()
+}
+
+/// A bench whose unknowns are pulled to what was learned.
+struct NearLearned<'a> {
+    problem: BenchProblem<'a>,
+    learned: &'a BenchEstimate,
+    prior: Prior,
+}
+
+impl Elastic for NearLearned<'_> {
+    fn unknowns(&self) -> Vec<Unknown> {
+        let mut unknowns = self.problem.unknowns();
+        let learned = self.problem.learned(self.learned, &USUAL);
+        debug_assert_eq!(unknowns.len(), learned.len());
+        for (unknown, (value, width)) in unknowns.iter_mut().zip(learned) {
+            self.prior.pull(unknown, value, width);
+        }
+        unknowns
+    }
+
+    fn pressures(&self, values: &[f64], with_slopes: bool) -> Result<Pressures, DigitacError> {
+        self.problem.pressures(values, with_slopes)
+    }
+}
