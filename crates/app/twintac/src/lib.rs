@@ -41,6 +41,7 @@
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call | `fast` |
+//! | [`SensorBatch`], [`Imperfection`] | the same with a twin's gains and memory, and with what no two sensors have alike | `sensors` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
@@ -151,6 +152,7 @@
 //! | feature | what it adds |
 //! |---|---|
 //! | `fast` | touch for learning, without finite elements, and back from readings to contacts |
+//! | `sensors` | many imperfect sensors stepped in one call; brings `fast` and `twin` |
 //! | `map` | pressure maps and pictures |
 //! | `recording` | recorded presses: Parquet, CSV |
 //! | `live` | reading a sensor; brings `recording` |
@@ -196,5 +198,7 @@ pub use twintac_recording::{Import, Provenance, Recording};
 #[cfg(feature = "run")]
 pub use twintac_run::{Caller, Metrics, Outcome, Progress, Run, RunSettings, Silent};
 pub use twintac_sensor::SensorFile;
+#[cfg(feature = "sensors")]
+pub use twintac_sensors::{Imperfection, SensorBatch};
 pub use twintac_shape::{Pose, Shape};
 pub use twintac_simulate::SimulateSettings;

@@ -4,8 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use digitac::{Model, Prediction, TwinAtPlace, TwinState};
+#[cfg(feature = "sensors")]
+use twintac_fast::FastGel;
 use twintac_recording::Provenance;
 use twintac_sensor::SensorFile;
+#[cfg(feature = "sensors")]
+use twintac_sensors::{Imperfection, SensorBatch};
 
 use crate::{Error, Press, Sensor};
 
@@ -71,6 +75,21 @@ impl Twin {
             &self.gel,
             &press.plan,
         )?)
+    }
+
+    /// So many sensors with this twin's gains and memory, over a fast gel of the same sensor, to be stepped with what touches them. See
+    /// [`SensorBatch::new`] for the panics.
+    #[cfg(feature = "sensors")]
+    #[must_use]
+    pub fn sensors(
+        &self,
+        gel: &FastGel,
+        imperfection: Imperfection,
+        [n_sensors, n_threads]: [usize; 2],
+        seed: u64,
+    ) -> SensorBatch {
+        let twin = Some(&self.model.twin);
+        SensorBatch::new(gel, twin, imperfection, [n_sensors, n_threads], seed)
     }
 
     /// Twins of so many sensors, to be stepped together with pressures at their ports, for programs that solve the gel themselves: one sensor,

@@ -36,7 +36,7 @@ struct Chunk {
 }
 
 impl SensorBatch {
-    /// So many sensors whose gels have rested. Sensor `n` is the same under the same seed, whatever the other sensors are and however many
+    /// So many sensors whose gels have rested, for so many threads. Sensor `n` is the same under the same seed, whatever the other sensors are and however many
     /// threads there are.
     ///
     /// With a twin, readings are those of its barometers; without, the pressures at the ports.
@@ -48,8 +48,7 @@ impl SensorBatch {
         gel: &FastGel,
         twin: Option<&Twin>,
         imperfection: Imperfection,
-        n_sensors: usize,
-        n_threads: usize,
+        [n_sensors, n_threads]: [usize; 2],
         seed: u64,
     ) -> Self {
         let n_taxels = gel.n_taxels();

@@ -30,7 +30,7 @@ fn readings(
     depth_mm: &[f64],
 ) -> Vec<Vec<f32>> {
     let gel = FastGel::phystac().unwrap();
-    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), n_sensors, n_threads, seed);
+    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [n_sensors, n_threads], seed);
     assert_eq!(batch.n_sensors(), n_sensors);
     let ends: Vec<usize> = (1..=n_sensors).collect();
     let bodies = ball();
@@ -190,8 +190,8 @@ fn a_slow_bus_repeats_and_a_late_taxel_is_a_frame_behind() {
 fn a_replaced_sensor_is_the_one_of_its_number() {
     let gel = FastGel::phystac().unwrap();
     let (bodies, imperfection) = (ball(), all_imperfections());
-    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), 3, 2, 9);
-    let mut other = SensorBatch::new(&gel, None, imperfection, 8, 1, 9);
+    let mut batch = SensorBatch::new(&gel, None, imperfection.clone(), [3, 2], 9);
+    let mut other = SensorBatch::new(&gel, None, imperfection, [8, 1], 9);
     batch.replace(1, 7);
     let step = |batch: &mut SensorBatch| {
         let n = batch.n_sensors();
