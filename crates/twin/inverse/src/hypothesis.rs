@@ -234,11 +234,10 @@ impl Hypothesis {
     /// What is known with a frame.
     fn information(&self, known: &Matrix, frame: &Weighed<'_>) -> Matrix {
         let mut information = *known;
-        for row in 0..N {
-            for column in 0..N {
-                let slopes = self.slopes[row].iter().zip(&self.slopes[column]);
-                let terms = slopes.zip(frame.weights).map(|((a, b), weight)| a * b * weight);
-                information[row][column] += terms.sum::<f64>();
+        for (row, along) in information.iter_mut().zip(&self.slopes) {
+            for (entry, across) in row.iter_mut().zip(&self.slopes) {
+                let slopes = along.iter().zip(across).zip(frame.weights);
+                *entry += slopes.map(|((a, b), weight)| a * b * weight).sum::<f64>();
             }
         }
         information

@@ -78,7 +78,10 @@ impl<M: ContactModel> Inverse<M> {
             ("n_starts", settings.n_starts as f64),
             ("n_steps", settings.n_steps as f64),
         ];
-        if let Some((field, found)) = positive.into_iter().find(|(_, value)| !(*value > 0.0)) {
+        if let Some((field, found)) = positive
+            .into_iter()
+            .find(|(_, value)| value.is_nan() || *value <= 0.0)
+        {
             return Err(InverseError::Setting { field, found });
         }
         if model.n_shapes() == 0 {

@@ -41,9 +41,9 @@ pub(crate) fn solve(lower: &Matrix, mut right: Vector) -> Vector {
 pub(crate) fn inverse(matrix: &Matrix) -> (Matrix, f64) {
     let lower = triangle(matrix);
     let mut inverse = [[0.0; N]; N];
-    for column in 0..N {
-        let unit = std::array::from_fn(|row| f64::from(u8::from(row == column)));
-        inverse[column] = solve(&lower, unit);
+    for (number, column) in inverse.iter_mut().enumerate() {
+        let unit = std::array::from_fn(|row| f64::from(u8::from(row == number)));
+        *column = solve(&lower, unit);
     }
     let logarithm = (0..N).map(|row| 2.0 * lower[row][row].ln()).sum();
     (inverse, logarithm)
