@@ -36,6 +36,9 @@ const USUAL: BenchWidths = BenchWidths {
     factor: 0.3,
 };
 
+/// What each press says of all unknowns, as a matrix, and what is known of each beforehand.
+pub(crate) type Information = (BTreeMap<usize, Vec<f64>>, Vec<f64>);
+
 /// A bench and its barometers, as they were learned elsewhere, before presses that they do not know.
 #[derive(Clone, Copy)]
 pub(crate) struct LearnedBench<'a> {
@@ -79,7 +82,7 @@ impl LearnedBench<'_> {
         &self,
         presses: &BTreeSet<usize>,
         predicted_kpa: &[Vec<Vec<f64>>],
-    ) -> Result<(BTreeMap<usize, Vec<f64>>, Vec<f64>), DigitacError> {
+    ) -> Result<Information, DigitacError> {
         let predicted = |index: usize| &predicted_kpa[index][..];
         self.with_presses(presses, &predicted, |near, series| {
             let (matrices, known) = information(near, series, self.gains, near.prior, self.left_out)?;
@@ -110,9 +113,9 @@ impl LearnedBench<'_> {
         if self.bench.has_history && !features.is_empty() {
             follow_each_other(&recording.presses, &mut features);
         }
-        for index in 0..features.len() {
+        for (index, features) in features.iter_mut().enumerate() {
             if index == 0 || !presses.contains(&(index - 1)) {
-                features[index].since_previous_s = None;
+                features.since_previous_s = None;
             }
         }
         let along = |&index: &usize| Along {
@@ -135,7 +138,7 @@ impl LearnedBench<'_> {
         let along = presses.iter().map(along).collect();
         let problem = BenchProblem::new(along, &curves, &[], n_taxels, &settings);
         let near = NearLearned {
-            problem: problem.as_learned(self.bench),
+            problem: problem.near_learned(self.bench),
             learned: self.bench,
             prior: Prior::beside(used.len()),
         };

@@ -70,6 +70,9 @@ pub(crate) struct BenchProblem<'a> {
     settings: &'a BenchSettings,
 }
 
+/// How well what follows from fitted values is known.
+pub(super) type EstimateOf<'a> = dyn Fn(&dyn Fn(&[f64]) -> f64) -> Estimate + 'a;
+
 impl<'a> BenchProblem<'a> {
     /// `curves` are those of each radius at each place; `[n_radii][n_places]`. One radius, or none, is not fitted.
     pub(crate) fn new(
@@ -129,7 +132,7 @@ impl<'a> BenchProblem<'a> {
     }
 
     /// The same with ports and a smooth factor that may differ from what was learned wherever something was.
-    pub(super) fn as_learned(mut self, learned: &BenchEstimate) -> Self {
+    pub(super) fn near_learned(mut self, learned: &BenchEstimate) -> Self {
         let is_shifted = |axis: usize| learned.ports.iter().any(|port| port.shift_mm[axis] != 0.0);
         self.axes = (0..2).filter(|axis| is_shifted(*axis)).collect();
         self.form.clone_from(&learned.smooth_factor);
@@ -210,7 +213,7 @@ impl<'a> BenchProblem<'a> {
     pub(crate) fn estimate(
         &self,
         values: &[f64],
-        estimate: &dyn Fn(&dyn Fn(&[f64]) -> f64) -> Estimate,
+        estimate: &EstimateOf<'_>,
         has_taught: &dyn Fn(&str) -> bool,
     ) -> BenchEstimate {
         let guess = self.guess(values);
