@@ -357,13 +357,13 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
     };
     assert!(error(&found.twin) < 1.0 && error(&twin) > 5.0);
 
-    // One press beside the first taxel tells the others no more than that whole gels differ.
+    // One press beside the first taxel tells of the last one no more than chips of one gel differ: by a fifth.
     let by_one = adapted(&[1]);
     let relative = |adapted: &Adapted, taxel: usize| {
         adapted.adaptation.gain[taxel].uncertainty / adapted.adaptation.gain[taxel].value
     };
     assert!(relative(&by_one, 0) < 0.15, "{:?}", by_one.adaptation.gain);
-    assert!(relative(&by_one, 3) > 0.3, "{:?}", by_one.adaptation.gain);
+    assert!(relative(&by_one, 3) > 0.2, "{:?}", by_one.adaptation.gain);
     assert!(relative(&found, 3) < 0.15, "{:?}", found.adaptation.gain);
     let moved = by_one.adaptation.gain[3].value / learned[3];
     let by_first = by_one.adaptation.gain[0].value / learned[0];
