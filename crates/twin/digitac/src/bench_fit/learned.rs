@@ -8,6 +8,7 @@ use twintac_recording::Recording;
 use super::problem::{Along, BenchProblem};
 use super::search::in_order;
 use super::simulated::{bare_features, curves, follow_each_other};
+use super::widths::BenchWidths;
 use super::{BenchEstimate, BenchSettings, Estimate, Places};
 use crate::numerics::Unknown;
 use crate::physical_fit::{
@@ -17,24 +18,6 @@ use crate::{DigitacError, Features, Gains};
 
 /// Presses before one that is fitted to, which the gel still remembers.
 const REMEMBERED: usize = 2;
-
-/// By how much two benches differ: standard deviations of the unknowns of a fit.
-pub(super) struct BenchWidths {
-    pub(super) contact_offset_mm: f64,
-    pub(super) ln_stiffness: f64,
-    /// Of a port's place along an axis, and of all ports' radius.
-    pub(super) port_mm: f64,
-    /// Of a coefficient of the smooth factor.
-    pub(super) factor: f64,
-}
-
-/// Mountings differ by some hundredths of a millimetre, ports of one board less; a tip that nobody documented leaves the most unknown.
-const USUAL: BenchWidths = BenchWidths {
-    contact_offset_mm: 0.05,
-    ln_stiffness: 0.3,
-    port_mm: 0.05,
-    factor: 0.3,
-};
 
 /// What each press says of all unknowns, as a matrix, and what is known of each beforehand.
 pub(crate) type Information = (BTreeMap<usize, Vec<f64>>, Vec<f64>);
@@ -165,7 +148,7 @@ struct NearLearned<'a> {
 impl Elastic for NearLearned<'_> {
     fn unknowns(&self) -> Vec<Unknown> {
         let mut unknowns = self.problem.unknowns();
-        let learned = self.problem.learned(self.learned, &USUAL);
+        let learned = self.problem.learned(self.learned, &BenchWidths::USUAL);
         debug_assert_eq!(unknowns.len(), learned.len());
         for (unknown, (value, width)) in unknowns.iter_mut().zip(learned) {
             self.prior.pull(unknown, value, width);

@@ -9,6 +9,7 @@ mod problem;
 mod search;
 mod simulated;
 mod smooth_factor;
+mod widths;
 
 pub use bench_estimate::{BenchEstimate, BenchSettings, PortEstimate};
 pub use estimate::Estimate;

@@ -6,8 +6,8 @@ use std::ops::Range;
 use twintac_depth_table::DepthCurves;
 use twintac_recording::{Control, Press};
 
-use super::learned::BenchWidths;
 use super::smooth_factor::N_TERMS;
+use super::widths::BenchWidths;
 use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, SmoothFactor, deepest_pose};
 use crate::DigitacError;
 use crate::numerics::{Unknown, median};

@@ -6,58 +6,15 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::prior::{BarometerWidths, Prior};
+use super::layout::{BarometerModel, Layout};
+use super::prior::Prior;
 use super::{Elastic, Posterior, Pressures, Series};
+use crate::DigitacError;
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
-use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, inverse_symmetric, median, minimize_robust};
-use crate::{DigitacError, Features};
+use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, inverse_symmetric, minimize_robust};
 
 /// Deviations below this share of the largest reading count quadratically, larger ones linearly.
 const CORNER: f64 = 2e-3;
-/// How far from its start a time constant is looked for, as a factor.
-const TIME_CONSTANT_REACH: f64 = 6.0;
-/// Smallest and largest share of an overstress in the reading.
-const SHARES: [f64; 2] = [0.0, 5.0];
-/// Smallest and largest relative growth of a reading at the largest reading of all.
-const STIFFENING: [f64; 2] = [-1.0, 3.0];
-/// Pull of the growth that is common to all taxels to zero.
-const STIFFENING_PULL: f64 = 1e-5;
-/// Pull of a taxel's own growth to the common one.
-const OWN_STIFFENING_PULL: f64 = 1e-3;
-/// How far from its start a gain is looked for, as a factor.
-const GAIN_REACH: f64 = 100.0;
-/// Gains below this share of the largest start there.
-const SMALLEST_GAIN: f64 = 1e-4;
-
-/// What barometers can do.
-#[derive(Clone, Debug)]
-pub(crate) struct BarometerModel {
-    /// Time constants that the fit starts from, s; none for barometers without memory.
-    pub(crate) time_constants_s: Vec<f64>,
-    /// Whether readings may grow otherwise than in proportion to the pressure.
-    pub(crate) has_port_law: bool,
-}
-
-impl BarometerModel {
-    /// The model for readings of some presses. If each is a single frame, there is neither memory nor port law: a port's pressure then depends on its
-    /// distance alone, where a port law cannot be told from what the tip does otherwise than simulated.
-    pub(crate) fn new<'a>(
-        presses: impl IntoIterator<Item = &'a Features>,
-        time_constants_s: &[f64],
-        has_port_law: bool,
-    ) -> Self {
-        if presses.into_iter().all(|features| features.n_frames() < 2) {
-            return Self {
-                time_constants_s: Vec::new(),
-                has_port_law: false,
-            };
-        }
-        Self {
-            time_constants_s: time_constants_s.to_vec(),
-            has_port_law,
-        }
-    }
-}
 
 /// The result of a fit.
 pub(crate) struct Solution {
@@ -259,104 +216,6 @@ fn usual_gain(gains: &Gains, left_out: &BTreeSet<usize>) -> f64 {
     };
     let sum: f64 = kept().map(|(_, gain)| gain.ln()).sum();
     (sum / kept().count().max(1) as f64).exp()
-}
-
-/// Which unknown stands where: those of the port pressures, ln time constants, the relative growth and the ln gain that are common to all
-/// taxels, and of each taxel its own ln gain, its own relative growth, and shares of the overstresses.
-///
-/// The common ln gain is zero but where gains are pulled to others: a whole sensor may read more than another.
-///
-/// The common growth belongs to the gel: it is the same at the same port pressure, whatever the gain. It is given at the largest reading of
-/// a taxel of usual gain; a taxel's own growth, at the largest reading.
-pub(super) struct Layout {
-    n_elastic: usize,
-    n_constants: usize,
-    largest_kpa: f64,
-    usual_gain: f64,
-}
-
-impl Layout {
-    fn unknowns(&self, gains: &Gains, model: &BarometerModel) -> Vec<Unknown> {
-        let unknown = |start: f64, bounds: [f64; 2], pull: f64| Unknown {
-            start,
-            bounds,
-            center: 0.0,
-            pull,
-        };
-        let around = |center: f64, reach: f64| unknown(center, [center - reach, center + reach], 0.0);
-        let constants = gains.time_constants_s.iter();
-        let mut unknowns: Vec<Unknown> = constants
-            .map(|tau| around(tau.ln(), TIME_CONSTANT_REACH.ln()))
-            .collect();
-        let largest = gains.gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let limits = if model.has_port_law { STIFFENING } else { [0.0; 2] };
-        let at_usual_gain = gains
-            .gain
-            .iter()
-            .zip(&gains.stiffening_per_kpa)
-            .map(|(gain, per_kpa)| self.largest_kpa * per_kpa * gain / self.usual_gain);
-        let common = median(at_usual_gain.collect());
-        unknowns.push(unknown(common, limits, STIFFENING_PULL));
-        unknowns.push(around(0.0, 0.0));
-        for (k, (gain, shares)) in gains.gain.iter().zip(&gains.memory).enumerate() {
-            let gain = gain.max(SMALLEST_GAIN * largest);
-            unknowns.push(around(gain.ln(), GAIN_REACH.ln()));
-            let own = self.largest_kpa * gains.stiffening_per_kpa[k] - common * self.usual_gain / gain;
-            unknowns.push(unknown(own, limits, OWN_STIFFENING_PULL));
-            unknowns.extend(shares.iter().map(|share| unknown(*share, SHARES, 0.0)));
-        }
-        unknowns
-    }
-
-    /// Pulls the unknowns of the barometers to where they start, and lets the common gain go.
-    fn pull(&self, unknowns: &mut [Unknown], prior: Prior) {
-        let widths = BarometerWidths::USUAL;
-        let common = self.common() - self.n_elastic;
-        unknowns[common + 1].bounds = [-GAIN_REACH.ln(), GAIN_REACH.ln()];
-        for (i, unknown) in unknowns.iter_mut().enumerate() {
-            let width = match i {
-                i if i < common => widths.ln_time_constant,
-                i if i == common => widths.common_growth,
-                i if i == common + 1 => widths.common_ln_gain,
-                i => match (i - common - 2) % (2 + self.n_constants) {
-                    0 => widths.own_ln_gain,
-                    1 => widths.own_growth,
-                    _ => widths.share,
-                },
-            };
-            prior.pull(unknown, unknown.start, width);
-        }
-    }
-
-    /// Where the growth that is common to all taxels stands.
-    fn common(&self) -> usize {
-        self.n_elastic + self.n_constants
-    }
-
-    /// The unknowns of the port pressures.
-    pub(super) fn of_elastic<'x>(&self, x: &'x [f64]) -> &'x [f64] {
-        &x[..self.n_elastic]
-    }
-
-    /// Where the unknowns of a taxel start.
-    fn of_taxel(&self, k: usize) -> usize {
-        self.common() + 2 + k * (2 + self.n_constants)
-    }
-
-    pub(super) fn gains(&self, x: &[f64], n_taxels: usize) -> Gains {
-        let of = |k: usize| &x[self.of_taxel(k)..self.of_taxel(k + 1)];
-        let constants = &x[self.n_elastic..self.common()];
-        let gain = |k: usize| (of(k)[0] + x[self.common() + 1]).exp();
-        let stiffening = |k: usize| of(k)[1] + x[self.common()] * self.usual_gain / gain(k);
-        Gains {
-            gain: (0..n_taxels).map(gain).collect(),
-            stiffening_per_kpa: (0..n_taxels)
-                .map(|k| stiffening(k) / self.largest_kpa.max(f64::MIN_POSITIVE))
-                .collect(),
-            memory: (0..n_taxels).map(|k| of(k)[2..].to_vec()).collect(),
-            time_constants_s: constants.iter().map(|ln| ln.exp()).collect(),
-        }
-    }
 }
 
 /// The memory of one time constant over all frames.

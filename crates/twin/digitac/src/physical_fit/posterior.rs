@@ -1,6 +1,6 @@
 //! What a fit near learned values has found, and how sure it is.
 
-use super::fit::Layout;
+use super::layout::Layout;
 use crate::Gains;
 
 /// Step of an unknown for slopes.
