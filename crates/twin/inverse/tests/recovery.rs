@@ -187,11 +187,12 @@ fn a_contact_that_slides_is_followed() {
             spin_rad: 0.0,
         };
         let contact = tracker.update(0.002, &noisy(read(0, &press).0, random)).unwrap();
-        if frame > 200 {
+        // At first it may be taken for another shape, elsewhere.
+        if frame > 300 {
             farthest_mm = farthest_mm.max(contact.place_mm.distance(press.place_mm));
         }
     }
-    assert!(farthest_mm < 1.5, "{farthest_mm} mm");
+    assert!(farthest_mm < 0.6, "{farthest_mm} mm");
 }
 
 #[test]
