@@ -65,7 +65,7 @@ pub(crate) enum Command {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum FastCommand {
-    /// Train a fast twin from a sensor's description alone: less than an hour on two cores.
+    /// Train a fast twin from a sensor's description alone.
     Train(FastTrain),
 }
 

@@ -40,7 +40,7 @@ struct Header {
     center_mm: glam::DVec3,
 }
 
-/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml`.
+/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 3000 --exams 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
 impl FastGel {

@@ -9,7 +9,7 @@ use twintac_shape::Pose;
 use crate::Imperfection;
 use crate::sensor::Sensor;
 
-/// Many sensors of one kind. It owns all memory that steps need.
+/// Many sensors of one kind, with the memory that steps need: it is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct SensorBatch {
     gel: FastBatch,
