@@ -61,12 +61,10 @@ impl FastBatch {
             .zip(wrench.par_chunks_mut(of_thread));
         let work = self.readers.par_iter_mut().zip(chunks).enumerate();
         work.for_each(|(chunk, (reader, (pressure_kpa, wrench)))| {
-            let sensors = pressure_kpa.chunks_exact_mut(n_taxels).zip(wrench);
-            for (index, (pressure_kpa, wrench)) in sensors.enumerate() {
-                let sensor = chunk * of_thread + index;
-                let start = if sensor == 0 { 0 } else { ends[sensor - 1] };
-                reader.read_touches(bodies, &touches[start..ends[sensor]], pressure_kpa, wrench);
-            }
+            let start = chunk * of_thread;
+            let own = start..start + wrench.len();
+            let first = if start == 0 { 0 } else { ends[start - 1] };
+            reader.read_from(bodies, touches, first, &ends[own], pressure_kpa, wrench);
         });
     }
 }

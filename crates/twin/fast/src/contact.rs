@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use glam::{Mat3, Vec3};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use twintac_shape::Pose;
 
-use crate::distance::{Body, Form, REACH_MM};
+use crate::distance::{Body, Field, Form, REACH_MM};
+use crate::engine::dispatch;
 use crate::surface::SurfaceGrid;
 
 /// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses.
@@ -14,11 +15,6 @@ const LEVELS_MM: [f32; 3] = [0.0, -1.5, -3.0];
 
 /// Deeper points are no deeper to the network, mm.
 const DEEPEST_MM: f32 = 4.0;
-
-/// Points of a row whose distances are computed together.
-const SIDE_BY_SIDE: usize = 8;
-
-type Lanes = [f32; SIDE_BY_SIDE];
 
 /// Numbers for each point.
 pub(crate) const N_CHANNELS: usize = LEVELS_MM.len();
@@ -57,7 +53,7 @@ impl ContactGrid {
     /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its
     /// surface, more inside. `[n_points * N_CHANNELS]`
     pub(crate) fn fill<'a>(&self, bodies: impl Iterator<Item = (&'a Body, Pose)>, inputs: &mut [f32]) {
-        Arch::new().dispatch(Filling {
+        dispatch(Filling {
             grid: self,
             bodies,
             inputs,
@@ -95,32 +91,14 @@ impl ContactGrid {
             rows,
         };
         match &body.form {
-            Form::Ball { radius_mm } => self.add_placed(&placed, inputs, |x, y, z, _| {
-                std::array::from_fn(|side| {
-                    let z = z[side] - radius_mm;
-                    (x[side] * x[side] + y[side] * y[side] + z * z).sqrt() - radius_mm
-                })
-            }),
-            Form::Sampled(samples) => self.add_placed(&placed, inputs, |x, y, z, is_asked| {
-                let mut distance_mm = [REACH_MM; SIDE_BY_SIDE];
-                for (side, distance_mm) in distance_mm.iter_mut().enumerate() {
-                    if is_asked[side] {
-                        *distance_mm = samples.distance_mm(Vec3::new(x[side], y[side], z[side]));
-                    }
-                }
-                distance_mm
-            }),
+            Form::Ball(ball) => self.add_placed(&placed, inputs, ball),
+            Form::Sampled(samples) => self.add_placed(&placed, inputs, samples),
         }
     }
 
-    /// The points of a body's box, a few of a row at a time: simple loops over a fixed number of points become vector instructions.
+    /// The points of a body's box.
     #[inline(always)]
-    fn add_placed(
-        &self,
-        placed: &Placed,
-        inputs: &mut [f32],
-        distance_mm: impl Fn(&Lanes, &Lanes, &Lanes, &[bool; SIDE_BY_SIDE]) -> Lanes,
-    ) {
+    fn add_placed(&self, placed: &Placed, inputs: &mut [f32], field: &impl Field) {
         let n_x = self.n[0];
         let [along, across, up] = [
             placed.body_from_gel.x_axis,
@@ -129,43 +107,20 @@ impl ContactGrid {
         ];
         let inputs = inputs.as_chunks_mut::<N_CHANNELS>().0;
         for j in placed.rows.clone() {
-            let y_mm = self.first_mm[1] + self.spacing_mm * j as f32;
-            let mut first = placed.columns.start;
-            while first < placed.columns.end {
-                let n = SIDE_BY_SIDE.min(placed.columns.end - first);
-                let points = j * n_x + first..j * n_x + first + n;
-                let mut height_mm = [0.0; SIDE_BY_SIDE];
-                height_mm[..n].copy_from_slice(&self.height_mm[points.clone()]);
-                let row = across * (y_mm - placed.origin.y);
-                let x_mm: Lanes = std::array::from_fn(|side| {
-                    self.first_mm[0] + self.spacing_mm * (first + side) as f32 - placed.origin.x
-                });
-                let z_mm = height_mm.map(|height_mm| height_mm - placed.origin.z);
-                let at = |axis: usize, level_mm: f32| -> Lanes {
-                    std::array::from_fn(|side| {
-                        along[axis] * x_mm[side] + row[axis] + up[axis] * (z_mm[side] + level_mm)
-                    })
-                };
-                let shares = |level_mm: f32, is_asked: &[bool; SIDE_BY_SIDE]| {
-                    distance_mm(&at(0, level_mm), &at(1, level_mm), &at(2, level_mm), is_asked).map(share)
-                };
-                let surface = shares(LEVELS_MM[0], &std::array::from_fn(|side| side < n));
-                // What is not near the surface is not near anything below it.
-                let is_near = surface.map(|share| share > 0.0);
-                let inputs = &mut inputs[points];
-                for (input, share) in inputs.iter_mut().zip(&surface) {
-                    input[0] = larger(input[0], *share);
-                }
-                if is_near.contains(&true) {
-                    for level in 1..N_CHANNELS {
-                        let deeper = shares(LEVELS_MM[level], &is_near);
-                        for ((input, is_near), share) in inputs.iter_mut().zip(is_near).zip(deeper) {
-                            let share = if is_near { share } else { 0.0 };
-                            input[level] = larger(input[level], share);
-                        }
+            let row = across * (self.first_mm[1] + self.spacing_mm * j as f32 - placed.origin.y);
+            let points = j * n_x + placed.columns.start..j * n_x + placed.columns.end;
+            let heights_mm = &self.height_mm[points.clone()];
+            for ((i, height_mm), input) in placed.columns.clone().zip(heights_mm).zip(&mut inputs[points]) {
+                let x_mm = self.first_mm[0] + self.spacing_mm * i as f32 - placed.origin.x;
+                let (plane, z_mm) = (along * x_mm + row, height_mm - placed.origin.z);
+                for (input, level_mm) in input.iter_mut().zip(LEVELS_MM) {
+                    let share = share(field.distance_mm(plane + up * (z_mm + level_mm)));
+                    // What is not near the surface is not near anything below it.
+                    if level_mm == LEVELS_MM[0] && share == 0.0 {
+                        break;
                     }
+                    *input = larger(*input, share);
                 }
-                first += n;
             }
         }
     }

@@ -19,19 +19,44 @@ pub struct Body {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Form {
-    Ball { radius_mm: f32 },
+    Ball(Ball),
     Sampled(Samples),
 }
 
-/// Distances at the corners of cells, cells along x first. A corner is stored with each of its eight cells: one place in memory has all that a
-/// distance is made of.
+/// What tells distances.
+pub(crate) trait Field {
+    /// The distance of a point in the body's frame, mm; [`REACH_MM`] or more where it is more than that.
+    fn distance_mm(&self, point: Vec3) -> f32;
+}
+
+/// A ball that stands on its origin.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ball {
+    radius_mm: f32,
+}
+
+impl Field for Ball {
+    #[inline(always)]
+    fn distance_mm(&self, point: Vec3) -> f32 {
+        (point - Vec3::new(0.0, 0.0, self.radius_mm)).length() - self.radius_mm
+    }
+}
+
+/// Distances at the corners of cells, along z first: points of a body that stands upright, one above the other, lie side by side in memory.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Samples {
     first_mm: Vec3,
     n_cells: [usize; 3],
-    /// Corner `4 x + 2 y + z` of each cell, mm.
-    corners_mm: Vec<[f32; 8]>,
+    /// `[n_cells.x + 1][n_cells.y + 1][n_cells.z + 1]`
+    distance_mm: Vec<f32>,
+    /// Smallest distance in each block of cells: most of the space around a body is out of its reach, and these say so at once.
+    /// `[n_blocks.x][n_blocks.y][n_blocks.z]`
+    least_mm: Vec<f32>,
+    n_blocks: [usize; 3],
 }
+
+/// Cells along each side of a block.
+const BLOCK: usize = 4;
 
 impl Body {
     /// Samples a shape, which takes from a millisecond to a second for a surface of many triangles.
@@ -42,9 +67,9 @@ impl Body {
         let exact = shape.signed_distance_field(surfaces)?;
         let (low, high) = exact.bounds_mm();
         let form = match shape {
-            Shape::Sphere { radius_mm } => Form::Ball {
+            Shape::Sphere { radius_mm } => Form::Ball(Ball {
                 radius_mm: *radius_mm as f32,
-            },
+            }),
             _ => Form::Sampled(Samples::of(exact.as_ref())),
         };
         Ok(Self {
@@ -57,8 +82,10 @@ impl Body {
     #[must_use]
     pub fn n_bytes(&self) -> usize {
         let samples = match &self.form {
-            Form::Ball { .. } => 0,
-            Form::Sampled(samples) => size_of_val(samples.corners_mm.as_slice()),
+            Form::Ball(_) => 0,
+            Form::Sampled(samples) => {
+                size_of_val(samples.distance_mm.as_slice()) + size_of_val(samples.least_mm.as_slice())
+            }
         };
         size_of::<Self>() + samples
     }
@@ -71,56 +98,80 @@ impl Samples {
         let (low, high) = (low - around, high + around);
         let spacing_mm = f64::from(SPACING_MM);
         let n_cells = ((high - low) / spacing_mm).ceil().to_array().map(|n| n as usize);
-        let [n_x, n_y, n_z] = n_cells;
-        let mut distance_mm = Vec::with_capacity((n_x + 1) * (n_y + 1) * (n_z + 1));
-        for k in 0..=n_z {
-            for j in 0..=n_y {
-                distance_mm.extend((0..=n_x).map(|i| {
+        let [n_x, n_y, n_z] = n_cells.map(|n| n + 1);
+        let mut distance_mm = Vec::with_capacity(n_x * n_y * n_z);
+        for i in 0..n_x {
+            for j in 0..n_y {
+                distance_mm.extend((0..n_z).map(|k| {
                     let point = low + spacing_mm * DVec3::new(i as f64, j as f64, k as f64);
                     exact.signed_distance(point).distance_mm as f32
                 }));
             }
         }
-        let corner = |i: usize, j: usize, k: usize| distance_mm[(k * (n_y + 1) + j) * (n_x + 1) + i];
-        let mut corners_mm = Vec::with_capacity(n_x * n_y * n_z);
-        for k in 0..n_z {
-            for j in 0..n_y {
-                corners_mm.extend((0..n_x).map(|i| {
-                    std::array::from_fn(|number| {
-                        corner(i + (number >> 2), j + (number >> 1 & 1), k + (number & 1))
-                    })
-                }));
+        let n_blocks = n_cells.map(|n| n.div_ceil(BLOCK));
+        let [b_x, b_y, b_z] = n_blocks;
+        let mut least_mm = vec![f32::INFINITY; b_x * b_y * b_z];
+        // A block ends with the corners of its last cells, with which the next one begins.
+        let blocks = |corner: usize, n: usize| corner.saturating_sub(1) / BLOCK..(corner / BLOCK + 1).min(n);
+        for (number, distance_mm) in distance_mm.iter().enumerate() {
+            let [i, j, k] = [number / (n_y * n_z), number / n_z % n_y, number % n_z];
+            for b_i in blocks(i, b_x) {
+                for b_j in blocks(j, b_y) {
+                    for b_k in blocks(k, b_z) {
+                        let least_mm = &mut least_mm[(b_i * b_y + b_j) * b_z + b_k];
+                        *least_mm = least_mm.min(*distance_mm);
+                    }
+                }
             }
         }
         Self {
             first_mm: low.as_vec3(),
             n_cells,
-            corners_mm,
+            distance_mm,
+            least_mm,
+            n_blocks,
         }
     }
+}
 
-    /// The distance, linear between the samples; beyond them [`REACH_MM`].
+impl Field for Samples {
+    /// Linear between the samples.
     #[inline(always)]
-    pub(crate) fn distance_mm(&self, point: Vec3) -> f32 {
+    fn distance_mm(&self, point: Vec3) -> f32 {
         let [n_x, n_y, n_z] = self.n_cells;
         let cells = (point - self.first_mm) * (1.0 / SPACING_MM);
         let end = Vec3::new(n_x as f32, n_y as f32, n_z as f32);
         if !(cells.cmpge(Vec3::ZERO).all() && cells.cmplt(end).all()) {
             return REACH_MM;
         }
-        let [i, j, k] = cells.to_array().map(|cell| cell as usize);
-        let part = cells - Vec3::new(i as f32, j as f32, k as f32);
-        let Some([x0y0z0, x0y0z1, x0y1z0, x0y1z1, x1y0z0, x1y0z1, x1y1z0, x1y1z1]) =
-            self.corners_mm.get((k * n_y + j) * n_x + i)
-        else {
+        let [i, j, k] = [
+            cells.x as i32 as usize,
+            cells.y as i32 as usize,
+            cells.z as i32 as usize,
+        ];
+        let [_, b_y, b_z] = self.n_blocks;
+        let least_mm = self.least_mm[((i / BLOCK) * b_y + j / BLOCK) * b_z + k / BLOCK];
+        if least_mm >= REACH_MM {
             return REACH_MM;
-        };
-        let along_x = |low: f32, high: f32| low + (high - low) * part.x;
-        let [y0z0, y0z1] = [along_x(*x0y0z0, *x1y0z0), along_x(*x0y0z1, *x1y0z1)];
-        let [y1z0, y1z1] = [along_x(*x0y1z0, *x1y1z0), along_x(*x0y1z1, *x1y1z1)];
-        let [z0, z1] = [y0z0 + (y1z0 - y0z0) * part.y, y0z1 + (y1z1 - y0z1) * part.y];
+        }
+        let part = cells - Vec3::new(i as f32, j as f32, k as f32);
+        let (along_y, along_x) = (n_z + 1, (n_y + 1) * (n_z + 1));
+        let from = &self.distance_mm[i * along_x + j * along_y + k..][..along_x + along_y + 2];
+        let y0 = between([from[0], from[1]], [from[along_x], from[along_x + 1]], part.x);
+        let from = &from[along_y..];
+        let y1 = between([from[0], from[1]], [from[along_x], from[along_x + 1]], part.x);
+        let [z0, z1] = between(y0, y1, part.y);
         z0 + (z1 - z0) * part.z
     }
+}
+
+/// Between two pairs of numbers, number by number.
+#[inline(always)]
+fn between(low: [f32; 2], high: [f32; 2], part: f32) -> [f32; 2] {
+    [
+        low[0] + (high[0] - low[0]) * part,
+        low[1] + (high[1] - low[1]) * part,
+    ]
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::{Body, FastGel, Touch};
 pub struct FastReader {
     grid: Arc<ContactGrid>,
     engine: Arc<Engine>,
+    /// What touches sensors that are evaluated together.
     inputs: Vec<f32>,
     scratch: Scratch,
     n_taxels: usize,
@@ -25,7 +26,7 @@ impl FastGel {
         let grid = ContactGrid::new(&self.layout.grid);
         let engine = Engine::of(self);
         FastReader {
-            inputs: vec![0.0; grid.n_inputs()],
+            inputs: vec![0.0; engine.n_together() * grid.n_inputs()],
             scratch: engine.scratch(),
             n_taxels: self.n_taxels(),
             grid: Arc::new(grid),
@@ -49,28 +50,65 @@ impl FastReader {
     /// # Panics
     /// A slice of pressures of another length than there are taxels, a pose that is not finite.
     pub fn read(&mut self, bodies: &[(&Body, Pose)], pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
-        self.grid.fill(bodies.iter().copied(), &mut self.inputs);
-        self.evaluate(pressure_kpa, wrench);
+        assert_eq!(pressure_kpa.len(), self.n_taxels, "a pressure for each taxel");
+        let inputs = &mut self.inputs[..self.grid.n_inputs()];
+        self.grid.fill(bodies.iter().copied(), inputs);
+        let wrench = std::slice::from_mut(wrench);
+        self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
     }
 
-    /// The same of bodies that are known by their numbers.
-    pub(crate) fn read_touches(
+    /// The same of many sensors, one after the other on the calling thread. A sensor's numbers do not depend on the others.
+    ///
+    /// - `bodies`: everything that touches; any number of sensors may share a body.
+    /// - `touches`: of the first sensor, then of the second, and so on.
+    /// - `ends`: where each sensor's touches end. `[n_sensors]`, the last is the number of touches.
+    /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_sensors * n_taxels]`
+    /// - `wrench`: is written; force, N, and torque about the top of the gel's middle, N mm. `[n_sensors]`
+    ///
+    /// # Panics
+    /// Slices of other lengths, ends that decrease, a body that is not there, a pose that is not finite.
+    pub fn read_many(
         &mut self,
         bodies: &[Body],
         touches: &[Touch],
+        ends: &[usize],
         pressure_kpa: &mut [f32],
-        wrench: &mut [f32; 6],
+        wrench: &mut [[f32; 6]],
     ) {
-        let touching = touches
-            .iter()
-            .map(|touch| (&bodies[touch.body as usize], touch.gel_from_body));
-        self.grid.fill(touching, &mut self.inputs);
-        self.evaluate(pressure_kpa, wrench);
+        self.read_from(bodies, touches, 0, ends, pressure_kpa, wrench);
     }
 
-    fn evaluate(&mut self, pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
-        assert_eq!(pressure_kpa.len(), self.n_taxels, "a pressure for each taxel");
-        self.engine
-            .read(&self.inputs, &mut self.scratch, pressure_kpa, wrench);
+    /// The same of sensors whose first touch is not the first of all.
+    pub(crate) fn read_from(
+        &mut self,
+        bodies: &[Body],
+        touches: &[Touch],
+        mut first: usize,
+        ends: &[usize],
+        pressure_kpa: &mut [f32],
+        wrench: &mut [[f32; 6]],
+    ) {
+        let n_sensors = ends.len();
+        assert_eq!(
+            pressure_kpa.len(),
+            n_sensors * self.n_taxels,
+            "a pressure for each taxel of each sensor"
+        );
+        assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
+        let (n_together, n_inputs) = (self.engine.n_together(), self.grid.n_inputs());
+        let numbers = pressure_kpa
+            .chunks_mut((n_together * self.n_taxels).max(1))
+            .zip(wrench.chunks_mut(n_together));
+        for (ends, (pressure_kpa, wrench)) in ends.chunks(n_together).zip(numbers) {
+            for (end, inputs) in ends.iter().zip(self.inputs.chunks_exact_mut(n_inputs)) {
+                let touching = touches[first..*end]
+                    .iter()
+                    .map(|touch| (&bodies[touch.body as usize], touch.gel_from_body));
+                self.grid.fill(touching, inputs);
+                first = *end;
+            }
+            let inputs = &self.inputs[..ends.len() * n_inputs];
+            self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
+        }
     }
 }

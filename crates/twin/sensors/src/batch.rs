@@ -3,7 +3,7 @@
 use digitac::{Twin, TwinState};
 use glam::DQuat;
 use rayon::prelude::*;
-use twintac_fast::{Body, FastBatch, FastGel, Touch};
+use twintac_fast::{Body, FastGel, FastReader, Touch};
 use twintac_shape::Pose;
 
 use crate::Imperfection;
@@ -12,25 +12,26 @@ use crate::sensor::Sensor;
 /// Many sensors of one kind, with the memory that steps need: it is kept from step to step.
 #[derive(Clone, Debug)]
 pub struct SensorBatch {
-    gel: FastBatch,
     imperfection: Imperfection,
     seed: u64,
     n_taxels: usize,
     chunks: Vec<Chunk>,
     /// Sensors of each chunk but the last.
     of_chunk: usize,
-    /// What touches, as the sensors that are not where they should be feel it.
-    touches: Vec<Touch>,
-    /// `[n_sensors * n_taxels]`
-    pressure_kpa: Vec<f32>,
 }
 
 /// Sensors that one thread steps.
 #[derive(Clone, Debug)]
 struct Chunk {
     sensors: Vec<Sensor>,
+    gel: FastReader,
+    /// What touches, as the sensors that are not where they should be feel it.
+    touches: Vec<Touch>,
+    /// Where each sensor's touches end. `[n_sensors]`
+    ends: Vec<usize>,
     twin: Option<TwinState>,
-    /// What the gels show, and what perfect sensors would read of it. `[n_sensors * n_taxels]`
+    /// What the gels show, also in double precision, and what perfect sensors would read of it. `[n_sensors * n_taxels]`
+    pressure_kpa: Vec<f32>,
     seen: Vec<f64>,
     true_kpa: Vec<f64>,
 }
@@ -60,6 +61,7 @@ impl SensorBatch {
             );
         }
         let of_chunk = n_sensors.div_ceil(n_threads.max(1)).max(1);
+        let gel = gel.reader();
         let chunk = |first: usize| {
             let numbers = first..(first + of_chunk).min(n_sensors);
             let n = numbers.len();
@@ -72,19 +74,20 @@ impl SensorBatch {
                     twin.tare_untouched();
                     twin
                 }),
+                gel: gel.clone(),
+                touches: Vec::new(),
+                ends: Vec::with_capacity(n),
+                pressure_kpa: vec![0.0; n * n_taxels],
                 seen: vec![0.0; n * n_taxels],
                 true_kpa: vec![0.0; n * n_taxels],
             }
         };
         Self {
-            gel: gel.batch(n_threads),
             chunks: (0..n_sensors).step_by(of_chunk).map(chunk).collect(),
             imperfection,
             seed,
             n_taxels,
             of_chunk,
-            touches: Vec::new(),
-            pressure_kpa: vec![0.0; n_sensors * n_taxels],
         }
     }
 
@@ -113,52 +116,41 @@ impl SensorBatch {
         readings_kpa: &mut [f32],
         wrench: &mut [[f32; 6]],
     ) {
+        let n_sensors = self.n_sensors();
+        let n_readings = n_sensors * self.n_taxels;
         assert_eq!(
             readings_kpa.len(),
-            self.pressure_kpa.len(),
+            n_readings,
             "a reading for each taxel of each sensor"
         );
-        self.mount(touches, ends);
-        self.gel
-            .read(bodies, &self.touches, ends, &mut self.pressure_kpa, wrench);
-        let n = self.of_chunk * self.n_taxels;
-        let (imperfection, n_taxels) = (&self.imperfection, self.n_taxels);
-        let numbers = self
-            .pressure_kpa
-            .par_chunks(n)
-            .zip(readings_kpa.par_chunks_mut(n));
-        self.chunks
-            .par_iter_mut()
-            .zip(numbers)
-            .for_each(|(chunk, (pressure_kpa, readings_kpa))| {
-                chunk.step(
-                    imperfection,
-                    n_taxels,
-                    since_previous_s,
-                    pressure_kpa,
-                    readings_kpa,
-                );
-            });
-    }
-
-    /// What touches, seen from where the sensors are.
-    fn mount(&mut self, touches: &[Touch], ends: &[usize]) {
-        self.touches.clear();
-        self.touches.extend_from_slice(touches);
-        let sensors = self.chunks.iter().flat_map(|chunk| &chunk.sensors);
-        let mut first = 0;
-        for (sensor, end) in sensors.zip(ends) {
-            let actual = &sensor.actual_from_described;
-            if actual.rotation != DQuat::IDENTITY || actual.position_mm != glam::DVec3::ZERO {
-                for touch in &mut self.touches[first..*end] {
-                    touch.gel_from_body = Pose {
-                        position_mm: actual.position_mm + actual.rotation * touch.gel_from_body.position_mm,
-                        rotation: actual.rotation * touch.gel_from_body.rotation,
-                    };
-                }
-            }
-            first = *end;
-        }
+        assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
+        assert_eq!(ends.len(), n_sensors, "an end for each sensor");
+        assert_eq!(
+            ends.last().copied().unwrap_or(0),
+            touches.len(),
+            "the last end is the number of touches"
+        );
+        let (of_chunk, n_taxels) = (self.of_chunk, self.n_taxels);
+        let imperfection = &self.imperfection;
+        let step = |(number, (chunk, (readings_kpa, wrench))): (
+            usize,
+            (&mut Chunk, (&mut [f32], &mut [[f32; 6]])),
+        )| {
+            let start = number * of_chunk;
+            let first = if start == 0 { 0 } else { ends[start - 1] };
+            chunk.mount(touches, first, &ends[start..start + wrench.len()]);
+            chunk.gel.read_many(
+                bodies,
+                &chunk.touches,
+                &chunk.ends,
+                &mut chunk.pressure_kpa,
+                wrench,
+            );
+            chunk.step(imperfection, n_taxels, since_previous_s, readings_kpa);
+        };
+        let readings = readings_kpa.par_chunks_mut(of_chunk * n_taxels);
+        let numbers = readings.zip(wrench.par_chunks_mut(of_chunk));
+        self.chunks.par_iter_mut().zip(numbers).enumerate().for_each(step);
     }
 
     /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.
@@ -186,15 +178,36 @@ impl SensorBatch {
 }
 
 impl Chunk {
+    /// What touches, seen from where the sensors are.
+    fn mount(&mut self, touches: &[Touch], mut first: usize, ends: &[usize]) {
+        self.touches.clear();
+        self.ends.clear();
+        for (sensor, end) in self.sensors.iter().zip(ends) {
+            let actual = &sensor.actual_from_described;
+            let is_elsewhere = actual.rotation != DQuat::IDENTITY || actual.position_mm != glam::DVec3::ZERO;
+            for touch in &touches[first..*end] {
+                let mut touch = *touch;
+                if is_elsewhere {
+                    touch.gel_from_body = Pose {
+                        position_mm: actual.position_mm + actual.rotation * touch.gel_from_body.position_mm,
+                        rotation: actual.rotation * touch.gel_from_body.rotation,
+                    };
+                }
+                self.touches.push(touch);
+            }
+            self.ends.push(self.touches.len());
+            first = *end;
+        }
+    }
+
     fn step(
         &mut self,
         imperfection: &Imperfection,
         n_taxels: usize,
         since_previous_s: f64,
-        pressure_kpa: &[f32],
         readings_kpa: &mut [f32],
     ) {
-        for (seen, pressure_kpa) in self.seen.iter_mut().zip(pressure_kpa) {
+        for (seen, pressure_kpa) in self.seen.iter_mut().zip(&self.pressure_kpa) {
             *seen = f64::from(*pressure_kpa);
         }
         let true_kpa = match &mut self.twin {

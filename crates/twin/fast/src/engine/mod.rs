@@ -1,0 +1,175 @@
+//! The networks as they are evaluated: only what touches is multiplied, for a few sensors together.
+
+mod dense;
+mod places;
+mod product;
+mod simd;
+mod sparse;
+
+use glam::DVec2;
+use pulp::{Simd, WithSimd};
+use twintac_learn::Linear;
+
+use crate::FastGel;
+use crate::contact::N_CHANNELS;
+use crate::layout::Layout;
+use crate::network::Turn;
+use crate::networks::{PRESSURE_KPA, WRENCH};
+use dense::padded;
+use places::Places;
+use sparse::{Near, Sparse};
+
+pub(crate) use simd::dispatch;
+
+/// Ports that are evaluated together at most, but for those of a single sensor.
+const MOST_PORTS: usize = 64;
+
+/// The networks of a fast gel, laid out for speed.
+#[derive(Clone, Debug)]
+pub(crate) struct Engine {
+    pressure: Sparse,
+    wrench: Sparse,
+    n_points: usize,
+    n_ports: usize,
+}
+
+/// What an evaluation writes to.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch {
+    near: Near,
+    pressure: sparse::Scratch,
+    wrench: sparse::Scratch,
+}
+
+impl Engine {
+    pub(crate) fn of(gel: &FastGel) -> Self {
+        let (layout, networks) = (&gel.layout, &gel.networks);
+        let (n_points, n_offsets) = (layout.grid.len(), layout.patch.offsets.len());
+        Self {
+            pressure: Sparse::of(&networks.pressure, n_offsets, |rows, [n_own, n_hidden]| {
+                let places = Places::around(&gel.ports_mm, layout, rows, n_own);
+                let first = &networks.pressure.rest.layers[0];
+                let n_others = n_offsets * (n_own / n_hidden);
+                let bias = |at: &DVec2| bias_at(*at, layout, first, n_others, n_hidden);
+                (places, gel.ports_mm.iter().flat_map(bias).collect())
+            }),
+            wrench: Sparse::of(&networks.wrench, n_points, |_, [_, n_hidden]| {
+                let bias = &networks.wrench.rest.layers[0].bias;
+                (Places::everywhere(n_points), padded(bias, n_hidden).collect())
+            }),
+            n_points,
+            n_ports: gel.ports_mm.len(),
+        }
+    }
+
+    /// Sensors that are evaluated together.
+    pub(crate) fn n_together(&self) -> usize {
+        (MOST_PORTS / self.n_ports.max(1)).max(1)
+    }
+
+    pub(crate) fn scratch(&self) -> Scratch {
+        let n_sensors = self.n_together();
+        let n_near = n_sensors * self.n_points;
+        Scratch {
+            near: Near {
+                channels: vec![[0.0; N_CHANNELS]; n_near + 1],
+                points: vec![0; n_near + 1],
+                ends: Vec::with_capacity(n_sensors),
+            },
+            pressure: self.pressure.scratch(n_sensors, self.n_points),
+            wrench: self.wrench.scratch(n_sensors, self.n_points),
+        }
+    }
+
+    /// From what touches to the pressure at each port, kPa, and force and torque, of at most [`Self::n_together`] sensors.
+    /// `[n_sensors][n_points * N_CHANNELS]` to `[n_sensors][n_ports]` and `[n_sensors]`. A sensor has the same bits whatever other sensors there are.
+    pub(crate) fn read(
+        &self,
+        inputs: &[f32],
+        scratch: &mut Scratch,
+        pressure_kpa: &mut [f32],
+        wrench: &mut [[f32; 6]],
+    ) {
+        dispatch(Reading {
+            engine: self,
+            inputs,
+            scratch,
+            pressure_kpa,
+            wrench,
+        });
+    }
+}
+
+/// What describes a place does not change, nor does the finest mesh.
+fn bias_at(at: DVec2, layout: &Layout, first: &Linear, n_others: usize, n_hidden: usize) -> Vec<f32> {
+    let mut place = Vec::new();
+    layout
+        .surroundings
+        .describe(&layout.grid, at, Turn::NONE, &mut place);
+    let mut bias: Vec<f32> = padded(&first.bias, n_hidden).collect();
+    for (value, weights) in place.iter().zip(first.weight.rows().skip(n_others)) {
+        for (bias, weight) in bias.iter_mut().zip(weights) {
+            *bias += value * weight;
+        }
+    }
+    bias
+}
+
+/// One evaluation, compiled for each instruction set.
+struct Reading<'a> {
+    engine: &'a Engine,
+    inputs: &'a [f32],
+    scratch: &'a mut Scratch,
+    pressure_kpa: &'a mut [f32],
+    wrench: &'a mut [[f32; 6]],
+}
+
+impl WithSimd for Reading<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self {
+            engine,
+            inputs,
+            scratch,
+            pressure_kpa,
+            wrench,
+        } = self;
+        scratch.near.find(inputs, engine.n_points);
+        let near = &scratch.near;
+        engine
+            .pressure
+            .read(simd, near, &mut scratch.pressure, |port, outputs| {
+                pressure_kpa[port] = outputs.map_or(0.0, |outputs| PRESSURE_KPA * outputs[0]);
+            });
+        engine
+            .wrench
+            .read(simd, near, &mut scratch.wrench, |sensor, outputs| {
+                wrench[sensor] = [0.0; 6];
+                for ((wrench, output), unit) in
+                    wrench[sensor].iter_mut().zip(outputs.unwrap_or(&[])).zip(WRENCH)
+                {
+                    *wrench = unit * output;
+                }
+            });
+    }
+}
+
+impl Near {
+    /// Collects the points near which something is.
+    #[inline(always)]
+    fn find(&mut self, inputs: &[f32], n_points: usize) {
+        self.ends.clear();
+        let mut n_near = 0;
+        for sensor in inputs.as_chunks::<N_CHANNELS>().0.chunks_exact(n_points) {
+            for (number, channels) in sensor.iter().enumerate() {
+                // What is not near the surface is not near anything below it. What is written there in vain is written over.
+                self.channels[n_near] = *channels;
+                self.points[n_near] = number as u32;
+                n_near += usize::from(channels[0] > 0.0);
+            }
+            self.ends.push(n_near);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Sums of products: what layers are made of.
+
+use pulp::Simd;
+
+use super::simd::{LANES, vectors};
+
+/// Vectors of a row of sums that stay in the processor's registers.
+const COLUMNS: usize = 4;
+
+/// Weights of rows that are added up, filled up with zeros.
+#[derive(Clone, Debug)]
+pub(super) struct Weights {
+    /// In the order in which they are needed. `[n_outputs / n_block][n_factors][n_block]`
+    numbers: Vec<f32>,
+    /// Outputs that are summed up together.
+    n_block: usize,
+    n_factors: usize,
+}
+
+impl Weights {
+    /// Of rows. `[n_factors][n_outputs]`, whole numbers of [`LANES`]
+    pub(super) fn of(rows: &[f32], n_outputs: usize) -> Self {
+        let n_wide = COLUMNS * LANES;
+        let n_block = if n_outputs.is_multiple_of(n_wide) {
+            n_wide
+        } else {
+            LANES
+        };
+        let blocks = (0..n_outputs).step_by(n_block);
+        let numbers = blocks.flat_map(|first| {
+            rows.chunks_exact(n_outputs)
+                .flat_map(move |row| &row[first..first + n_block])
+        });
+        Self {
+            numbers: numbers.copied().collect(),
+            n_block,
+            n_factors: rows.len() / n_outputs,
+        }
+    }
+
+    /// Whether all outputs are one vector.
+    pub(super) fn is_narrow(&self) -> bool {
+        self.numbers.len() == self.n_factors * LANES
+    }
+
+    /// Adds the weights, each row multiplied by a factor, to some rows of sums, in the order of the factors: a row has the same bits whatever other rows
+    /// there are.
+    ///
+    /// - `factors`: of each row. `[n_factors]`
+    /// - `starts`: where the rows start in the sums.
+    #[inline(always)]
+    pub(super) fn add<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        factors: [&[f32]; ROWS],
+        mut starts: [usize; ROWS],
+        sums: &mut [f32],
+    ) {
+        let mut numbers = self.numbers.as_slice();
+        // Not `chunks_exact`, which divides.
+        while !numbers.is_empty() {
+            let (block, others) = numbers.split_at(self.n_factors * self.n_block);
+            numbers = others;
+            if self.n_block == LANES {
+                add_block::<S, ROWS, 1>(simd, block, factors, starts, sums);
+            } else {
+                add_block::<S, ROWS, COLUMNS>(simd, block, factors, starts, sums);
+            }
+            for start in &mut starts {
+                *start += self.n_block;
+            }
+        }
+    }
+}
+
+/// A block of `N` times [`LANES`] outputs.
+#[inline(always)]
+#[allow(clippy::needless_range_loop)] // simple loops stay in registers
+fn add_block<S: Simd, const ROWS: usize, const N: usize>(
+    simd: S,
+    block: &[f32],
+    factors: [&[f32]; ROWS],
+    starts: [usize; ROWS],
+    sums: &mut [f32],
+) {
+    // Shorter vectors take several turns.
+    let n_turns = LANES / S::F32_LANES;
+    let weights = vectors::<S>(block).as_chunks::<N>().0;
+    for turn in 0..n_turns {
+        let mut own = [[simd.splat_f32s(0.0); N]; ROWS];
+        for row in 0..ROWS {
+            let start = starts[row] + turn * N * S::F32_LANES;
+            own[row].copy_from_slice(&S::as_simd_f32s(&sums[start..start + N * S::F32_LANES]).0[..N]);
+        }
+        for (number, weights) in weights.chunks_exact(n_turns).enumerate() {
+            for row in 0..ROWS {
+                let factor = simd.splat_f32s(factors[row][number]);
+                for column in 0..N {
+                    own[row][column] = simd.mul_add_f32s(factor, weights[turn][column], own[row][column]);
+                }
+            }
+        }
+        for row in 0..ROWS {
+            let start = starts[row] + turn * N * S::F32_LANES;
+            let sums = S::as_mut_simd_f32s(&mut sums[start..start + N * S::F32_LANES]).0;
+            sums[..N].copy_from_slice(&own[row]);
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! A network most of whose points have nothing near them: only the others are multiplied.
+
+use pulp::Simd;
+
+use super::dense::{Dense, padded, padded_rows};
+use super::places::{Places, Use};
+use super::product::Weights;
+use super::simd::LANES;
+use crate::contact::N_CHANNELS;
+use crate::network::{LocalNetwork, silu};
+
+/// Points whose features are finished together.
+const POINTS: usize = 8;
+
+/// The network, laid out for speed.
+#[derive(Clone, Debug)]
+pub(super) struct Sparse {
+    /// From the channels of a point to its features.
+    point: Dense,
+    /// Features of a point near which nothing is, which are taken off, for each of a few points. `[POINTS][n_features]`, filled up
+    nothing: Vec<f32>,
+    n_features: usize,
+    /// What the layer after the points adds for each unit of a feature. `[n_places]`
+    rows: Vec<Weights>,
+    /// What does not change of that layer. `[n_ports][n_hidden]`
+    bias: Vec<f32>,
+    places: Places,
+    /// Its outputs, filled up.
+    n_hidden: usize,
+    n_ports: usize,
+    /// The layers after that.
+    rest: Vec<Dense>,
+}
+
+/// The points of some sensors that something is near.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Near {
+    /// `[n_near][N_CHANNELS]`, and room for more
+    pub(super) channels: Vec<[f32; N_CHANNELS]>,
+    /// `[n_near]`, and room for more
+    pub(super) points: Vec<u32>,
+    /// Where the points of each sensor end. `[n_sensors]`
+    pub(super) ends: Vec<usize>,
+}
+
+/// What an evaluation writes to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    /// `[n_near][n_features]`, filled up
+    features: Vec<f32>,
+    /// What uses each place. For each place as many as could.
+    pairs: Vec<Pair>,
+    n_pairs: Vec<u32>,
+    /// What goes into a layer, and out of it. `[n_sensors * n_ports][n_units]`
+    hidden: [Vec<f32>; 2],
+    /// Whether something is in a port's patch. `[n_sensors * n_ports]`
+    is_touched: Vec<bool>,
+}
+
+/// A point that something is near, in the patch of a port.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pair {
+    near: u32,
+    /// Number of the port, over all sensors.
+    row: u32,
+}
+
+impl Sparse {
+    /// The network of so many ports. `around` says where they are, and what does not change; it may add rows of places, of which each has so many numbers.
+    pub(super) fn of(
+        network: &LocalNetwork,
+        n_places: usize,
+        around: impl FnOnce(&mut Vec<f32>, [usize; 2]) -> (Places, Vec<f32>),
+    ) -> Self {
+        let first = &network.rest.layers[0];
+        let nothing = network.nothing();
+        let n_features = nothing.len();
+        let n_hidden = first.bias.len().next_multiple_of(LANES);
+        let point = Dense::of(&network.point);
+        let mut rows = padded_rows(first, n_hidden);
+        // Behind those of the places come the rows of what describes a place.
+        rows.truncate(n_places * n_features * n_hidden);
+        let (places, bias) = around(&mut rows, [n_features * n_hidden, n_hidden]);
+        let nothing: Vec<f32> = padded(&nothing, point.n_outputs()).collect();
+        Self {
+            point,
+            nothing: nothing.repeat(POINTS),
+            n_features,
+            rows: rows
+                .chunks_exact(n_features * n_hidden)
+                .map(|rows| Weights::of(rows, n_hidden))
+                .collect(),
+            n_ports: bias.len() / n_hidden,
+            bias,
+            places,
+            n_hidden,
+            rest: network.rest.layers[1..].iter().map(Dense::of).collect(),
+        }
+    }
+
+    /// Memory for so many sensors of so many points.
+    pub(super) fn scratch(&self, n_sensors: usize, n_points: usize) -> Scratch {
+        let n_rows = n_sensors * self.n_ports;
+        let widest = self.rest.iter().map(Dense::n_outputs).max().unwrap_or(0);
+        let n_units = n_rows * widest.max(self.n_hidden);
+        Scratch {
+            features: vec![0.0; n_sensors * n_points * self.point.n_outputs()],
+            pairs: vec![Pair::default(); n_sensors * self.places.n_uses()],
+            n_pairs: vec![0; self.places.n()],
+            hidden: [(); 2].map(|()| vec![0.0; n_units]),
+            is_touched: vec![false; n_rows],
+        }
+    }
+
+    /// Passes the outputs of each port of each sensor to `found`; none of a port with nothing in its patch.
+    #[inline(always)]
+    pub(super) fn read<S: Simd>(
+        &self,
+        simd: S,
+        near: &Near,
+        scratch: &mut Scratch,
+        mut found: impl FnMut(usize, Option<&[f32]>),
+    ) {
+        let n_rows = near.ends.len() * self.n_ports;
+        self.features(simd, near, &mut scratch.features);
+        self.pair(near, scratch);
+        self.first(simd, near.ends.len(), scratch);
+        // Ports far from what touches are left out of the layers after that.
+        let mut n_touched = 0;
+        for row in 0..n_rows {
+            if scratch.is_touched[row] {
+                if row != n_touched {
+                    let own = row * self.n_hidden..(row + 1) * self.n_hidden;
+                    scratch.hidden[0].copy_within(own, n_touched * self.n_hidden);
+                }
+                n_touched += 1;
+            }
+        }
+        let (outputs, n_outputs) = self.finish(simd, n_touched, &mut scratch.hidden);
+        let mut outputs = outputs.chunks_exact(n_outputs);
+        for (row, is_touched) in scratch.is_touched[..n_rows].iter().enumerate() {
+            found(row, if *is_touched { outputs.next() } else { None });
+        }
+    }
+
+    /// Features of the points that something is near.
+    #[inline(always)]
+    fn features<S: Simd>(&self, simd: S, near: &Near, features: &mut [f32]) {
+        let n_near = near.ends.last().copied().unwrap_or(0);
+        let features = &mut features[..n_near * self.point.n_outputs()];
+        self.point
+            .apply(simd, n_near, N_CHANNELS, near.channels.as_flattened(), features);
+        for features in features.chunks_mut(self.nothing.len()) {
+            for (value, nothing) in features.iter_mut().zip(&self.nothing) {
+                *value = silu(*value) - nothing;
+            }
+        }
+    }
+
+    /// Sorts what has to be multiplied by its places: the rows of a place are fetched once for all sensors.
+    #[inline(always)]
+    fn pair(&self, near: &Near, scratch: &mut Scratch) {
+        let n_sensors = near.ends.len();
+        scratch.n_pairs.fill(0);
+        scratch.is_touched.fill(false);
+        let mut first = 0;
+        for (sensor, end) in near.ends.iter().enumerate() {
+            for (number, point) in near.points[first..*end].iter().enumerate() {
+                for Use { place, port } in self.places.of_point(*point) {
+                    let (place, row) = (*place as usize, sensor * self.n_ports + *port as usize);
+                    let n_pairs = &mut scratch.n_pairs[place];
+                    scratch.pairs[n_sensors * self.places.before(place) + *n_pairs as usize] = Pair {
+                        near: (first + number) as u32,
+                        row: row as u32,
+                    };
+                    *n_pairs += 1;
+                    scratch.is_touched[row] = true;
+                }
+            }
+            first = *end;
+        }
+    }
+
+    /// The layer after the points, place by place.
+    #[inline(always)]
+    fn first<S: Simd>(&self, simd: S, n_sensors: usize, scratch: &mut Scratch) {
+        for hidden in scratch.hidden[0]
+            .chunks_exact_mut(self.bias.len().max(1))
+            .take(n_sensors)
+        {
+            hidden.copy_from_slice(&self.bias);
+        }
+        let (features, sums) = (&scratch.features, &mut scratch.hidden[0]);
+        let n_padded = self.point.n_outputs();
+        for (place, (rows, n_pairs)) in self.rows.iter().zip(&scratch.n_pairs).enumerate() {
+            let pairs = &scratch.pairs[n_sensors * self.places.before(place)..][..*n_pairs as usize];
+            let (twos, ones) = pairs.as_chunks::<2>();
+            for [a, b] in twos {
+                let factors = [
+                    &features[a.near as usize * n_padded..][..self.n_features],
+                    &features[b.near as usize * n_padded..][..self.n_features],
+                ];
+                let starts = [a.row as usize * self.n_hidden, b.row as usize * self.n_hidden];
+                rows.add(simd, factors, starts, sums);
+            }
+            for one in ones {
+                let factors = &features[one.near as usize * n_padded..][..self.n_features];
+                rows.add(simd, [factors], [one.row as usize * self.n_hidden], sums);
+            }
+        }
+    }
+
+    /// The layers after the first. Returns the outputs of all rows, and how many places a row of them has.
+    #[inline(always)]
+    fn finish<'a, S: Simd>(
+        &self,
+        simd: S,
+        n_rows: usize,
+        hidden: &'a mut [Vec<f32>; 2],
+    ) -> (&'a [f32], usize) {
+        let [mut hidden, mut next] = {
+            let [hidden, next] = hidden;
+            [hidden, next]
+        };
+        let mut n_units = self.n_hidden;
+        for layer in &self.rest {
+            for value in &mut hidden[..n_rows * n_units] {
+                *value = silu(*value);
+            }
+            layer.apply(simd, n_rows, n_units, hidden, next);
+            n_units = layer.n_outputs();
+            (hidden, next) = (next, hidden);
+        }
+        (&hidden[..n_rows * n_units], n_units)
+    }
+}
