@@ -10,6 +10,7 @@ use xtask::cargo::{cargo, run};
 use xtask::{fuzz, readme, results, rooms};
 
 const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | results [FILE] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench twin |
+    bench sensors [--rewrite] |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
@@ -24,6 +25,8 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
          twin: how fast a thousand twins are stepped; writes docs/benchmarks/twin.*
+         sensors: how fast a thousand imperfect sensors are stepped, beside MuJoCo's touch_grid if TWINTAC_PYTHON names a Python that has it;
+         writes docs/benchmarks/sensors.*
   fuzz   looks for bytes that break what decodes wires and files, 60 s a target, two at a time; needs a C++ compiler; exit code 2 if it finds any
          keep: the corpus that was found becomes `fuzz/corpus`, the figures docs/benchmarks/fuzz.*
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
@@ -78,17 +81,11 @@ fn test() -> Result<()> {
 
 fn bench() -> Result<()> {
     let given: Vec<String> = std::env::args().skip(2).collect();
-    if given.first().is_some_and(|bench| bench == "twin") {
-        // What measures the others knows no learning.
-        return cargo(&[
-            "run",
-            "--release",
-            "--quiet",
-            "--package",
-            "digitac",
-            "--example",
-            "step_rate",
-        ]);
+    // What measures the others knows no learning.
+    match given.first().map(String::as_str) {
+        Some("twin") => return cargo(&of_example("digitac", "step_rate", &given[1..])),
+        Some("sensors") => return cargo(&of_example("twintac-sensors", "rate", &given[1..])),
+        _ => {}
     }
     if given.first().is_some_and(|bench| bench == "recording") {
         cargo(&["build", "--release", "--package", "twintac-cli"])?; // it is run as its users run it
@@ -108,6 +105,21 @@ fn verify() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+fn of_example<'a>(package: &'a str, example: &'a str, given: &'a [String]) -> Vec<&'a str> {
+    let mut arguments = vec![
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        package,
+        "--example",
+        example,
+        "--",
+    ];
+    arguments.extend(given.iter().map(String::as_str));
+    arguments
 }
 
 fn of_verify(given: &[String]) -> Vec<&str> {

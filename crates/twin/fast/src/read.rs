@@ -42,6 +42,12 @@ impl FastGel {
 }
 
 impl FastReader {
+    /// Number of taxels.
+    #[must_use]
+    pub fn n_taxels(&self) -> usize {
+        self.n_taxels
+    }
+
     /// What the gel does under bodies at these poses in the gel's frame.
     ///
     /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_taxels]`

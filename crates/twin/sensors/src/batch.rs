@@ -1,7 +1,7 @@
 //! Sensors from what touches to what is read.
 
 use digitac::{Twin, TwinState};
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 use twintac_fast::{Body, FastGel, FastReader, Touch};
 use twintac_shape::Pose;
@@ -30,10 +30,19 @@ struct Chunk {
     /// Where each sensor's touches end. `[n_sensors]`
     ends: Vec<usize>,
     twin: Option<TwinState>,
-    /// What the gels show, also in double precision, and what perfect sensors would read of it. `[n_sensors * n_taxels]`
+    /// What the gels show, in single and in double precision, and what perfect sensors would read of it. `[n_sensors * n_taxels]`
     pressure_kpa: Vec<f32>,
     seen: Vec<f64>,
     true_kpa: Vec<f64>,
+}
+
+/// What happens in a step.
+struct Moment<'a> {
+    imperfection: &'a Imperfection,
+    since_previous_s: f64,
+    bodies: &'a [Body],
+    touches: &'a [Touch],
+    ends: &'a [usize],
 }
 
 impl SensorBatch {
@@ -130,27 +139,25 @@ impl SensorBatch {
             touches.len(),
             "the last end is the number of touches"
         );
-        let (of_chunk, n_taxels) = (self.of_chunk, self.n_taxels);
-        let imperfection = &self.imperfection;
-        let step = |(number, (chunk, (readings_kpa, wrench))): (
-            usize,
-            (&mut Chunk, (&mut [f32], &mut [[f32; 6]])),
-        )| {
-            let start = number * of_chunk;
-            let first = if start == 0 { 0 } else { ends[start - 1] };
-            chunk.mount(touches, first, &ends[start..start + wrench.len()]);
-            chunk.gel.read_many(
-                bodies,
-                &chunk.touches,
-                &chunk.ends,
-                &mut chunk.pressure_kpa,
-                wrench,
-            );
-            chunk.step(imperfection, n_taxels, since_previous_s, readings_kpa);
+        let moment = Moment {
+            imperfection: &self.imperfection,
+            since_previous_s,
+            bodies,
+            touches,
+            ends,
         };
-        let readings = readings_kpa.par_chunks_mut(of_chunk * n_taxels);
+        if let [chunk] = self.chunks.as_mut_slice() {
+            // Nobody has to be woken.
+            chunk.step(&moment, 0, readings_kpa, wrench);
+            return;
+        }
+        let of_chunk = self.of_chunk;
+        let readings = readings_kpa.par_chunks_mut(of_chunk * self.n_taxels);
         let numbers = readings.zip(wrench.par_chunks_mut(of_chunk));
-        self.chunks.par_iter_mut().zip(numbers).enumerate().for_each(step);
+        let work = self.chunks.par_iter_mut().zip(numbers).enumerate();
+        work.for_each(|(number, (chunk, (readings_kpa, wrench)))| {
+            chunk.step(&moment, number * of_chunk, readings_kpa, wrench);
+        });
     }
 
     /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.
@@ -178,14 +185,45 @@ impl SensorBatch {
 }
 
 impl Chunk {
+    /// One more moment of these sensors, of which the first one has this number.
+    fn step(&mut self, moment: &Moment, first: usize, readings_kpa: &mut [f32], wrench: &mut [[f32; 6]]) {
+        self.mount(moment, first);
+        let (touches, ends) = (&self.touches, &self.ends);
+        self.gel
+            .read_many(moment.bodies, touches, ends, &mut self.pressure_kpa, wrench);
+        for (seen, pressure_kpa) in self.seen.iter_mut().zip(&self.pressure_kpa) {
+            *seen = f64::from(*pressure_kpa);
+        }
+        let true_kpa = match &mut self.twin {
+            Some(twin) => {
+                twin.step(moment.since_previous_s, &self.seen, &mut self.true_kpa);
+                &self.true_kpa
+            }
+            None => &self.seen,
+        };
+        let n_taxels = self.gel.n_taxels().max(1);
+        let taxels = true_kpa
+            .chunks_exact(n_taxels)
+            .zip(readings_kpa.chunks_exact_mut(n_taxels));
+        for (sensor, (true_kpa, readings_kpa)) in self.sensors.iter_mut().zip(taxels) {
+            sensor.step(
+                moment.imperfection,
+                moment.since_previous_s,
+                true_kpa,
+                readings_kpa,
+            );
+        }
+    }
+
     /// What touches, seen from where the sensors are.
-    fn mount(&mut self, touches: &[Touch], mut first: usize, ends: &[usize]) {
+    fn mount(&mut self, moment: &Moment, first: usize) {
         self.touches.clear();
         self.ends.clear();
-        for (sensor, end) in self.sensors.iter().zip(ends) {
+        let mut start = if first == 0 { 0 } else { moment.ends[first - 1] };
+        for (sensor, end) in self.sensors.iter().zip(&moment.ends[first..]) {
             let actual = &sensor.actual_from_described;
-            let is_elsewhere = actual.rotation != DQuat::IDENTITY || actual.position_mm != glam::DVec3::ZERO;
-            for touch in &touches[first..*end] {
+            let is_elsewhere = actual.rotation != DQuat::IDENTITY || actual.position_mm != DVec3::ZERO;
+            for touch in &moment.touches[start..*end] {
                 let mut touch = *touch;
                 if is_elsewhere {
                     touch.gel_from_body = Pose {
@@ -196,32 +234,7 @@ impl Chunk {
                 self.touches.push(touch);
             }
             self.ends.push(self.touches.len());
-            first = *end;
-        }
-    }
-
-    fn step(
-        &mut self,
-        imperfection: &Imperfection,
-        n_taxels: usize,
-        since_previous_s: f64,
-        readings_kpa: &mut [f32],
-    ) {
-        for (seen, pressure_kpa) in self.seen.iter_mut().zip(&self.pressure_kpa) {
-            *seen = f64::from(*pressure_kpa);
-        }
-        let true_kpa = match &mut self.twin {
-            Some(twin) => {
-                twin.step(since_previous_s, &self.seen, &mut self.true_kpa);
-                &self.true_kpa
-            }
-            None => &self.seen,
-        };
-        let taxels = true_kpa
-            .chunks_exact(n_taxels)
-            .zip(readings_kpa.chunks_exact_mut(n_taxels));
-        for (sensor, (true_kpa, readings_kpa)) in self.sensors.iter_mut().zip(taxels) {
-            sensor.step(imperfection, since_previous_s, true_kpa, readings_kpa);
+            start = *end;
         }
     }
 }

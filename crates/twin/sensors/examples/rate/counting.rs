@@ -1,0 +1,41 @@
+//! The system's allocator, which counts what is asked of it by all threads.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+struct Counting;
+
+static N_ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+static N_BYTES: AtomicUsize = AtomicUsize::new(0);
+
+/// How often memory has been asked for.
+#[allow(dead_code)] // what a test alone needs
+pub(crate) fn n_allocations() -> usize {
+    N_ALLOCATIONS.load(Ordering::Relaxed)
+}
+
+/// Bytes that are in use.
+#[allow(dead_code)] // what the benchmark alone needs
+pub(crate) fn n_bytes() -> usize {
+    N_BYTES.load(Ordering::Relaxed)
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+// SAFETY: everything is passed on to the system's allocator.
+#[allow(unsafe_code)] // an allocator cannot be written without
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        N_ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        N_BYTES.fetch_add(layout.size(), Ordering::Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        N_BYTES.fetch_sub(layout.size(), Ordering::Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}

@@ -1,0 +1,92 @@
+//! Steps allocate nothing.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use digitac::Variant;
+use glam::{DQuat, DVec3};
+use twintac_fast::{Body, FastGel, Touch};
+use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_shape::{Pose, Shape, Surfaces};
+
+#[path = "../examples/rate/counting.rs"]
+mod counting;
+#[path = "../../digitac/examples/step_rate/invented.rs"]
+#[allow(dead_code)] // what the benchmark alone needs
+mod invented;
+
+const N_TAXELS: usize = 8;
+const N_SENSORS: usize = 100;
+
+fn imperfection() -> Imperfection {
+    Imperfection {
+        gain_deviation: 0.05,
+        drift_deviation_kpa_per_k: 0.05,
+        temperature_deviation_k: 2.0,
+        temperature_time_s: 60.0,
+        noise_deviation_kpa: 0.05,
+        hysteresis: 0.03,
+        late_chance: 0.05,
+        rate_hz: 60.0,
+        jitter: 0.1,
+        place_deviation_mm: 0.3,
+        turn_deviation_rad: 0.01,
+        ..Imperfection::default()
+    }
+}
+
+/// A ball and a box on each sensor.
+fn touches(step: usize) -> Vec<Touch> {
+    let touch = |number: usize| Touch {
+        body: (number % 2) as u32,
+        gel_from_body: Pose {
+            position_mm: DVec3::new((0.1 * (number + step) as f64).sin() * 10.0, 2.0, 7.5),
+            rotation: DQuat::from_rotation_y(0.01 * step as f64),
+        },
+    };
+    (0..2 * N_SENSORS).map(touch).collect()
+}
+
+/// All in one test: what another does at the same time would be counted too.
+#[test]
+fn steps_allocate_nothing() {
+    let cube = Shape::Box {
+        size_mm: [8.0; 3],
+        edge_radius_mm: 0.5,
+    };
+    let shapes = [Shape::Sphere { radius_mm: 6.0 }, cube];
+    let bodies = shapes.map(|shape| Body::new(&shape, &Surfaces::new()).unwrap());
+    let gel = FastGel::phystac().unwrap();
+    let twin = invented::twin(Variant::PressureMemory, N_TAXELS).unwrap();
+    let ends: Vec<usize> = (1..=N_SENSORS).map(|sensor| 2 * sensor).collect();
+    let steps: Vec<Vec<Touch>> = (0..50).map(touches).collect();
+    let (mut readings_kpa, mut wrench) = (vec![0.0; N_SENSORS * N_TAXELS], vec![[0.0; 6]; N_SENSORS]);
+
+    let mut counted = |n_threads: usize| {
+        let sizes = [N_SENSORS, n_threads];
+        let mut batch = SensorBatch::new(&gel, Some(&twin), imperfection(), sizes, 1);
+        let mut step = |touches: &[Touch]| {
+            batch.step(0.01, &bodies, touches, &ends, &mut readings_kpa, &mut wrench);
+        };
+        steps[..5].iter().for_each(|touches| step(touches));
+        let before = counting::n_allocations();
+        steps[5..].iter().for_each(|touches| step(touches));
+        counting::n_allocations() - before
+    };
+    assert_eq!(counted(1), 0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    assert_eq!(pool.install(|| counted(2)), 0);
+    // Work that comes from a thread beside the pool goes through the pool's queue, which takes memory for some 60 entries at once.
+    assert!(counted(2) <= 2);
+
+    let mut reader = gel.reader();
+    let before = counting::n_allocations();
+    for touches in &steps {
+        let there = [
+            (&bodies[0], touches[0].gel_from_body),
+            (&bodies[1], touches[1].gel_from_body),
+        ];
+        reader.read(&there, &mut readings_kpa[..N_TAXELS], &mut wrench[0]);
+    }
+    assert_eq!(counting::n_allocations() - before, 0);
+    assert!(before > 0, "nothing was counted");
+}
