@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 use twintac_shape::Pose;
 
@@ -104,7 +104,8 @@ impl ContactGrid {
             placed.body_from_gel.x_axis,
             placed.body_from_gel.y_axis,
             placed.body_from_gel.z_axis,
-        ];
+        ]
+        .map(Vec3A::from);
         let inputs = inputs.as_chunks_mut::<N_CHANNELS>().0;
         for j in placed.rows.clone() {
             let row = across * (self.first_mm[1] + self.spacing_mm * j as f32 - placed.origin.y);

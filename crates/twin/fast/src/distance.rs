@@ -1,6 +1,6 @@
 //! Distances to a rigid shape, fast enough to ask for hundreds of them in a microsecond.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A, Vec4};
 use twintac_shape::{Shape, ShapeError, SignedDistance, Surfaces};
 
 /// Distance of the samples of a shape, mm.
@@ -26,7 +26,7 @@ pub(crate) enum Form {
 /// What tells distances.
 pub(crate) trait Field {
     /// The distance of a point in the body's frame, mm; [`REACH_MM`] or more where it is more than that.
-    fn distance_mm(&self, point: Vec3) -> f32;
+    fn distance_mm(&self, point: Vec3A) -> f32;
 }
 
 /// A ball that stands on its origin.
@@ -37,22 +37,27 @@ pub(crate) struct Ball {
 
 impl Field for Ball {
     #[inline(always)]
-    fn distance_mm(&self, point: Vec3) -> f32 {
-        (point - Vec3::new(0.0, 0.0, self.radius_mm)).length() - self.radius_mm
+    fn distance_mm(&self, point: Vec3A) -> f32 {
+        let z = point.z - self.radius_mm;
+        (point.x * point.x + point.y * point.y + z * z).sqrt() - self.radius_mm
     }
 }
 
 /// Distances at the corners of cells, along z first: points of a body that stands upright, one above the other, lie side by side in memory.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Samples {
-    first_mm: Vec3,
-    n_cells: [usize; 3],
+    first_mm: Vec3A,
+    /// Cells along each axis.
+    n_cells: Vec3A,
+    /// How far apart in memory samples are that are neighbours along x and along y.
+    strides: [usize; 2],
     /// `[n_cells.x + 1][n_cells.y + 1][n_cells.z + 1]`
     distance_mm: Vec<f32>,
     /// Smallest distance in each block of cells: most of the space around a body is out of its reach, and these say so at once.
     /// `[n_blocks.x][n_blocks.y][n_blocks.z]`
     least_mm: Vec<f32>,
-    n_blocks: [usize; 3],
+    /// The same of blocks.
+    block_strides: [usize; 2],
 }
 
 /// Cells along each side of a block.
@@ -125,11 +130,12 @@ impl Samples {
             }
         }
         Self {
-            first_mm: low.as_vec3(),
-            n_cells,
+            first_mm: low.as_vec3a(),
+            n_cells: Vec3A::from_array(n_cells.map(|n| n as f32)),
+            strides: [n_y * n_z, n_z],
             distance_mm,
             least_mm,
-            n_blocks,
+            block_strides: [b_y * b_z, b_z],
         }
     }
 }
@@ -137,41 +143,37 @@ impl Samples {
 impl Field for Samples {
     /// Linear between the samples.
     #[inline(always)]
-    fn distance_mm(&self, point: Vec3) -> f32 {
-        let [n_x, n_y, n_z] = self.n_cells;
+    fn distance_mm(&self, point: Vec3A) -> f32 {
         let cells = (point - self.first_mm) * (1.0 / SPACING_MM);
-        let end = Vec3::new(n_x as f32, n_y as f32, n_z as f32);
-        if !(cells.cmpge(Vec3::ZERO).all() && cells.cmplt(end).all()) {
+        if !(cells.cmpge(Vec3A::ZERO) & cells.cmplt(self.n_cells)).all() {
             return REACH_MM;
         }
-        let [i, j, k] = [
-            cells.x as i32 as usize,
-            cells.y as i32 as usize,
-            cells.z as i32 as usize,
-        ];
-        let [_, b_y, b_z] = self.n_blocks;
-        let least_mm = self.least_mm[((i / BLOCK) * b_y + j / BLOCK) * b_z + k / BLOCK];
-        if least_mm >= REACH_MM {
+        let [x, y, z] = [cells.x.floor(), cells.y.floor(), cells.z.floor()];
+        let [i, j, k] = [whole(x), whole(y), whole(z)];
+        let block = i / BLOCK * self.block_strides[0] + j / BLOCK * self.block_strides[1] + k / BLOCK;
+        if self.least_mm[block] >= REACH_MM {
             return REACH_MM;
         }
-        let part = cells - Vec3::new(i as f32, j as f32, k as f32);
-        let (along_y, along_x) = (n_z + 1, (n_y + 1) * (n_z + 1));
-        let from = &self.distance_mm[i * along_x + j * along_y + k..][..along_x + along_y + 2];
-        let y0 = between([from[0], from[1]], [from[along_x], from[along_x + 1]], part.x);
-        let from = &from[along_y..];
-        let y1 = between([from[0], from[1]], [from[along_x], from[along_x + 1]], part.x);
-        let [z0, z1] = between(y0, y1, part.y);
-        z0 + (z1 - z0) * part.z
+        let [along_x, along_y] = self.strides;
+        let y0 = &self.distance_mm[i * along_x + j * along_y + k..];
+        let y1 = &y0[along_y..];
+        let low = Vec4::new(y0[0], y0[1], y1[0], y1[1]);
+        let (y0, y1) = (&y0[along_x..], &y1[along_x..]);
+        let high = Vec4::new(y0[0], y0[1], y1[0], y1[1]);
+        let between_x = low + (high - low) * (cells.x - x);
+        let [y0z0, y0z1, y1z0, y1z1] = between_x.to_array();
+        let part = cells.y - y;
+        let [z0, z1] = [y0z0 + (y1z0 - y0z0) * part, y0z1 + (y1z1 - y0z1) * part];
+        z0 + (z1 - z0) * (cells.z - z)
     }
 }
 
-/// Between two pairs of numbers, number by number.
+/// A small whole number that is not negative. A cast would look for what is not.
 #[inline(always)]
-fn between(low: [f32; 2], high: [f32; 2], part: f32) -> [f32; 2] {
-    [
-        low[0] + (high[0] - low[0]) * part,
-        low[1] + (high[1] - low[1]) * part,
-    ]
+fn whole(number: f32) -> usize {
+    /// Added to a number below it, it leaves a whole number in the last bits.
+    const ROUND: f32 = 8_388_608.0;
+    ((number + ROUND).to_bits() - ROUND.to_bits()) as usize
 }
 
 #[cfg(test)]
@@ -198,12 +200,12 @@ mod tests {
             );
             let distance_mm = exact.signed_distance(point).distance_mm;
             if distance_mm.abs() < 2.0 {
-                let found_mm = f64::from(samples.distance_mm(point.as_vec3()));
+                let found_mm = f64::from(samples.distance_mm(point.as_vec3a()));
                 worst_mm = worst_mm.max((found_mm - distance_mm).abs());
             }
         }
         // A sharp bend of the distance lies between samples: half a spacing's diagonal at most, much less on average.
         assert!(worst_mm < 0.2, "{worst_mm}");
-        assert_eq!(samples.distance_mm(Vec3::splat(50.0)), REACH_MM);
+        assert_eq!(samples.distance_mm(Vec3A::splat(50.0)), REACH_MM);
     }
 }
