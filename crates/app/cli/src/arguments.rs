@@ -88,6 +88,9 @@ pub(crate) struct FastTrain {
     /// Presses of such shapes that slide and tilt, to be judged on [default: 40].
     #[arg(long, value_name = "N")]
     pub(crate) slides: Option<u64>,
+    /// Press with the sensor's own indenters alone, upright and near its ports: for the twin of a bench (`fast_gel` in a run's settings). There are no slides then.
+    #[arg(long, conflicts_with = "slides")]
+    pub(crate) own_indenters: bool,
     /// Steps of the training [default: 40000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) steps: Option<u64>,

@@ -223,7 +223,8 @@ impl Run {
         let gel = self.gel();
         let _work = Work::start(self.progress(), "simulating", 0);
         let folder = self.stage("cross_validation").join("depth_tables");
-        let store = DepthTableStore::new(&gel, folder, self.progress());
+        let fast = self.fast()?;
+        let store = DepthTableStore::new(&gel, folder, self.progress()).with_fast(fast.as_ref());
         let mut requests = Vec::new();
         for radius_mm in radii_mm {
             requests.extend(places.requests.iter().cloned().map(|request| {

@@ -10,6 +10,7 @@ use twintac_shape::Pose;
 use twintac_simulate::{Gel, PressPlace};
 
 use crate::Progress;
+use crate::fast_tables::FastTables;
 use crate::files::{read_json, sha256, write_json};
 
 /// Spacing of a lattice over the gel's height, for places along a line and over a plane, which has so many more of them.
@@ -20,6 +21,8 @@ pub(crate) struct DepthTableStore<'a> {
     gel: &'a Gel,
     folder: PathBuf,
     progress: &'a dyn Progress,
+    /// What makes tables instead of the gel.
+    fast: Option<&'a FastTables>,
 }
 
 impl<'a> DepthTableStore<'a> {
@@ -29,7 +32,13 @@ impl<'a> DepthTableStore<'a> {
             gel,
             folder,
             progress,
+            fast: None,
         }
+    }
+
+    /// The same with tables of a fast gel, if there is one: those are not kept.
+    pub(crate) fn with_fast(self, fast: Option<&'a FastTables>) -> Self {
+        Self { fast, ..self }
     }
 
     /// The tables at places, from their files or computed now, in order.
@@ -77,6 +86,9 @@ impl DepthTableSource for DepthTableStore<'_> {
             .iter()
             .map(|request| self.gel.requested(request))
             .collect::<Result<Vec<_>, _>>()?;
+        if let Some(fast) = self.fast {
+            return places.iter().map(|place| fast.table(self.gel, place)).collect();
+        }
         let mut groups: BTreeMap<Vec<u8>, Vec<usize>> = BTreeMap::new();
         for (index, place) in places.iter().enumerate() {
             groups.entry(kind(place)?).or_default().push(index);

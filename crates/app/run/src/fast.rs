@@ -34,6 +34,8 @@ pub struct FastSettings {
     pub n_exams: u64,
     /// Presses of such shapes that slide and tilt.
     pub n_slides: u64,
+    /// Whether presses are those of the sensor's own indenters, upright and near its ports: for the twin of a bench.
+    pub own_indenters: bool,
     /// How the networks are trained.
     pub train: TrainSettings,
 }
@@ -44,6 +46,7 @@ impl Default for FastSettings {
             n_lessons: 2000,
             n_exams: 100,
             n_slides: 40,
+            own_indenters: false,
             train: TrainSettings::default(),
         }
     }
@@ -72,6 +75,7 @@ struct LessonsOf {
     /// Digest of what presses depend on: gel, shell, and ports.
     gel_sha256: String,
     seed: u64,
+    own_indenters: bool,
     /// How they were drawn.
     draw_version: u32,
 }
@@ -87,18 +91,34 @@ pub fn train_fast(
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<FastResult, RunError> {
-    check_folder(&sensor.sensor, folder, seed)?;
+    check_folder(&sensor.sensor, folder, seed, settings.own_indenters)?;
     let places_mm = lesson_places_mm(&sensor.sensor);
     let teacher = Teacher::new(&sensor.sensor, &places_mm)?;
-    let exams = presses("exams", settings.n_exams, folder, progress, &|number| {
-        teacher.exam(seed, number)
-    })?;
-    let slides = presses("slides", settings.n_slides, folder, progress, &|number| {
+    let is_own = settings.own_indenters;
+    let exams = presses(
+        "exams",
+        settings.n_exams,
+        folder,
+        progress,
+        &|number| match is_own {
+            true => teacher.own_exam(seed, number),
+            false => teacher.exam(seed, number),
+        },
+    )?;
+    let n_slides = if is_own { 0 } else { settings.n_slides };
+    let slides = presses("slides", n_slides, folder, progress, &|number| {
         teacher.slide(seed, number)
     })?;
-    let lessons = presses("lessons", settings.n_lessons, folder, progress, &|number| {
-        teacher.lesson(seed, number)
-    })?;
+    let lessons = presses(
+        "lessons",
+        settings.n_lessons,
+        folder,
+        progress,
+        &|number| match is_own {
+            true => teacher.own_lesson(seed, number),
+            false => teacher.lesson(seed, number),
+        },
+    )?;
     let (mut taught, mut held_out) = (Vec::new(), Vec::new());
     let edges_mm = lessons.iter().map(|lesson| lesson.edge_mm);
     let longest_held_out_mm = HELD_OUT_LONGER * edges_mm.fold(f64::INFINITY, f64::min);
@@ -129,7 +149,7 @@ pub fn train_fast(
 }
 
 /// Refuses a folder whose lessons are of something else.
-fn check_folder(sensor: &Sensor, folder: &Path, seed: u64) -> Result<(), RunError> {
+fn check_folder(sensor: &Sensor, folder: &Path, seed: u64, own_indenters: bool) -> Result<(), RunError> {
     let gel = format!(
         "{:?} {:?} {:?} {:?} {:?}",
         sensor.gel,
@@ -141,6 +161,7 @@ fn check_folder(sensor: &Sensor, folder: &Path, seed: u64) -> Result<(), RunErro
     let of = LessonsOf {
         gel_sha256: sha256(gel.as_bytes()),
         seed,
+        own_indenters,
         draw_version: DRAW_VERSION,
     };
     let path = folder.join("lessons.json");
@@ -151,6 +172,8 @@ fn check_folder(sensor: &Sensor, folder: &Path, seed: u64) -> Result<(), RunErro
                 "seed"
             } else if found.gel_sha256 != of.gel_sha256 {
                 "gel"
+            } else if found.own_indenters != of.own_indenters {
+                "choice of --own-indenters"
             } else {
                 "version of this program"
             };

@@ -53,6 +53,7 @@ mod doubtful;
 mod error;
 pub mod export;
 pub mod fast;
+mod fast_tables;
 mod files;
 pub mod mesh;
 mod metrics;

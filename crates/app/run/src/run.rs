@@ -11,6 +11,8 @@ use twintac_simulate::Gel;
 use crate::cache::{self, Inputs};
 use crate::doubtful::left_out;
 use crate::error::At;
+use crate::fast::FAST_GEL;
+use crate::fast_tables::FastTables;
 use crate::files::{read_json, write_file, write_json};
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
 
@@ -66,6 +68,11 @@ impl Run {
         for (name, path) in sensor.surfaces() {
             let bytes = std::fs::read(&path).map_err(RunError::file("reading", &path))?;
             write_file(&folder.join(name), &bytes)?;
+        }
+        if let Some(path) = &record.settings.fast_gel {
+            FastTables::read(path, &sensor.sensor)?;
+            let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
+            write_file(&folder.join(FAST_GEL), &bytes)?;
         }
         write_file(&folder.join("sensor.toml"), sensor.text.as_bytes())?;
         write_json(&folder.join("run.json"), &record)?;
@@ -165,6 +172,13 @@ impl Run {
             Arc::clone(&self.sensor.sensor),
             self.record.settings.simulate.clone(),
         )
+    }
+
+    /// The fast gel whose tables the run uses, if it does.
+    pub(crate) fn fast(&self) -> Result<Option<FastTables>, RunError> {
+        let is_asked_for = self.record.settings.fast_gel.is_some();
+        let read = || FastTables::read(&self.folder.join(FAST_GEL), &self.sensor.sensor);
+        is_asked_for.then(read).transpose()
     }
 
     pub(crate) fn progress(&self) -> &dyn Progress {

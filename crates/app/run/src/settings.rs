@@ -1,6 +1,6 @@
 //! Settings of every stage of a run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::RunError;
 use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings};
@@ -23,6 +23,9 @@ const DENSE_BLOCK_MM: f64 = 3.0;
 pub struct RunSettings {
     /// How finely the gel is simulated.
     pub simulate: SimulateSettings,
+    /// A fast gel's file, made by `twintac fast train`: tables are then its answers, and nothing is solved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fast_gel: Option<PathBuf>,
     /// How deep places are simulated.
     pub places: PlaceSettings,
     /// What is fitted about the bench.

@@ -19,9 +19,16 @@ const DEEPEST_MM: f32 = 4.0;
 /// Numbers for each point.
 pub(crate) const N_CHANNELS: usize = LEVELS_MM.len();
 
-/// The points of the grid in single precision.
+/// The points of all grids, one grid after the other.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ContactGrid {
+pub(crate) struct ContactPoints {
+    grids: Vec<ContactGrid>,
+    n_inputs: usize,
+}
+
+/// The points of a grid in single precision.
+#[derive(Clone, Debug, PartialEq)]
+struct ContactGrid {
     first_mm: [f32; 2],
     spacing_mm: f32,
     n: [usize; 2],
@@ -30,8 +37,36 @@ pub(crate) struct ContactGrid {
     heights_mm: [f32; 2],
 }
 
+impl ContactPoints {
+    pub(crate) fn new(grids: &[SurfaceGrid]) -> Self {
+        Self {
+            grids: grids.iter().map(ContactGrid::new).collect(),
+            n_inputs: N_CHANNELS * grids.iter().map(SurfaceGrid::len).sum::<usize>(),
+        }
+    }
+
+    /// Numbers that [`Self::fill`] writes.
+    pub(crate) fn n_inputs(&self) -> usize {
+        self.n_inputs
+    }
+
+    /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its
+    /// surface, more inside. `[n_points * N_CHANNELS]`
+    pub(crate) fn fill<'a>(
+        &self,
+        bodies: impl Iterator<Item = (&'a Body, Pose)> + Clone,
+        inputs: &mut [f32],
+    ) {
+        dispatch(Filling {
+            points: self,
+            bodies,
+            inputs,
+        });
+    }
+}
+
 impl ContactGrid {
-    pub(crate) fn new(grid: &SurfaceGrid) -> Self {
+    fn new(grid: &SurfaceGrid) -> Self {
         let height_mm: Vec<f32> = grid.height_mm.iter().map(|height| *height as f32).collect();
         Self {
             first_mm: grid.first_mm.map(|first| first as f32),
@@ -43,21 +78,6 @@ impl ContactGrid {
             ],
             height_mm,
         }
-    }
-
-    /// Numbers that [`Self::fill`] writes.
-    pub(crate) fn n_inputs(&self) -> usize {
-        N_CHANNELS * self.height_mm.len()
-    }
-
-    /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its
-    /// surface, more inside. `[n_points * N_CHANNELS]`
-    pub(crate) fn fill<'a>(&self, bodies: impl Iterator<Item = (&'a Body, Pose)>, inputs: &mut [f32]) {
-        dispatch(Filling {
-            grid: self,
-            bodies,
-            inputs,
-        });
     }
 
     #[inline(always)]
@@ -141,21 +161,26 @@ impl ContactGrid {
     }
 }
 
-/// [`ContactGrid::fill`], compiled for each instruction set.
+/// [`ContactPoints::fill`], compiled for each instruction set.
 struct Filling<'a, B> {
-    grid: &'a ContactGrid,
+    points: &'a ContactPoints,
     bodies: B,
     inputs: &'a mut [f32],
 }
 
-impl<'b, B: Iterator<Item = (&'b Body, Pose)>> WithSimd for Filling<'_, B> {
+impl<'b, B: Iterator<Item = (&'b Body, Pose)> + Clone> WithSimd for Filling<'_, B> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         self.inputs.fill(0.0);
-        for (body, gel_from_body) in self.bodies {
-            self.grid.add(body, &gel_from_body, self.inputs);
+        let mut rest = self.inputs;
+        for grid in &self.points.grids {
+            let (inputs, behind) = rest.split_at_mut(N_CHANNELS * grid.height_mm.len());
+            for (body, gel_from_body) in self.bodies.clone() {
+                grid.add(body, &gel_from_body, inputs);
+            }
+            rest = behind;
         }
     }
 }

@@ -12,12 +12,13 @@ use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::{LocalNetwork, Perceptron};
 use crate::networks::Networks;
+use crate::surface::SurfaceGrid;
 
 /// The header's entry.
 const ENTRY: &str = "twintac-fast";
 
 /// Version of the file's layout.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Bytes that are no fast gel: what is wrong with them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -106,13 +107,14 @@ impl FastGel {
             let problem = format!("version {} where {VERSION} is expected", header.version);
             return Err(FastFileError::new(problem));
         }
-        if header.layout.grid.n.iter().product::<usize>() != header.layout.grid.len() {
+        let is_whole = |grid: &SurfaceGrid| grid.n.iter().product::<usize>() == grid.len();
+        if header.layout.grids.is_empty() || !header.layout.grids.iter().all(is_whole) {
             return Err(FastFileError::new(
-                "its grid has another number of heights than of points",
+                "its grids have other numbers of heights than of points",
             ));
         }
         let tensors = SafeTensors::deserialize(bytes).map_err(FastFileError::new)?;
-        let (n_patch, n_grid) = (header.layout.patch.offsets.len(), header.layout.grid.len());
+        let (n_patch, n_grid) = (header.layout.patch.offsets.len(), header.layout.grid().len());
         let n_inputs = [header.layout.patch.n_inputs(), header.layout.n_field_inputs()];
         let networks = Networks {
             pressure: network(&tensors, "pressure", [n_patch, n_inputs[0]], 1)?,

@@ -14,7 +14,8 @@ const EDGE_MM: f32 = 0.6;
 /// How what touches is laid out for the networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Layout {
-    pub(crate) grid: SurfaceGrid,
+    /// Each port is above a point of one of them. The force is read from the first.
+    pub(crate) grids: Vec<SurfaceGrid>,
     pub(crate) patch: Patch,
     pub(crate) surroundings: Surroundings,
 }
@@ -23,7 +24,7 @@ impl Layout {
     /// The layout over a sensor's gel.
     pub(crate) fn of(sensor: &Sensor) -> Self {
         Self {
-            grid: SurfaceGrid::of(sensor),
+            grids: SurfaceGrid::all(sensor),
             patch: Patch::round(),
             surroundings: Surroundings::of(sensor),
         }
@@ -31,40 +32,63 @@ impl Layout {
 
     /// Inputs of the network of forces.
     pub(crate) fn n_field_inputs(&self) -> usize {
-        self.grid.len() * N_CHANNELS + 1
+        self.grid().len() * N_CHANNELS + 1
+    }
+
+    /// Points of all grids.
+    pub(crate) fn n_points(&self) -> usize {
+        self.first_point(self.grids.len())
+    }
+
+    /// Points of the grids before one.
+    pub(crate) fn first_point(&self, grid: usize) -> usize {
+        self.grids[..grid].iter().map(SurfaceGrid::len).sum()
+    }
+
+    /// Number of a grid with a point above a place.
+    pub(crate) fn grid_at(&self, at: DVec2) -> Option<usize> {
+        self.grids.iter().position(|grid| grid.has(at))
+    }
+
+    /// The first grid.
+    pub(crate) fn grid(&self) -> &SurfaceGrid {
+        &self.grids[0]
     }
 
     /// Whether the grid is its own mirror image about a place.
     pub(crate) fn is_symmetric(&self, center_mm: DVec3) -> bool {
         (0..2).all(|axis| {
-            let last_mm = self.grid.first_mm[axis] + self.grid.spacing_mm * (self.grid.n[axis] - 1) as f64;
-            (0.5 * (self.grid.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6
+            let grid = self.grid();
+            let last_mm = grid.first_mm[axis] + grid.spacing_mm * (grid.n[axis] - 1) as f64;
+            (0.5 * (grid.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6
         })
     }
 
-    /// Appends the inputs of the network of pressures for a place on the grid.
+    /// Appends the inputs of the network of pressures for a place on a grid.
     pub(crate) fn put_patch(
         &self,
         field: &[f32],
-        cell: [i32; 2],
+        (number, cell): (usize, [i32; 2]),
         at: DVec2,
         edge_mm: f32,
         turn: Turn,
         inputs: &mut Vec<f32>,
     ) {
-        for point in self.patch.points(&self.grid, cell, turn) {
+        let grid = &self.grids[number];
+        let field = &field[N_CHANNELS * self.first_point(number)..];
+        for point in self.patch.points(grid, cell, turn) {
             match point {
                 Some(point) => inputs.extend(&field[point * N_CHANNELS..(point + 1) * N_CHANNELS]),
                 None => inputs.extend([0.0; N_CHANNELS]),
             }
         }
-        self.surroundings.describe(&self.grid, at, turn, inputs);
+        self.surroundings.describe(grid, at, turn, inputs);
         inputs.push(edge_mm - EDGE_MM);
     }
 
     /// Appends the inputs of the network of forces, mirrored across x and across y.
     pub(crate) fn put_field(&self, field: &[f32], edge_mm: f32, mirrored: [bool; 2], inputs: &mut Vec<f32>) {
-        let [n_x, n_y] = self.grid.n;
+        let [n_x, n_y] = self.grid().n;
         for j in 0..n_y {
             let j = if mirrored[1] { n_y - 1 - j } else { j };
             for i in 0..n_x {

@@ -45,10 +45,15 @@ impl Lesson {
     }
 }
 
-/// Where lessons read the floor of a sensor's gel, in its plane, mm: at each taxel, then all over.
+/// Where lessons read the floor of a sensor's gel, in its plane, mm: at each taxel, then all over if nothing is cast into the gel: what a port feels
+/// on top of a chip it would not feel elsewhere.
 #[must_use]
 pub fn lesson_places_mm(sensor: &Sensor) -> Vec<DVec2> {
     let taxels = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
-    let all_over = SurfaceGrid::of(sensor).floor(sensor, sensor.taxels[0].port_radius_mm);
-    taxels.chain(all_over).collect()
+    let mut places_mm: Vec<DVec2> = taxels.collect();
+    if sensor.inclusions.is_empty() {
+        let grids = SurfaceGrid::all(sensor);
+        places_mm.extend(grids[0].floor(sensor, sensor.taxels[0].port_radius_mm));
+    }
+    places_mm
 }

@@ -41,12 +41,7 @@ impl FastGel {
         let layout = Layout::of(sensor);
         let center_mm = (0.5 * (low + high)).with_z(high.z);
         let places_mm = lesson_places_mm(sensor);
-        let frames = Frames::of(
-            lessons,
-            &layout.grid,
-            (&places_mm, sensor.taxels.len()),
-            center_mm,
-        )?;
+        let frames = Frames::of(lessons, &layout, (&places_mm, sensor.taxels.len()), center_mm)?;
         let is_symmetric = matches!(sensor.gel.solid, Solid::Block { .. }) && layout.is_symmetric(center_mm);
         let course = Course {
             frames: &frames,
@@ -76,6 +71,13 @@ impl FastGel {
     pub fn sensor(&self) -> &str {
         &self.sensor
     }
+
+    /// Where the ports are in the gel's plane, mm. `[n_taxels]`
+    #[must_use]
+    pub fn ports_mm(&self) -> &[DVec2] {
+        &self.ports_mm
+    }
+
     /// The same gel with its ports at other places of the floor, mm, instead of the taxels': a reading is the pressure over a disc as large as a
     /// port there. Ports on a regular grid share what they need: thousands take a few MB.
     #[must_use]
@@ -96,6 +98,6 @@ impl FastGel {
     /// Height of the undeformed gel above the board, mm, linear between points 2 mm apart.
     #[must_use]
     pub fn height_mm_at(&self, place_mm: DVec2) -> f64 {
-        self.layout.grid.height_mm_at(place_mm)
+        self.layout.grid().height_mm_at(place_mm)
     }
 }

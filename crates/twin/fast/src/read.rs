@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use twintac_shape::Pose;
 
-use crate::contact::ContactGrid;
+use crate::contact::ContactPoints;
 use crate::engine::{Engine, Scratch};
 use crate::{Body, FastGel, Touch};
 
 /// A fast gel, ready to be read: it owns all memory that a reading needs.
 #[derive(Clone, Debug)]
 pub struct FastReader {
-    grid: Arc<ContactGrid>,
+    points: Arc<ContactPoints>,
     engine: Arc<Engine>,
     /// What touches sensors that are evaluated together.
     inputs: Vec<f32>,
@@ -23,13 +23,13 @@ impl FastGel {
     /// Lays the networks out for reading.
     #[must_use]
     pub fn reader(&self) -> FastReader {
-        let grid = ContactGrid::new(&self.layout.grid);
+        let points = ContactPoints::new(&self.layout.grids);
         let engine = Engine::of(self);
         FastReader {
-            inputs: vec![0.0; engine.n_together() * grid.n_inputs()],
+            inputs: vec![0.0; engine.n_together() * points.n_inputs()],
             scratch: engine.scratch(),
             n_taxels: self.n_taxels(),
-            grid: Arc::new(grid),
+            points: Arc::new(points),
             engine: Arc::new(engine),
         }
     }
@@ -57,8 +57,8 @@ impl FastReader {
     /// A slice of pressures of another length than there are taxels, a pose that is not finite.
     pub fn read(&mut self, bodies: &[(&Body, Pose)], pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
         assert_eq!(pressure_kpa.len(), self.n_taxels, "a pressure for each taxel");
-        let inputs = &mut self.inputs[..self.grid.n_inputs()];
-        self.grid.fill(bodies.iter().copied(), inputs);
+        let inputs = &mut self.inputs[..self.points.n_inputs()];
+        self.points.fill(bodies.iter().copied(), inputs);
         let wrench = std::slice::from_mut(wrench);
         self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
     }
@@ -101,7 +101,7 @@ impl FastReader {
             "a pressure for each taxel of each sensor"
         );
         assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
-        let (n_together, n_inputs) = (self.engine.n_together(), self.grid.n_inputs());
+        let (n_together, n_inputs) = (self.engine.n_together(), self.points.n_inputs());
         let numbers = pressure_kpa
             .chunks_mut((n_together * self.n_taxels).max(1))
             .zip(wrench.chunks_mut(n_together));
@@ -110,7 +110,7 @@ impl FastReader {
                 let touching = touches[first..*end]
                     .iter()
                     .map(|touch| (&bodies[touch.body as usize], touch.gel_from_body));
-                self.grid.fill(touching, inputs);
+                self.points.fill(touching, inputs);
                 first = *end;
             }
             let inputs = &self.inputs[..ends.len() * n_inputs];

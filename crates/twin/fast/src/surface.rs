@@ -21,10 +21,21 @@ pub(crate) struct SurfaceGrid {
 }
 
 impl SurfaceGrid {
-    /// A grid over a sensor's gel with one of its points above the first taxel.
-    pub(crate) fn of(sensor: &Sensor) -> Self {
+    /// Grids over a sensor's gel, of which each taxel has one with a point above it. The first is that of the first taxel.
+    pub(crate) fn all(sensor: &Sensor) -> Vec<Self> {
+        let mut grids: Vec<Self> = Vec::new();
+        for taxel in &sensor.taxels {
+            let at = taxel.position_mm.truncate();
+            if !grids.iter().any(|grid| grid.has(at)) {
+                grids.push(Self::above(sensor, at));
+            }
+        }
+        grids
+    }
+
+    /// A grid with a point above a place.
+    fn above(sensor: &Sensor, anchor: DVec2) -> Self {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-        let anchor = sensor.taxels[0].position_mm;
         let axis = |axis: usize| {
             let before = ((anchor[axis] - low[axis]) / SPACING_MM).floor();
             let after = ((high[axis] - anchor[axis]) / SPACING_MM).floor();
@@ -66,6 +77,11 @@ impl SurfaceGrid {
 
     fn place(&self, i: usize, j: usize) -> DVec2 {
         DVec2::from(self.first_mm) + self.spacing_mm * DVec2::new(i as f64, j as f64)
+    }
+
+    /// Whether one of its points, or one that would follow them, is above a place.
+    pub(crate) fn has(&self, at: DVec2) -> bool {
+        self.cell(at).1.length() < 1e-6
     }
 
     /// Number of the point at a column and a row, if there is one.

@@ -55,8 +55,8 @@ pub(crate) struct Slide {
     pub(crate) turn: DQuat,
 }
 
-/// Counts how presses have been drawn: those of another version are other presses, though number and seed be the same.
-pub const DRAW_VERSION: u32 = 2;
+/// Counts how presses have been drawn and solved: those of another version are other presses, though number and seed be the same.
+pub const DRAW_VERSION: u32 = 3;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +67,41 @@ pub(crate) enum Purpose {
     Exam,
     /// The same shapes, which slide and tilt after they are down.
     Slide,
+}
+
+/// Sizes of the sensor's own balls, as parts of what is described: a bench may have to find the size of its tip.
+const OWN_SIZES: [f64; 2] = [0.6, 1.6];
+
+/// A press with one of the sensor's own indenters, no farther from the ports than the gel is high; none for a sensor without indenters.
+pub(crate) fn own(sensor: &Sensor, random: &mut impl Rng) -> Option<Draw> {
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    let height_mm = high.z - low.z;
+    let ports_mm = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
+    let first_mm = ports_mm.clone().fold(DVec2::INFINITY, DVec2::min) - height_mm;
+    let last_mm = ports_mm.fold(DVec2::NEG_INFINITY, DVec2::max) + height_mm;
+    let (first_mm, last_mm) = (first_mm.max(low.truncate()), last_mm.min(high.truncate()));
+    let within = DVec2::new(random.random(), random.random());
+    let place_mm = first_mm + (last_mm - first_mm) * within;
+    if sensor.indenters.is_empty() {
+        return None;
+    }
+    let indenter = &sensor.indenters[random.random_range(0..sensor.indenters.len())];
+    let shape = match indenter.shape {
+        Shape::Sphere { radius_mm } => Shape::Sphere {
+            radius_mm: radius_mm * random.random_range(OWN_SIZES[0]..OWN_SIZES[1]),
+        },
+        ref shape => shape.clone(),
+    };
+    let spin_rad = random.random_range(0.0..TAU);
+    let depth_mm = deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0);
+    Some(upright(sensor, &shape, place_mm, spin_rad, depth_mm))
+}
+
+/// How deep presses go at most, mm.
+fn deepest_mm(sensor: &Sensor) -> f64 {
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    let limit_mm = sensor.limits.map_or(f64::INFINITY, |limits| limits.depth_mm);
+    limit_mm.min(DEEPEST * (high.z - low.z))
 }
 
 /// Draws a press for a sensor.
@@ -92,15 +127,13 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     } else {
         random.random_range(0.0..LARGEST_TILT)
     };
-    let limit_mm = sensor.limits.map_or(f64::INFINITY, |limits| limits.depth_mm);
-    let deepest_mm = limit_mm.min(DEEPEST * height_mm);
     let within = DVec2::new(random.random(), random.random());
     let rotation = turned(tilt, random);
     Draw {
         shape,
         place_mm: low.truncate() + size_mm * within,
         rotation,
-        depth_mm: deepest_mm * random.random_range(SHALLOWEST..1.0),
+        depth_mm: deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0),
         edge_mm: height_mm / HEIGHT_MM
             * if finest_mm < coarsest_mm {
                 random.random_range(finest_mm..coarsest_mm)

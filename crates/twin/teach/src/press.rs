@@ -4,13 +4,12 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec2, DVec3};
 use twintac_fast::{Lesson, LessonFrame};
-use twintac_protocol::{PressPath, Waypoint, Zero};
 use twintac_sensor::{Sensor, Taxel};
 use twintac_shape::{Pose, Shape};
 use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSettings};
 
 use crate::boulder::exam_surfaces;
-use crate::draw::{Draw, Purpose, draw, upright};
+use crate::draw::{Draw, Purpose, Slide, draw, own, upright};
 
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
@@ -30,6 +29,9 @@ pub enum TeachError {
     /// The shape can't be.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
+    /// There is nothing to press with.
+    #[error("the sensor describes no indenters to press with")]
+    NoIndenter,
     /// The surface of a shape can't be.
     #[error(transparent)]
     Surface(#[from] twintac_shape::SurfaceError),
@@ -73,6 +75,29 @@ impl Teacher {
         self.press(&draw(&self.sensor, Purpose::Lesson, random))
     }
 
+    /// A lesson with one of the sensor's own indenters, upright and near its ports; balls of 0.6 to 1.6 times their described size.
+    ///
+    /// # Errors
+    /// A sensor that cannot be meshed, or has no indenters.
+    pub fn own_lesson(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+        self.own(seed, &format!("own lesson {number}"))
+    }
+
+    /// The same, to be judged on.
+    ///
+    /// # Errors
+    /// Those of [`Self::own_lesson`].
+    pub fn own_exam(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+        self.own(seed, &format!("own exam {number}"))
+    }
+
+    fn own(&self, seed: u64, name: &str) -> Result<Lesson, TeachError> {
+        match own(&self.sensor, &mut twintac_random::stream(seed, name)) {
+            Some(drawn) => self.press(&drawn),
+            None => Err(TeachError::NoIndenter),
+        }
+    }
+
     /// The exam of a number: a press of a shape that no lesson has.
     ///
     /// # Errors
@@ -82,13 +107,37 @@ impl Teacher {
         self.press(&draw(&self.sensor, Purpose::Exam, random))
     }
 
-    /// The slide of a number: the shape of an exam goes down, then aside, and tilts on the way.
+    /// The slide of a number: the shape of an exam goes down, then aside, and tilts on the way. A gel without friction has no memory, so each pose
+    /// of the way is pressed to from rest: gel that is pushed along instead stays caught in front of sharp edges.
     ///
     /// # Errors
     /// A sensor that cannot be meshed.
     pub fn slide(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
         let random = &mut twintac_random::stream(seed, &format!("slide {number}"));
-        self.press(&draw(&self.sensor, Purpose::Slide, random))
+        let drawn = draw(&self.sensor, Purpose::Slide, random);
+        let mut lesson = self.press(&drawn)?;
+        let Some(slide) = &drawn.slide else {
+            return Ok(lesson);
+        };
+        let down = lesson.frames.last().map(|down| down.gel_from_indenter);
+        let Some(down) = down.filter(|_| is_whole(&lesson)) else {
+            return Ok(lesson);
+        };
+        for pose in on_the_way(down, slide) {
+            let Some(touch) = self.touch(&drawn.shape, &pose)? else {
+                continue;
+            };
+            let there = self.press(&Draw {
+                place_mm: pose.position_mm.truncate(),
+                rotation: pose.rotation,
+                depth_mm: touch.position_mm.z - pose.position_mm.z,
+                ..drawn.clone()
+            })?;
+            if is_whole(&there) {
+                lesson.frames.extend(there.frames.into_iter().last());
+            }
+        }
+        Ok(lesson)
     }
 
     /// A shape pressed upright at a place, mm, turned about the vertical, radians, down to a depth below first touch, mm: as an exam, but not at random.
@@ -105,6 +154,7 @@ impl Teacher {
         self.press(&upright(&self.sensor, shape, place_mm, spin_rad, depth_mm))
     }
 
+    /// Straight down, as far as the solver comes.
     fn press(&self, drawn: &Draw) -> Result<Lesson, TeachError> {
         let settings = SimulateSettings {
             edges_per_height: drawn.edges_per_height,
@@ -122,23 +172,18 @@ impl Teacher {
             position_mm: drawn.place_mm.extend(0.0),
             rotation: drawn.rotation,
         };
-        let touch = match gel.touch(&drawn.shape, &above) {
-            Err(SimulateError::NoTouch { .. }) => return Ok(lesson),
-            touch => touch?,
+        let Some(touch) = self.touch(&drawn.shape, &above)? else {
+            return Ok(lesson);
         };
-        let poses = poses(drawn, &touch);
-        let mesh = match &drawn.slide {
-            None => gel.mesh(&PressPlace {
-                indenter: String::new(),
-                shape: drawn.shape.clone(),
-                x_mm: drawn.place_mm.x,
-                y_mm: drawn.place_mm.y,
-                rotation: drawn.rotation,
-                depth_mm: drawn.depth_mm,
-                enough_force_n: None,
-            }),
-            Some(_) => gel.mesh_along(&drawn.shape, &path(&poses)),
-        }?;
+        let mesh = gel.mesh(&PressPlace {
+            indenter: String::new(),
+            shape: drawn.shape.clone(),
+            x_mm: drawn.place_mm.x,
+            y_mm: drawn.place_mm.y,
+            rotation: drawn.rotation,
+            depth_mm: drawn.depth_mm,
+            enough_force_n: None,
+        })?;
         let body = mesh.body();
         let ports = self
             .places
@@ -147,7 +192,12 @@ impl Teacher {
         let ports = ports.collect::<Result<Vec<_>, _>>()?;
         let indenter = drawn.shape.signed_distance_field(&self.sensor.surfaces)?;
         let mut state = body.rest();
-        for pose in poses {
+        for frame in 1..=N_FRAMES {
+            let depth_mm = f64::from(frame) / f64::from(N_FRAMES) * drawn.depth_mm;
+            let pose = Pose {
+                position_mm: touch.position_mm - depth_mm * DVec3::Z,
+                ..touch
+            };
             let Ok(solved) = body.advance(&mut state, indenter.as_ref(), &pose, 0.0) else {
                 break;
             };
@@ -155,7 +205,7 @@ impl Teacher {
             let force_n = solved.indenter_force_n;
             // No elastic gel pushes less the deeper it is pressed: a thin part has slipped between the nodes of the mesh.
             let before_n = lesson.frames.last().map_or(0.0, |before| before.force_n.z);
-            if drawn.slide.is_none() && force_n.z > before_n {
+            if force_n.z > before_n {
                 break;
             }
             lesson.frames.push(LessonFrame {
@@ -167,42 +217,29 @@ impl Teacher {
         }
         Ok(lesson)
     }
+
+    /// Where a shape first touches the gel on its way down through a pose; none beside the gel.
+    fn touch(&self, shape: &Shape, above: &Pose) -> Result<Option<Pose>, TeachError> {
+        let gel = Gel::new(Arc::clone(&self.sensor), SimulateSettings::default());
+        match gel.touch(shape, above) {
+            Err(SimulateError::NoTouch { .. }) => Ok(None),
+            touch => Ok(Some(touch?)),
+        }
+    }
 }
 
-/// Evenly down from first touch, then on.
-fn poses(drawn: &Draw, touch: &Pose) -> Vec<Pose> {
-    let parts = |n: u32| (1..=n).map(move |frame| f64::from(frame) / f64::from(n));
-    let at = |part: f64| Pose {
-        position_mm: touch.position_mm - part * drawn.depth_mm * DVec3::Z,
-        ..*touch
-    };
-    let mut poses: Vec<Pose> = parts(N_FRAMES).map(at).collect();
-    if let Some(slide) = &drawn.slide {
-        let down = at(1.0);
-        poses.extend(parts(N_SLIDE_FRAMES).map(|part| Pose {
+/// Whether a press came as deep as it was to go.
+fn is_whole(press: &Lesson) -> bool {
+    press.frames.len() == N_FRAMES as usize
+}
+
+/// The poses of a slide, from where the shape is down.
+fn on_the_way(down: Pose, slide: &Slide) -> impl Iterator<Item = Pose> {
+    (1..=N_SLIDE_FRAMES).map(move |frame| {
+        let part = f64::from(frame) / f64::from(N_SLIDE_FRAMES);
+        Pose {
             position_mm: down.position_mm + (part * slide.by_mm).extend(0.0),
             rotation: (DQuat::IDENTITY.slerp(slide.turn, part) * down.rotation).normalize(),
-        }));
-    }
-    poses
-}
-
-/// The way of a slide, for meshing.
-fn path(poses: &[Pose]) -> PressPath {
-    let waypoint = |(number, pose): (usize, &Pose)| Waypoint {
-        time_s: number as f64,
-        position_mm: pose.position_mm,
-        turn_rad: pose.rotation.to_scaled_axis(),
-        force_n: None,
-    };
-    PressPath {
-        summary: String::new(),
-        indenter: String::new(),
-        zero: Zero::Board,
-        rate_hz: None,
-        poses: poses.iter().enumerate().map(waypoint).collect(),
-        force_direction: DVec3::NEG_Z,
-        force_travel_mm: None,
-        points: Vec::new(),
-    }
+        }
+    })
 }

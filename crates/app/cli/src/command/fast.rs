@@ -16,6 +16,7 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
     settings.n_lessons = arguments.lessons.unwrap_or(settings.n_lessons);
     settings.n_exams = arguments.exams.unwrap_or(settings.n_exams);
     settings.n_slides = arguments.slides.unwrap_or(settings.n_slides);
+    settings.own_indenters = arguments.own_indenters;
     if let Some(steps) = arguments.steps {
         settings.train.n_steps = steps as usize;
     }

@@ -5,6 +5,7 @@ use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::Recording;
 
 use crate::depth_tables::DepthTableStore;
+use crate::fast::FAST_GEL;
 use crate::files::{read_json, write_json};
 use crate::mesh::{Fineness, MeshedGel};
 use crate::progress::{Silent, Work};
@@ -46,17 +47,22 @@ impl Run {
     /// # Errors
     /// There are no recordings yet; a place that cannot be pressed.
     pub fn simulate(&self) -> Result<(), RunError> {
-        let inputs = self
+        let mut inputs = self
             .inputs()
             .settings("settings", &self.record.settings)?
             .settings("seed", &self.record.seed)?
             .file(&self.folder.join("sensor.toml"))?
             .stage(&self.stage("recordings"))?;
+        let fast = self.fast()?;
+        if fast.is_some() {
+            inputs = inputs.file(&self.folder.join(FAST_GEL))?;
+        }
         self.run_stage("simulation", inputs, |folder| {
             let recording = self.recording()?;
             let gel = self.gel();
             let _work = Work::start(self.progress(), "simulating", 0);
-            let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress());
+            let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress())
+                .with_fast(fast.as_ref());
             let places = Places::of(&recording, &store, &self.record.settings.places)?;
             let settings = self.resolved(&recording, &places);
             let split = Split::new(&recording, &settings.split)?;

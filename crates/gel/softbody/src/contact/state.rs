@@ -183,7 +183,9 @@ impl Contact {
             });
             let is_sharp = |[a, b]: [usize; 2]| normals[a].distance(normals[b]) > SHARP;
             if SIDES.into_iter().any(is_sharp) {
-                let points = triangle.points(at_mm, normals);
+                let bends_mm =
+                    SIDES.map(|[a, b]| shape.bend_mm([at_mm[a], at_mm[b]], [normals[a], normals[b]]));
+                let points = triangle.points(bends_mm);
                 self.inside.extend(points.map(|point| Inside {
                     point,
                     touch: Touch::OFF,

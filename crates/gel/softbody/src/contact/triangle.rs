@@ -1,8 +1,8 @@
 //! Contact inside the boundary's triangles, for shapes that turn sharply within one, such as the rim of a punch.
 //!
 //! With contact at nodes alone, a triangle can cut off such a corner. Gel that is squeezed out from under a punch also takes its short edges along,
-//! so that at depth long edges lie across the rim. Therefore quadrature points inside triangles are pushed out of the shape as well, except
-//! for the depth that a flat triangle has in an arc between the same normals: where a shape is smooth, contact at nodes is enough. There are more
+//! so that at depth long edges lie across the rim; under a punch that slides, they do so in front of it. Therefore quadrature points inside triangles
+//! are pushed out of the shape as well, except for the depth that a flat triangle has in an arc as round as the shape (`bend`): where a shape is smooth, contact at nodes is enough. There are more
 //! quadrature points than the nodes have degrees of freedom, so they cannot all be exactly outside: they are softer than nodes and have no multiplier.
 
 use glam::DVec3;
@@ -50,16 +50,11 @@ impl BoundaryTriangle {
         self.free.iter().map(|&corner| corner as usize)
     }
 
-    /// The quadrature points of a triangle with corners at these positions, beside which the shape has these normals.
-    pub(super) fn points(
-        &self,
-        at_mm: [DVec3; 3],
-        normals: [DVec3; 3],
-    ) -> impl Iterator<Item = ContactPoint> {
+    /// The quadrature points of a triangle along whose sides the shape bends so: [`bend_mm`](super::rigid_body::RigidBody::bend_mm).
+    pub(super) fn points(&self, bends_mm: [f64; 3]) -> impl Iterator<Item = ContactPoint> {
         let stiffness = self.stiffness / f64::from(CUTS * CUTS);
-        let bends_mm = SIDES.map(|[a, b]| at_mm[a].distance(at_mm[b]) * normals[a].distance(normals[b]));
         middles().map(move |weights| {
-            // Of an arc of curvature c, whose normals differ by c l over a length l: c/2 times the sum of w w l² over the sides.
+            // Of an arc of curvature c, which bends by c l² over a length l: c/2 times the sum of w w l² over the sides.
             let sides = SIDES.into_iter().zip(bends_mm);
             let slack_mm = 0.5
                 * MARGIN

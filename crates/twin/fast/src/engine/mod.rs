@@ -44,7 +44,7 @@ pub(crate) struct Scratch {
 impl Engine {
     pub(crate) fn of(gel: &FastGel) -> Self {
         let (layout, networks) = (&gel.layout, &gel.networks);
-        let (n_points, n_offsets) = (layout.grid.len(), layout.patch.offsets.len());
+        let (n_points, n_offsets) = (layout.n_points(), layout.patch.offsets.len());
         Self {
             pressure: Sparse::of(&networks.pressure, n_offsets, |rows, [n_own, n_hidden]| {
                 let places = Places::around(&gel.ports_mm, layout, rows, n_own);
@@ -53,9 +53,9 @@ impl Engine {
                 let bias = |at: &DVec2| bias_at(*at, layout, first, n_others, n_hidden);
                 (places, gel.ports_mm.iter().flat_map(bias).collect())
             }),
-            wrench: Sparse::of(&networks.wrench, n_points, |_, [_, n_hidden]| {
+            wrench: Sparse::of(&networks.wrench, layout.grid().len(), |_, [_, n_hidden]| {
                 let bias = &networks.wrench.rest.layers[0].bias;
-                (Places::everywhere(n_points), padded(bias, n_hidden).collect())
+                (Places::everywhere(layout), padded(bias, n_hidden).collect())
             }),
             n_points,
             n_ports: gel.ports_mm.len(),
@@ -105,7 +105,7 @@ fn bias_at(at: DVec2, layout: &Layout, first: &Linear, n_others: usize, n_hidden
     let mut place = Vec::new();
     layout
         .surroundings
-        .describe(&layout.grid, at, Turn::NONE, &mut place);
+        .describe(layout.grid(), at, Turn::NONE, &mut place);
     let mut bias: Vec<f32> = padded(&first.bias, n_hidden).collect();
     for (value, weights) in place.iter().zip(first.weight.rows().skip(n_others)) {
         for (bias, weight) in bias.iter_mut().zip(weights) {

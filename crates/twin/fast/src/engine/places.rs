@@ -1,4 +1,4 @@
-//! Where rows of a first layer are used: by which port, for which point of the grid.
+//! Where rows of a first layer are used: by which port, for which point of the grids.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(super) struct Places {
     before: Vec<u32>,
 }
 
-/// A port that has a point of the grid in its patch.
+/// A port that has a point of a grid in its patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Use {
     /// Number of the place in the patch, whose rows multiply the features.
@@ -44,8 +44,9 @@ impl Places {
         }
     }
 
-    /// One port that has every point in its patch.
-    pub(super) fn everywhere(n_points: usize) -> Self {
+    /// One port that has every point of the first grid in its patch.
+    pub(super) fn everywhere(layout: &Layout) -> Self {
+        let n_places = layout.grid().len();
         let point = |number: u32| {
             (
                 number,
@@ -55,16 +56,22 @@ impl Places {
                 },
             )
         };
-        Self::of((0..n_points as u32).map(point).collect(), n_points, n_points)
+        Self::of(
+            (0..n_places as u32).map(point).collect(),
+            n_places,
+            layout.n_points(),
+        )
     }
 
-    /// The patches of ports. A port that is not on the grid gets rows of its own, which are added to `rows`, `[n_places][n_own]`: the inputs between the
+    /// The patches of ports. A port that is on none of the grids gets rows of its own on the first, which are added to `rows`, `[n_places][n_own]`: the inputs between the
     /// grid's points are linear. Ports that lie equally far behind their cells share them.
     pub(super) fn around(ports_mm: &[DVec2], layout: &Layout, rows: &mut Vec<f32>, n_own: usize) -> Self {
-        let grid = &layout.grid;
         let mut known = BTreeMap::new();
         let mut uses = Vec::new();
         for (port, at) in ports_mm.iter().enumerate() {
+            let number = layout.grid_at(*at).unwrap_or(0);
+            let grid = &layout.grids[number];
+            let first = layout.first_point(number);
             let (cell, part) = grid.cell(*at);
             // In millionths of the spacing.
             let behind = [part.x, part.y].map(|part| (1e6 * part).round() as i64);
@@ -75,11 +82,11 @@ impl Places {
                 let point = grid.point([cell[0] + offset[0], cell[1] + offset[1]]);
                 uses.extend(point.map(|point| {
                     let (place, port) = (*place, port as u32);
-                    (point as u32, Use { place, port })
+                    ((first + point) as u32, Use { place, port })
                 }));
             }
         }
-        Self::of(uses, rows.len() / n_own, grid.len())
+        Self::of(uses, rows.len() / n_own, layout.n_points())
     }
 
     #[inline(always)]

@@ -45,11 +45,14 @@ impl PressureBatch {
         for _ in 0..n_frames {
             let frame = frames.any(random);
             for _ in 0..n_places {
-                let (number, cell, at) = frames.places[random.random_range(0..frames.places.len())];
+                let place = &frames.places[random.random_range(0..frames.places.len())];
                 let turn = Turn::number(random.random_range(0..8));
+                let point = (place.grid, place.cell);
                 let inputs = &mut batch.inputs.values;
-                layout.put_patch(&frame.inputs, cell, at, frame.edge_mm, turn, inputs);
-                batch.pressure.push(frame.floor_kpa[number] / frame.largest_kpa);
+                layout.put_patch(&frame.inputs, point, place.at, frame.edge_mm, turn, inputs);
+                batch
+                    .pressure
+                    .push(frame.floor_kpa[place.number] / frame.largest_kpa);
                 batch.largest_kpa.push(frame.largest_kpa);
             }
         }

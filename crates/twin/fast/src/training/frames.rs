@@ -5,8 +5,8 @@ use rand::Rng;
 use twintac_random::RandomStream;
 use twintac_shape::{Pose, ShapeError, Surfaces};
 
-use crate::contact::ContactGrid;
-use crate::surface::SurfaceGrid;
+use crate::contact::ContactPoints;
+use crate::layout::Layout;
 use crate::{Body, Lesson};
 
 /// Gaps between gel and shape at which nothing is felt, mm.
@@ -34,8 +34,19 @@ pub(crate) struct TaughtFrame {
 /// Lessons of one sensor.
 pub(crate) struct Frames {
     pub(crate) frames: Vec<TaughtFrame>,
-    /// Places whose pressure is taught that lie on the grid: the number of the place, its column and row, and where it is, mm.
-    pub(crate) places: Vec<(usize, [i32; 2], DVec2)>,
+    /// Places whose pressure is taught.
+    pub(crate) places: Vec<TaughtPlace>,
+}
+
+/// A place of the floor that is below a point of a grid.
+pub(crate) struct TaughtPlace {
+    /// Its number among the lessons' places.
+    pub(crate) number: usize,
+    /// The grid's number, and column and row of the point.
+    pub(crate) grid: usize,
+    pub(crate) cell: [i32; 2],
+    /// Where it is, mm.
+    pub(crate) at: DVec2,
 }
 
 impl Frames {
@@ -46,11 +57,11 @@ impl Frames {
 
     pub(crate) fn of(
         lessons: &[Lesson],
-        grid: &SurfaceGrid,
+        layout: &Layout,
         (places_mm, n_taxels): (&[DVec2], usize),
         center_mm: DVec3,
     ) -> Result<Self, ShapeError> {
-        let contact = ContactGrid::new(grid);
+        let points = ContactPoints::new(&layout.grids);
         let mut frames = Vec::new();
         for lesson in lessons {
             let body = Body::new(&lesson.shape, &Surfaces::new())?;
@@ -63,8 +74,8 @@ impl Frames {
             let forces = lesson.frames.iter().map(|frame| frame.force_n.length() as f32);
             let largest_n = forces.fold(f32::MIN_POSITIVE, f32::max);
             let mut teach = |gel_from_indenter: Pose, floor_kpa: Vec<f32>, wrench: [f32; 6]| {
-                let mut inputs = vec![0.0; contact.n_inputs()];
-                contact.fill([(&body, gel_from_indenter)].into_iter(), &mut inputs);
+                let mut inputs = vec![0.0; points.n_inputs()];
+                points.fill([(&body, gel_from_indenter)].into_iter(), &mut inputs);
                 frames.push(TaughtFrame {
                     inputs,
                     edge_mm: lesson.edge_mm as f32,
@@ -94,8 +105,13 @@ impl Frames {
             }
         }
         let on_grid = places_mm.iter().enumerate().filter_map(|(number, at)| {
-            let (cell, part) = grid.cell(*at);
-            (part.length() < 1e-6).then_some((number, cell, *at))
+            let grid = layout.grid_at(*at)?;
+            Some(TaughtPlace {
+                number,
+                grid,
+                cell: layout.grids[grid].cell(*at).0,
+                at: *at,
+            })
         });
         Ok(Self {
             places: on_grid.collect(),

@@ -96,7 +96,7 @@ pub(crate) fn train(course: Course<'_>, progress: &mut dyn FnMut(TrainProgress))
         ([n_points, n_inputs], &settings.pressure_hidden, 1)
     });
     let mut wrench = Training::new("wrench", course, |layout, settings| {
-        let (n_points, n_inputs) = (layout.grid.len(), layout.n_field_inputs());
+        let (n_points, n_inputs) = (layout.grid().len(), layout.n_field_inputs());
         ([n_points, n_inputs], &settings.wrench_hidden, 6)
     });
     let Course {
