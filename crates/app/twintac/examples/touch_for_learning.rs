@@ -1,29 +1,41 @@
-//! A thousand sensors under a thousand balls: `cargo run --release --example touch_for_learning`.
+//! A thousand imperfect sensors under a thousand balls: `cargo run --release --example touch_for_learning`.
 #![allow(clippy::print_stdout)] // programs print
 
 use std::time::Instant;
 
-use twintac::{Body, Error, FastGel, Pose, Shape, Touch};
+use twintac::{Body, Error, FastGel, Imperfection, Pose, SensorBatch, Shape, Touch};
 
 const N_SENSORS: usize = 1024;
 
 fn main() -> Result<(), Error> {
-    let (pressure_kpa, seconds) = step(100)?;
-    println!(
-        "the first sensor reads {:.2?} kPa (simulated)",
-        &pressure_kpa[..8]
-    );
-    println!("{:.0} readings a second", 100.0 * N_SENSORS as f64 / seconds);
+    let imperfection = Imperfection {
+        gain_deviation: 0.05, // of the gain
+        noise_deviation_kpa: 0.02,
+        hysteresis: 0.02,          // of the reading, to either side
+        dead_chance: 0.01,         // of each taxel
+        height_deviation_mm: 0.05, // of where the sensor is mounted
+        ..Imperfection::default()
+    };
+    for (name, imperfection) in [("perfect", Imperfection::default()), ("imperfect", imperfection)] {
+        let (readings_kpa, seconds) = step(imperfection, 100)?;
+        println!(
+            "{name}: the first sensor reads {:.2?} kPa (simulated), {:.0} sensors are read a second",
+            &readings_kpa[..8],
+            100.0 * N_SENSORS as f64 / seconds
+        );
+    }
     Ok(())
 }
 
 /// Presses each ball a little deeper at each step. Returns what all sensors read at last, kPa, and how long it took, s.
-pub fn step(n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
+pub fn step(imperfection: Imperfection, n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
     let n_threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut sensors = FastGel::phystac()?.batch(n_threads);
+    let (gel, seed) = (FastGel::phystac()?, 1);
+    // A trained twin in the place of `None` would add the gains and the memory of its barometers.
+    let mut sensors = SensorBatch::new(&gel, None, imperfection, [N_SENSORS, n_threads], seed);
     let bodies = [Body::new(&Shape::Sphere { radius_mm: 6.0 }, &Default::default())?];
     let ends: Vec<usize> = (1..=N_SENSORS).collect(); // one body touches each sensor
-    let (mut pressure_kpa, mut wrench) = (vec![0.0; 8 * N_SENSORS], vec![[0.0; 6]; N_SENSORS]);
+    let (mut readings_kpa, mut wrench) = (vec![0.0; 8 * N_SENSORS], vec![[0.0; 6]; N_SENSORS]);
     let started = Instant::now();
     for step in 0..n_steps {
         let depth_mm = 2.0 * step as f64 / n_steps as f64;
@@ -35,7 +47,7 @@ pub fn step(n_steps: usize) -> Result<(Vec<f32>, f64), Error> {
             }
         };
         let touches: Vec<Touch> = (0..N_SENSORS).map(touch).collect();
-        sensors.read(&bodies, &touches, &ends, &mut pressure_kpa, &mut wrench);
+        sensors.step(0.01, &bodies, &touches, &ends, &mut readings_kpa, &mut wrench);
     }
-    Ok((pressure_kpa, started.elapsed().as_secs_f64()))
+    Ok((readings_kpa, started.elapsed().as_secs_f64()))
 }

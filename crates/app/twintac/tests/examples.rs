@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 #![allow(dead_code, unreachable_pub)] // each example has a `main` of its own
 
+use twintac::Imperfection;
+
 #[path = "../examples/predict_along_a_press.rs"]
 mod predict_along_a_press;
 #[path = "../examples/press_a_ball.rs"]
@@ -28,8 +30,14 @@ fn a_sensor_is_read() {
 
 #[test]
 fn a_thousand_sensors_feel_what_presses_them() {
-    let (pressure_kpa, _) = touch_for_learning::step(2).unwrap();
-    for readings_kpa in pressure_kpa.chunks_exact(8) {
+    let imperfection = Imperfection {
+        gain_deviation: 0.05,
+        ..Imperfection::default()
+    };
+    let read = |imperfection: Imperfection| touch_for_learning::step(imperfection, 2).unwrap().0;
+    let [perfect_kpa, imperfect_kpa] = [Imperfection::default(), imperfection].map(read);
+    assert_ne!(perfect_kpa, imperfect_kpa);
+    for readings_kpa in perfect_kpa.chunks_exact(8).chain(imperfect_kpa.chunks_exact(8)) {
         let largest = readings_kpa.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         assert!((0.5..50.0).contains(&largest), "{readings_kpa:?}");
     }

@@ -23,6 +23,8 @@ pub(super) struct Use {
     /// Number of the place in the patch, whose rows multiply the features.
     pub(super) place: u32,
     pub(super) port: u32,
+    /// How many uses all places before that one have.
+    pub(super) before: u32,
 }
 
 impl Places {
@@ -30,6 +32,7 @@ impl Places {
     fn of(mut uses: Vec<(u32, Use)>, n_places: usize, n_points: usize) -> Self {
         uses.sort_by_key(|(point, pair)| (*point, pair.port));
         let first_use = |point| uses.partition_point(|pair| pair.0 < point as u32) as u32;
+        let first_use = (0..=n_points).map(first_use).collect();
         let mut before = vec![0; n_places + 1];
         for (_, pair) in &uses {
             before[pair.place as usize + 1] += 1;
@@ -37,8 +40,11 @@ impl Places {
         for place in 0..n_places {
             before[place + 1] += before[place];
         }
+        for (_, pair) in &mut uses {
+            pair.before = before[pair.place as usize];
+        }
         Self {
-            first_use: (0..=n_points).map(first_use).collect(),
+            first_use,
             uses: uses.into_iter().map(|(_, pair)| pair).collect(),
             before,
         }
@@ -53,6 +59,7 @@ impl Places {
                 Use {
                     place: number,
                     port: 0,
+                    before: 0,
                 },
             )
         };
@@ -82,7 +89,8 @@ impl Places {
                 let point = grid.point([cell[0] + offset[0], cell[1] + offset[1]]);
                 uses.extend(point.map(|point| {
                     let (place, port) = (*place, port as u32);
-                    ((first + point) as u32, Use { place, port })
+                    let before = 0;
+                    ((first + point) as u32, Use { place, port, before })
                 }));
             }
         }

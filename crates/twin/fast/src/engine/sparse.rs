@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::dense::{Dense, padded, padded_rows};
-use super::places::{Places, Use};
+use super::places::Places;
 use super::product::Weights;
 use super::simd::LANES;
 use crate::contact::N_CHANNELS;
@@ -160,21 +160,27 @@ impl Sparse {
     /// Sorts what has to be multiplied by its places: the rows of a place are fetched once for all sensors.
     #[inline(always)]
     fn pair(&self, near: &Near, scratch: &mut Scratch) {
+        let Scratch {
+            pairs,
+            n_pairs,
+            is_touched,
+            ..
+        } = scratch;
         let n_sensors = near.ends.len();
-        scratch.n_pairs.fill(0);
-        scratch.is_touched.fill(false);
+        n_pairs.fill(0);
+        is_touched.fill(false);
         let mut first = 0;
         for (sensor, end) in near.ends.iter().enumerate() {
-            for (number, point) in near.points[first..*end].iter().enumerate() {
-                for Use { place, port } in self.places.of_point(*point) {
-                    let (place, row) = (*place as usize, sensor * self.n_ports + *port as usize);
-                    let n_pairs = &mut scratch.n_pairs[place];
-                    scratch.pairs[n_sensors * self.places.before(place) + *n_pairs as usize] = Pair {
-                        near: (first + number) as u32,
+            for number in first..*end {
+                for used in self.places.of_point(near.points[number]) {
+                    let row = sensor * self.n_ports + used.port as usize;
+                    let n_pairs = &mut n_pairs[used.place as usize];
+                    pairs[n_sensors * used.before as usize + *n_pairs as usize] = Pair {
+                        near: number as u32,
                         row: row as u32,
                     };
                     *n_pairs += 1;
-                    scratch.is_touched[row] = true;
+                    is_touched[row] = true;
                 }
             }
             first = *end;

@@ -97,11 +97,11 @@ pub(crate) fn markdown(results: &Results) -> Result<String, std::fmt::Error> {
         100.0 * results.part_of_copying()
     )?;
     match (&results.touch_grid, &results.touch_grid_note) {
-        (Some(grid), _) => write!(
+        (Some(grid), _) => writeln!(
             text,
             "MuJoCo {}'s sensor `touch_grid` of {} cells over a flat pad, as many scenes on as many threads, each with one ball that slides: {:.0} steps of a scene a \
              second ({}). The slowest of our scenes with everything makes {:.2} readings in that time. MuJoCo's step also moves the bodies. Its sensor sums contact forces in \
-             cells, {:.1} of which feel a ball; it has no gel: no pressure beside the contact, no memory, no imperfections.\n",
+             cells, {:.1} of which feel a ball; it has no gel: no pressure beside the contact, no memory, no imperfections.",
             grid.version,
             grid.cells,
             grid.steps_per_s.median,

@@ -57,7 +57,7 @@ impl Kind {
         match self {
             Self::Ball => "ball, 12 mm",
             Self::Box => "box, 12 × 8 × 10 mm",
-            Self::Boulder => "closed surface of 20,000 triangles",
+            Self::Boulder => "closed surface, 20,000 triangles",
         }
     }
 
