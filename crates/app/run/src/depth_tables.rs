@@ -10,7 +10,7 @@ use twintac_shape::Pose;
 use twintac_simulate::{Gel, PressPlace};
 
 use crate::Progress;
-use crate::fast_tables::FastTables;
+use crate::fast::tables::FastTables;
 use crate::files::{read_json, sha256, write_json};
 
 /// Spacing of a lattice over the gel's height, for places along a line and over a plane, which has so many more of them.

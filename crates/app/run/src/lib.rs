@@ -53,7 +53,6 @@ mod doubtful;
 mod error;
 pub mod export;
 pub mod fast;
-mod fast_tables;
 mod files;
 pub mod mesh;
 mod metrics;

@@ -12,7 +12,7 @@ use crate::cache::{self, Inputs};
 use crate::doubtful::left_out;
 use crate::error::At;
 use crate::fast::FAST_GEL;
-use crate::fast_tables::FastTables;
+use crate::fast::tables::FastTables;
 use crate::files::{read_json, write_file, write_json};
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
 

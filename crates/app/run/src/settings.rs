@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::RunError;
-use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings};
+use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings, Variant};
 use serde::{Deserialize, Serialize};
 use twintac_recording::{Control, Recording};
 use twintac_sensor::Sensor;
@@ -92,6 +92,13 @@ impl RunSettings {
         resolved.bench.ports_mm = ports_mm(sensor);
         if !has_unknown_tip(sensor, recording) {
             resolved.bench.tip_radii_mm.clear();
+        }
+        if self.fast_gel.is_some() {
+            // It has no stress features.
+            resolved
+                .train
+                .variants
+                .retain(|variant| *variant != Variant::Paper);
         }
         if n_places >= DENSE_FROM {
             resolved.split.block_mm = DENSE_BLOCK_MM;

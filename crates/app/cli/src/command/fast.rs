@@ -41,8 +41,11 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
         "", "frames", "nearest", "all", "force"
     ))?;
     print_group("held-out presses", &found.held_out.overall)?;
-    print_judgement("shapes never taught", &found.unseen_shapes)?;
-    print_group("the same, sliding and tilting", &found.slides.overall)
+    print_judgement(found.exams_name(), &found.exams)?;
+    if found.slides.overall.n_frames > 0 {
+        print_group("the same, sliding and tilting", &found.slides.overall)?;
+    }
+    Ok(())
 }
 
 fn print_judgement(name: &str, found: &Judgement) -> Result<()> {

@@ -1,10 +1,14 @@
 //! A fast twin, from a sensor's description alone: presses of the solved gel to learn from, training, and presses to be judged on.
 
+mod plot;
+pub(crate) mod tables;
+
 use std::path::Path;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_fast::{FastGel, Judgement, Lesson, TrainSettings, lesson_places_mm};
+use twintac_plot::png;
 use twintac_recording::Provenance;
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::Surfaces;
@@ -59,13 +63,15 @@ pub struct FastResult {
     pub sensor: String,
     /// Where the numbers come from: both gels are simulated.
     pub provenance: Provenance,
+    /// Whether all presses are those of the sensor's own indenters.
+    pub own_indenters: bool,
     /// Presses that were taught.
     pub n_taught: usize,
     /// Errors against the solved gel on presses like those that were taught.
     pub held_out: Judgement,
-    /// Errors against the solved gel on shapes that no lesson has, which are pressed straight down.
-    pub unseen_shapes: Judgement,
-    /// The same where such shapes slide and tilt.
+    /// Errors against the solved gel on exams, pressed straight down: of shapes that no lesson has, or with the sensor's own indenters.
+    pub exams: Judgement,
+    /// The same where shapes that no lesson has slide and tilt; no frames for a sensor's own indenters.
     pub slides: Judgement,
 }
 
@@ -139,12 +145,14 @@ pub fn train_fast(
     let result = FastResult {
         sensor: sensor.sensor.name.clone(),
         provenance: Provenance::Simulated,
+        own_indenters: is_own,
         n_taught: taught.len(),
         held_out: gel.judge(&held_out, &Surfaces::new())?,
-        unseen_shapes: gel.judge(&exams, &surfaces)?,
+        exams: gel.judge(&exams, &surfaces)?,
         slides: gel.judge(&slides, &surfaces)?,
     };
     write_json(&folder.join("judgement.json"), &result)?;
+    write_file(&folder.join("judgement.png"), &png(&result.plot().scene(), 2.0)?)?;
     Ok(result)
 }
 
