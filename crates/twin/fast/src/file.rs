@@ -12,13 +12,14 @@ use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::{LocalNetwork, Perceptron};
 use crate::networks::Networks;
+use crate::novelty::{N_TRAITS, Novelty};
 use crate::surface::SurfaceGrid;
 
 /// The header's entry.
 const ENTRY: &str = "twintac-fast";
 
 /// Version of the file's layout.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Bytes that are no fast gel: what is wrong with them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,6 +40,8 @@ struct Header {
     layout: Layout,
     ports_mm: Vec<glam::DVec2>,
     center_mm: glam::DVec3,
+    /// The distance from what was taught that counts as a novelty of 1.
+    novelty_unit: f32,
 }
 
 /// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 3000 --exams 70 --slides 24`.
@@ -64,6 +67,7 @@ impl FastGel {
             layout: self.layout.clone(),
             ports_mm: self.ports_mm.clone(),
             center_mm: self.center_mm,
+            novelty_unit: self.novelty.unit,
         };
         let header = serde_json::to_string(&header).map_err(FastFileError::new)?;
         let mut tensors = Vec::new();
@@ -73,18 +77,15 @@ impl FastGel {
         ] {
             let layers = std::iter::once(&network.point).chain(&network.rest.layers);
             for (index, Linear { weight, bias }) in layers.enumerate() {
-                let bytes = |values: &[f32]| {
-                    values
-                        .iter()
-                        .flat_map(|value| value.to_le_bytes())
-                        .collect::<Vec<u8>>()
-                };
                 let tensor = |part: &str| format!("{name}.{index}.{part}");
                 let shape = vec![weight.n_rows(), weight.n_columns];
                 tensors.push((tensor("weight"), shape, bytes(&weight.values)));
                 tensors.push((tensor("bias"), vec![bias.len()], bytes(bias)));
             }
         }
+        let kept = &self.novelty.kept;
+        tensors.push(("novelty.kept".into(), vec![kept.n_rows(), N_TRAITS], bytes(&kept.values)));
+        tensors.push(("novelty.scale".into(), vec![N_TRAITS], bytes(&self.novelty.scale)));
         let views = tensors.iter().map(|(name, shape, bytes)| {
             let view = TensorView::new(Dtype::F32, shape.clone(), bytes).map_err(FastFileError::new)?;
             Ok((name.clone(), view))
@@ -120,7 +121,16 @@ impl FastGel {
             pressure: network(&tensors, "pressure", [n_patch, n_inputs[0]], 1)?,
             wrench: network(&tensors, "wrench", [n_grid, n_inputs[1]], 6)?,
         };
+        let novelty = Novelty {
+            kept: Matrix {
+                values: tensor(&tensors, "novelty.kept", &[None, Some(N_TRAITS)])?,
+                n_columns: N_TRAITS,
+            },
+            scale: tensor(&tensors, "novelty.scale", &[Some(N_TRAITS)])?,
+            unit: header.novelty_unit,
+        };
         Ok(Self {
+            novelty,
             sensor: header.sensor,
             layout: header.layout,
             ports_mm: header.ports_mm,
@@ -161,28 +171,35 @@ fn network(
 
 /// A layer of so many inputs.
 fn layer(tensors: &SafeTensors<'_>, name: &str, n_inputs: usize) -> Result<Linear, FastFileError> {
-    let tensor = |part: &str| {
-        tensors
-            .tensor(&format!("{name}.{part}"))
-            .map_err(FastFileError::new)
-    };
-    let (weight, bias) = (tensor("weight")?, tensor("bias")?);
-    let is_single = weight.dtype() == Dtype::F32 && bias.dtype() == Dtype::F32;
-    match *weight.shape() {
-        [n, n_columns] if n == n_inputs && bias.shape() == [n_columns] && is_single => Ok(Linear {
-            weight: Matrix {
-                values: numbers(weight.data()),
-                n_columns,
-            },
-            bias: numbers(bias.data()),
-        }),
-        _ => Err(FastFileError::new(format!(
-            "`{name}` does not fit what is before it"
-        ))),
-    }
+    let bias = tensor(tensors, &format!("{name}.bias"), &[None])?;
+    let n_columns = bias.len();
+    let values = tensor(
+        tensors,
+        &format!("{name}.weight"),
+        &[Some(n_inputs), Some(n_columns)],
+    )?;
+    Ok(Linear {
+        weight: Matrix { values, n_columns },
+        bias,
+    })
 }
 
-fn numbers(bytes: &[u8]) -> Vec<f32> {
-    let numbers = bytes.as_chunks::<4>().0.iter();
-    numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect()
+/// The numbers of a tensor of this shape; `None` where any length will do.
+fn tensor(
+    tensors: &SafeTensors<'_>,
+    name: &str,
+    shape: &[Option<usize>],
+) -> Result<Vec<f32>, FastFileError> {
+    let found = tensors.tensor(name).map_err(FastFileError::new)?;
+    let fits = |(expected, found): (&Option<usize>, &usize)| expected.is_none_or(|expected| expected == *found);
+    let is_so = found.shape().len() == shape.len() && shape.iter().zip(found.shape()).all(fits);
+    if !is_so || found.dtype() != Dtype::F32 {
+        return Err(FastFileError::new(format!("`{name}` does not fit the rest")));
+    }
+    let numbers = found.data().as_chunks::<4>().0.iter();
+    Ok(numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect())
+}
+
+fn bytes(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }

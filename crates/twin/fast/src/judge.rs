@@ -33,6 +33,8 @@ pub struct Judgement {
     pub by_depth_mm: BTreeMap<u32, GroupErrors>,
     /// By distance of the shape's origin from the gel's middle, as part of the way to its corner: four equal parts.
     pub by_place: BTreeMap<String, GroupErrors>,
+    /// Frames whose contact is like what was taught (`familiar`), and others (`new`).
+    pub by_novelty: BTreeMap<String, GroupErrors>,
 }
 
 /// Errors of one frame, as part of the press's largest value.
@@ -40,6 +42,7 @@ struct FrameErrors {
     shape: &'static str,
     depth_mm: f64,
     from_middle: f64,
+    novelty: f32,
     nearest: f64,
     all: f64,
     force: f64,
@@ -84,6 +87,7 @@ impl FastGel {
                 .map(|(depth, frames)| (depth, mean(&frames)))
                 .collect(),
             by_place: grouped(&quarter),
+            by_novelty: grouped(&|frame| if frame.novelty > 1.0 { "new" } else { "familiar" }.to_owned()),
         })
     }
 
@@ -104,7 +108,8 @@ impl FastGel {
         let mut reader = self.reader();
         let (mut found_kpa, mut wrench) = (vec![0.0; n_taxels], [0.0; 6]);
         for frame in &press.frames {
-            reader.read(&[(&body, frame.gel_from_indenter)], &mut found_kpa, &mut wrench);
+            let touching = [(&body, frame.gel_from_indenter)];
+            reader.read(&touching, &mut found_kpa, &mut wrench);
             let solved_kpa = ports(&frame.floor_kpa);
             let error = |taxel: usize| f64::from(found_kpa[taxel] - solved_kpa[taxel]) / largest_kpa;
             let Some(nearest) = (0..n_taxels).max_by(|a, b| solved_kpa[*a].total_cmp(&solved_kpa[*b])) else {
@@ -116,6 +121,7 @@ impl FastGel {
                 shape: name(&press.shape),
                 depth_mm: self.center_mm.z - position_mm.z,
                 from_middle: (position_mm - self.center_mm).truncate().length() / corner_mm.length(),
+                novelty: reader.novelty(&touching),
                 nearest: error(nearest),
                 all: (0..n_taxels).map(|taxel| error(taxel).abs()).sum::<f64>() / n_taxels as f64,
                 force: force.distance(frame.force_n) / largest_n,

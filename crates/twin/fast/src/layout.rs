@@ -23,10 +23,11 @@ pub(crate) struct Layout {
 impl Layout {
     /// The layout over a sensor's gel.
     pub(crate) fn of(sensor: &Sensor) -> Self {
+        let (grids, surroundings) = (SurfaceGrid::all(sensor), Surroundings::of(sensor));
         Self {
-            grids: SurfaceGrid::all(sensor),
-            patch: Patch::round(),
-            surroundings: Surroundings::of(sensor),
+            patch: Patch::round(grids[0].spacing_mm, surroundings.height_mm()),
+            grids,
+            surroundings,
         }
     }
 

@@ -11,6 +11,7 @@ mod lesson;
 mod model;
 mod network;
 mod networks;
+mod novelty;
 mod read;
 mod surface;
 mod touch;

@@ -8,6 +8,7 @@ use crate::Lesson;
 use crate::layout::Layout;
 use crate::lesson::lesson_places_mm;
 use crate::networks::Networks;
+use crate::novelty::Novelty;
 use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
 /// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
@@ -20,6 +21,7 @@ pub struct FastGel {
     /// About which torques count, mm.
     pub(crate) center_mm: DVec3,
     pub(crate) networks: Networks,
+    pub(crate) novelty: Novelty,
 }
 
 impl FastGel {
@@ -52,6 +54,7 @@ impl FastGel {
         };
         let networks = train(course, progress);
         Ok(Self {
+            novelty: Novelty::of(&frames, layout.grid()),
             sensor: sensor.name.clone(),
             ports_mm: sensor
                 .taxels

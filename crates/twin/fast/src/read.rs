@@ -6,6 +6,8 @@ use twintac_shape::Pose;
 
 use crate::contact::ContactPoints;
 use crate::engine::{Engine, Scratch};
+use crate::novelty::Novelty;
+use crate::surface::SurfaceGrid;
 use crate::{Body, FastGel, Touch};
 
 /// A fast gel, ready to be read: it owns all memory that a reading needs.
@@ -17,6 +19,8 @@ pub struct FastReader {
     inputs: Vec<f32>,
     scratch: Scratch,
     n_taxels: usize,
+    grid: Arc<SurfaceGrid>,
+    novelty: Arc<Novelty>,
 }
 
 impl FastGel {
@@ -29,6 +33,8 @@ impl FastGel {
             inputs: vec![0.0; engine.n_together() * points.n_inputs()],
             scratch: engine.scratch(),
             n_taxels: self.n_taxels(),
+            grid: Arc::new(self.layout.grid().clone()),
+            novelty: Arc::new(self.novelty.clone()),
             points: Arc::new(points),
             engine: Arc::new(engine),
         }
@@ -63,7 +69,18 @@ impl FastReader {
         self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
     }
 
-    /// The same of many sensors, one after the other on the calling thread. A sensor's numbers do not depend on the others.
+    /// How unlike what was taught a contact is: 0 where nothing touches; above 1 where it is farther from all that was taught than 99 of 100 contacts of the
+    /// same kinds, so that readings and force may be wrong. It looks at how deep, large, steep and scattered the contact is, not at where it is.
+    ///
+    /// # Panics
+    /// A pose that is not finite.
+    pub fn novelty(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
+        let inputs = &mut self.inputs[..self.points.n_inputs()];
+        self.points.fill(bodies.iter().copied(), inputs);
+        self.novelty.score(&self.grid, inputs)
+    }
+
+    /// [`Self::read`] of many sensors, one after the other on the calling thread. A sensor's numbers do not depend on the others.
     ///
     /// - `bodies`: everything that touches; any number of sensors may share a body.
     /// - `touches`: of the first sensor, then of the second, and so on.

@@ -4,8 +4,11 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use twintac_sensor::Sensor;
 
-/// Distance of the grid's points along x and along y, mm.
+/// Distance of the grid's points along x and along y, mm; more over a gel that is higher than six of them, whose floor feels nothing so small.
 const SPACING_MM: f64 = 2.0;
+
+/// The largest distance of the points, of the gel's height.
+const SPACING_OF_HEIGHT: f64 = 1.0 / 6.0;
 
 /// A grid of points on the undeformed gel's surface, row by row along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,15 +39,16 @@ impl SurfaceGrid {
     /// A grid with a point above a place.
     fn above(sensor: &Sensor, anchor: DVec2) -> Self {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let spacing_mm = SPACING_MM.max(SPACING_OF_HEIGHT * (high.z - low.z));
         let axis = |axis: usize| {
-            let before = ((anchor[axis] - low[axis]) / SPACING_MM).floor();
-            let after = ((high[axis] - anchor[axis]) / SPACING_MM).floor();
-            (anchor[axis] - before * SPACING_MM, (before + after) as usize + 1)
+            let before = ((anchor[axis] - low[axis]) / spacing_mm).floor();
+            let after = ((high[axis] - anchor[axis]) / spacing_mm).floor();
+            (anchor[axis] - before * spacing_mm, (before + after) as usize + 1)
         };
         let [(x_mm, n_x), (y_mm, n_y)] = [axis(0), axis(1)];
         let mut grid = Self {
             first_mm: [x_mm, y_mm],
-            spacing_mm: SPACING_MM,
+            spacing_mm,
             n: [n_x, n_y],
             height_mm: Vec::new(),
         };

@@ -13,7 +13,7 @@ use crate::boulder;
 const WIDTH_MM: f64 = 25.0;
 
 /// Largest tilt of a press, radians.
-const LARGEST_TILT: f64 = 0.3;
+pub(crate) const LARGEST_TILT: f64 = 0.3;
 
 /// Largest tilt on the way of a slide.
 const LARGEST_TURN: f64 = 0.15;
@@ -98,18 +98,40 @@ pub(crate) fn own(sensor: &Sensor, random: &mut impl Rng) -> Option<Draw> {
 }
 
 /// How deep presses go at most, mm.
-fn deepest_mm(sensor: &Sensor) -> f64 {
+pub(crate) fn deepest_mm(sensor: &Sensor) -> f64 {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let limit_mm = sensor.limits.map_or(f64::INFINITY, |limits| limits.depth_mm);
     limit_mm.min(DEEPEST * (high.z - low.z))
 }
 
+/// The sizes of a gel that presses are drawn for.
+pub(crate) struct Scales {
+    /// Lowest corner in plan, mm.
+    pub(crate) low_mm: DVec2,
+    /// Length and width, mm.
+    pub(crate) size_mm: DVec2,
+    /// The width over that for which shapes have the sizes below.
+    pub(crate) width: f64,
+    height_mm: f64,
+}
+
+impl Scales {
+    pub(crate) fn of(sensor: &Sensor) -> Self {
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let size_mm = (high - low).truncate();
+        Self {
+            low_mm: low.truncate(),
+            size_mm,
+            width: size_mm.element_product().sqrt() / WIDTH_MM,
+            height_mm: high.z - low.z,
+        }
+    }
+}
+
 /// Draws a press for a sensor.
 pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> Draw {
-    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-    let size_mm = (high - low).truncate();
-    let scale = size_mm.element_product().sqrt() / WIDTH_MM;
-    let height_mm = high.z - low.z;
+    let scales = Scales::of(sensor);
+    let (scale, size_mm) = (scales.width, scales.size_mm);
     let is_lesson = purpose == Purpose::Lesson;
     let shape = match (is_lesson, random.random_range(0..7)) {
         (false, kind) => unseen(kind, scale, random),
@@ -131,10 +153,10 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     let rotation = turned(tilt, random);
     Draw {
         shape,
-        place_mm: low.truncate() + size_mm * within,
+        place_mm: scales.low_mm + size_mm * within,
         rotation,
         depth_mm: deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0),
-        edge_mm: height_mm / HEIGHT_MM
+        edge_mm: scales.height_mm / HEIGHT_MM
             * if finest_mm < coarsest_mm {
                 random.random_range(finest_mm..coarsest_mm)
             } else {
@@ -175,7 +197,7 @@ fn turned(tilt: f64, random: &mut impl Rng) -> DQuat {
 }
 
 /// A shape of one piece, tall enough never to be pushed in to its top.
-fn simple(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
+pub(crate) fn simple(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
     let mut between = |low: f64, high: f64| scale * random.random_range(low..high);
     let edge_radius_mm = between(0.6, 1.6);
     let height_mm = 14.0 * scale;

@@ -45,6 +45,15 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
     if found.slides.overall.n_frames > 0 {
         print_group("the same, sliding and tilting", &found.slides.overall)?;
     }
+    if let Some(strange) = &found.strange {
+        print("contacts unlike all that was taught, %: flagged, and how often they look stranger than held-out presses")?;
+        let familiar = strange.familiar_flagged_percent;
+        print(&format!("{:<28} {familiar:>7.1}", "held-out presses"))?;
+        for (kind, flagged) in &strange.flagged_percent {
+            print(&format!("{kind:<28} {flagged:>7.1} {:>8.1}", strange.auroc_percent[kind]))?;
+        }
+        print(&format!("{:<28} {:>7} {:>8.1}", "all", "", strange.overall_auroc_percent))?;
+    }
     Ok(())
 }
 
@@ -55,6 +64,9 @@ fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
     }
     for (depth_mm, errors) in &found.by_depth_mm {
         print_group(&format!("  {depth_mm} to {} mm deep", depth_mm + 1), errors)?;
+    }
+    for (novelty, errors) in &found.by_novelty {
+        print_group(&format!("  {novelty} contacts"), errors)?;
     }
     for (place, errors) in &found.by_place {
         print_group(&format!("  {place} of the way to a corner"), errors)?;

@@ -1,6 +1,7 @@
 //! A fast twin, from a sensor's description alone: presses of the solved gel to learn from, training, and presses to be judged on.
 
 mod plot;
+mod strange;
 pub(crate) mod tables;
 
 use std::path::Path;
@@ -18,6 +19,8 @@ use crate::error::At;
 use crate::files::{read_json, sha256, write_file, write_json};
 use crate::progress::Work;
 use crate::{Progress, RunError};
+
+pub use strange::Told;
 
 /// File of the fast twin in its folder.
 pub const FAST_GEL: &str = "fast.safetensors";
@@ -73,6 +76,8 @@ pub struct FastResult {
     pub exams: Judgement,
     /// The same where shapes that no lesson has slide and tilt; no frames for a sensor's own indenters.
     pub slides: Judgement,
+    /// Whether contacts unlike all that was taught are told; nothing where the sensor's own indenters were pressed.
+    pub strange: Option<Told>,
 }
 
 /// What the lessons of a folder are of.
@@ -142,7 +147,12 @@ pub fn train_fast(
     drop(work);
     write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
     let surfaces = exam_surfaces().map_err(TeachError::from)?;
+    let strange = match is_own {
+        true => None,
+        false => Some(Told::of(&gel, &teacher, &held_out, seed)?),
+    };
     let result = FastResult {
+        strange,
         sensor: sensor.sensor.name.clone(),
         provenance: Provenance::Simulated,
         own_indenters: is_own,

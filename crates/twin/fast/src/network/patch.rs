@@ -7,8 +7,11 @@ use twintac_sensor::Sensor;
 use crate::contact::N_CHANNELS;
 use crate::surface::SurfaceGrid;
 
-/// How far a patch reaches, points of the grid.
-const REACH: i32 = 4;
+/// How far a patch reaches, of the gel's height: what presses farther away is little felt.
+const REACH_OF_HEIGHT: f64 = 0.94;
+
+/// How far a patch reaches at least, points of the grid.
+const LEAST_REACH: i32 = 4;
 
 /// What the gel's edges do falls by e over this share of its height.
 const EDGE_DECAY: f64 = 0.5;
@@ -30,10 +33,12 @@ pub(crate) struct Turn {
 }
 
 impl Patch {
-    /// All points within reach.
-    pub(crate) fn round() -> Self {
-        let within = |[i, j]: &[i32; 2]| i * i + j * j <= REACH * REACH + 1;
-        let all = (-REACH..=REACH).flat_map(|j| (-REACH..=REACH).map(move |i| [i, j]));
+    /// All points of a grid within reach, over a gel of this height.
+    pub(crate) fn round(spacing_mm: f64, height_mm: f64) -> Self {
+        let reach = (REACH_OF_HEIGHT * height_mm / spacing_mm).round() as i32;
+        let reach = reach.max(LEAST_REACH);
+        let within = |[i, j]: &[i32; 2]| i * i + j * j <= reach * reach + 1;
+        let all = (-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| [i, j]));
         Self {
             offsets: all.filter(within).collect(),
         }
@@ -102,6 +107,11 @@ impl Surroundings {
             high_mm: high.truncate(),
             height_mm: high.z - low.z,
         }
+    }
+
+    /// Height of the gel, mm.
+    pub(crate) fn height_mm(&self) -> f64 {
+        self.height_mm
     }
 
     /// The gel's lowest corner in plan, mm.

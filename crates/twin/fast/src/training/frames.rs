@@ -17,6 +17,8 @@ const LEAST_SHARE: f32 = 0.3;
 
 /// One moment of a lesson.
 pub(crate) struct TaughtFrame {
+    /// The number of its lesson.
+    pub(crate) lesson: usize,
     /// `[n_points * N_CHANNELS]`
     pub(crate) inputs: Vec<f32>,
     /// Length of the mesh's edges, mm.
@@ -63,7 +65,7 @@ impl Frames {
     ) -> Result<Self, ShapeError> {
         let points = ContactPoints::new(&layout.grids);
         let mut frames = Vec::new();
-        for lesson in lessons {
+        for (number, lesson) in lessons.iter().enumerate() {
             let body = Body::new(&lesson.shape, &Surfaces::new())?;
             let largest = |n: usize| {
                 let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa[..n]);
@@ -77,6 +79,7 @@ impl Frames {
                 let mut inputs = vec![0.0; points.n_inputs()];
                 points.fill([(&body, gel_from_indenter)].into_iter(), &mut inputs);
                 frames.push(TaughtFrame {
+                    lesson: number,
                     inputs,
                     edge_mm: lesson.edge_mm as f32,
                     floor_kpa,

@@ -1,0 +1,100 @@
+//! Contacts unlike those that are taught, to see that they are told from them. They need no solver.
+
+use std::f64::consts::TAU;
+
+use glam::{DQuat, DVec2, DVec3};
+use rand::Rng;
+use twintac_random::RandomStream;
+use twintac_shape::{Part, Pose, Shape};
+
+use crate::draw::{LARGEST_TILT, Scales, simple};
+
+/// What is strange about a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Strange {
+    /// Taught shapes, deeper than any is taught.
+    Deeper,
+    /// Balls and rods that are thinner than those that are taught.
+    Thin,
+    /// Wedges that are sharper.
+    Sharp,
+    /// Taught shapes, tilted more.
+    Tilted,
+    /// Six small balls at once.
+    Crowded,
+}
+
+impl Strange {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Deeper,
+        Self::Thin,
+        Self::Sharp,
+        Self::Tilted,
+        Self::Crowded,
+    ];
+
+    /// In a word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Deeper => "deeper",
+            Self::Thin => "thin",
+            Self::Sharp => "sharp",
+            Self::Tilted => "tilted",
+            Self::Crowded => "crowded",
+        }
+    }
+
+    /// A shape, how it is turned, and between what depths it is strange, as parts of the greatest depth that is taught.
+    pub(crate) fn draw(self, scales: &Scales, random: &mut RandomStream) -> (Shape, DQuat, [f64; 2]) {
+        let tilt = match self {
+            Self::Tilted => random.random_range(2.0..3.3) * LARGEST_TILT,
+            _ => random.random_range(0.0..LARGEST_TILT),
+        };
+        let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
+        let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
+        let rotation = (DQuat::from_axis_angle(axis, tilt) * spin).normalize();
+        let depths = match self {
+            Self::Deeper => [1.1, 1.4],
+            _ => [0.2, 1.0],
+        };
+        (self.shape(scales.width, random), rotation, depths)
+    }
+
+    fn shape(self, scale: f64, random: &mut RandomStream) -> Shape {
+        match self {
+            Self::Deeper => simple(random.random_range(0..5), scale, random),
+            Self::Thin if random.random_bool(0.5) => Shape::Sphere {
+                radius_mm: scale * random.random_range(0.6..1.2),
+            },
+            Self::Thin => Shape::Cylinder {
+                radius_mm: scale * random.random_range(0.5..1.0),
+                height_mm: 14.0 * scale,
+                edge_radius_mm: 0.3 * scale,
+            },
+            Self::Sharp => Shape::Wedge {
+                angle_rad: random.random_range(0.4..0.8),
+                length_mm: scale * random.random_range(6.0..20.0),
+                height_mm: 10.0 * scale,
+                edge_radius_mm: scale * random.random_range(0.1..0.3),
+            },
+            // A ball looks the same, however it is turned.
+            Self::Tilted => simple(random.random_range(1..5), scale, random),
+            Self::Crowded => {
+                let parts = (0..6).map(|number| {
+                    let [column, row] = [f64::from(number % 3) - 1.0, f64::from(number / 3) - 0.5];
+                    Part {
+                        shape: Shape::Sphere {
+                            radius_mm: scale * random.random_range(1.3..2.3),
+                        },
+                        whole_from_part: Pose::from_position(scale * DVec3::new(6.0 * column, 6.0 * row, 0.0)),
+                    }
+                });
+                Shape::Union {
+                    parts: parts.collect(),
+                }
+            }
+        }
+    }
+}
