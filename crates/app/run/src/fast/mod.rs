@@ -1,5 +1,6 @@
 //! A fast twin, from a sensor's description alone: presses of the solved gel to learn from, training, and presses to be judged on.
 
+mod imperfection;
 mod plot;
 pub(crate) mod tables;
 
@@ -18,6 +19,8 @@ use crate::error::At;
 use crate::files::{read_json, sha256, write_file, write_json};
 use crate::progress::Work;
 use crate::{Progress, RunError};
+
+pub use imperfection::{FoundImperfection, ImperfectionSources, find_imperfection, sensor_of_model};
 
 /// File of the fast twin in its folder.
 pub const FAST_GEL: &str = "fast.safetensors";

@@ -6,7 +6,7 @@ use twintac_sensor::Sensor;
 
 use super::words::{NOT_GIVEN, if_found, number, or_not, span};
 use super::{parts, plots};
-use crate::Characterization;
+use crate::{Characterization, Fate};
 
 /// The figures of a characterization on one page.
 #[must_use]
@@ -55,6 +55,7 @@ impl Characterization {
         rows.extend(repeats(self));
         rows.extend(over_time(self));
         rows.extend(beside(self));
+        rows.extend(read_out(self));
         rows
     }
 }
@@ -274,6 +275,39 @@ fn beside(found: &Characterization) -> Vec<[String; 3]> {
                 .temperature_drift
                 .found()
                 .map_or(String::new(), |_| "unloaded, by taxel".into()),
+        ),
+    ]
+}
+
+/// What the read-out does.
+fn read_out(found: &Characterization) -> Vec<[String; 3]> {
+    let with = |fate: Fate| found.conditions.iter().filter(|taxel| taxel.fate == fate).count();
+    vec![
+        row(
+            "Frames",
+            or_not(&found.timing, |timing| {
+                let (rate_hz, jitter) = (number(timing.rate_hz, 3), number(100.0 * timing.jitter, 2));
+                format!("{rate_hz} Hz, jitter {jitter} %")
+            }),
+            if_found(&found.timing, |timing| {
+                let (all, gaps) = (timing.n_intervals, timing.n_gaps);
+                format!("mean and standard deviation of {all} times between frames, without {gaps} gaps")
+            }),
+        ),
+        row(
+            "Step of readings",
+            or_not(&found.quantum, |quantum| format!("{} kPa", number(quantum.step_kpa, 3))),
+            "smallest difference of which the others are multiples".into(),
+        ),
+        row(
+            "Taxels that fail",
+            format!(
+                "{} dead, {} stuck, {} late",
+                with(Fate::Dead),
+                with(Fate::Stuck),
+                with(Fate::Late)
+            ),
+            format!("of {}", found.conditions.len()),
         ),
     ]
 }
