@@ -57,7 +57,11 @@ fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Reco
         let n_steps = ((2.0 * REST_S + 2.0 * (1.0 + DEPTH_MM) / SPEED_MM_PER_S) / STEP_S) as usize;
         for step in 0..n_steps {
             let time_s = step as f64 * STEP_S;
-            let at_mm = DVec3::new(taxel.position_mm.x, taxel.position_mm.y, top_mm + height_mm(time_s));
+            let at_mm = DVec3::new(
+                taxel.position_mm.x,
+                taxel.position_mm.y,
+                top_mm + height_mm(time_s),
+            );
             let touch = [Touch {
                 body: 0,
                 gel_from_body: Pose::from_position(at_mm),
@@ -124,22 +128,46 @@ fn known_imperfections_are_found_again() {
         ("rate", imperfection.rate_hz, 50.0, 0.01),
         ("jitter", imperfection.jitter, 0.1, 0.1),
     ] {
-        assert!((found / expected - 1.0).abs() < tolerance, "{name}: {found}, not {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < tolerance,
+            "{name}: {found}, not {expected}"
+        );
     }
     let first = &recorded.recording.presses[0].taxels_raw[0];
-    let rows = || recorded.recording.presses.iter().flat_map(|press| &press.taxels_raw);
+    let rows = || {
+        recorded
+            .recording
+            .presses
+            .iter()
+            .flat_map(|press| &press.taxels_raw)
+    };
     let same = |taxel: usize| rows().all(|row| row[taxel] == first[taxel]);
     let (dead, stuck): (Vec<usize>, Vec<usize>) = (0..8)
         .filter(|taxel| same(*taxel))
         .partition(|taxel| first[*taxel] == 0.0);
-    assert!(!dead.is_empty() && !stuck.is_empty(), "{dead:?} {stuck:?}: take another seed");
-    for (chance, n) in [(imperfection.dead_chance, dead.len()), (imperfection.stuck_chance, stuck.len())] {
+    assert!(
+        !dead.is_empty() && !stuck.is_empty(),
+        "{dead:?} {stuck:?}: take another seed"
+    );
+    for (chance, n) in [
+        (imperfection.dead_chance, dead.len()),
+        (imperfection.stuck_chance, stuck.len()),
+    ] {
         assert!((chance - (n + 1) as f64 / 12.0).abs() < 1e-3, "{chance} {n}");
     }
-    let others = ["gain_deviation", "drift_kpa_per_k", "temperature_time_s", "tilt_deviation_rad"];
+    let others = [
+        "gain_deviation",
+        "drift_kpa_per_k",
+        "temperature_time_s",
+        "tilt_deviation_rad",
+    ];
     for field in others {
         assert!(found.left_out.contains(&field), "{field}");
-        assert!(found.text.contains(&format!("# {field} is left out: ")), "{}", found.text);
+        assert!(
+            found.text.contains(&format!("# {field} is left out: ")),
+            "{}",
+            found.text
+        );
     }
     assert_eq!(found.found.len() + found.left_out.len(), 19);
 }
@@ -176,13 +204,19 @@ fn nothing_to_find_from_and_another_sensor_are_refused() {
 #[test]
 fn what_is_shipped_can_be_read_and_says_where_it_comes_from() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../imperfections");
-    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    let files: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
     assert!(!files.is_empty());
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
         let name = file.display().to_string();
         let found = Imperfection::parse(&name, &text).unwrap();
-        assert!(found.gain_deviation > 0.0 && found.noise_deviation_kpa > 0.0, "{found:?}");
+        assert!(
+            found.gain_deviation > 0.0 && found.noise_deviation_kpa > 0.0,
+            "{found:?}"
+        );
         assert!(text.contains("twintac fast imperfection --model"), "{name}");
         // Nothing that was fitted to other people's recordings is shipped.
         assert!(text.contains("emulated (") && !text.contains("real ("), "{name}");

@@ -7,10 +7,10 @@ use twintac_sensor::Sensor;
 use crate::recorded::Recorded;
 use crate::rest::Rest;
 use crate::{
-    CharacterizeError, CharacterizeOptions, Condition, CoveredRange, Creep, CrossTalk, DetectionLimit, Finding, FrameTiming,
-    Hysteresis, KnownStep, MeanSensitivity, Noise, Quantum, Repeatability, RiseTime, Sensitivity, TemperatureDrift,
-    UnloadedCourse, ZeroReturn, condition, creep, cross_talk, detection, drift, hysteresis, noise, quantum, range,
-    repeatability, rise, sensitivity, timing,
+    CharacterizeError, CharacterizeOptions, Condition, CoveredRange, Creep, CrossTalk, DetectionLimit,
+    Finding, FrameTiming, Hysteresis, KnownStep, MeanSensitivity, Noise, Quantum, Repeatability, RiseTime,
+    Sensitivity, TemperatureDrift, UnloadedCourse, ZeroReturn, condition, creep, cross_talk, detection,
+    drift, hysteresis, noise, quantum, range, repeatability, rise, sensitivity, timing,
 };
 
 /// A sensor's characterization. Each figure says by itself what it is of, and is missing with a reason where the presses do not give it.

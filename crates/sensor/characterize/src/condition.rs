@@ -96,7 +96,10 @@ fn lags(press: &Press, taxel: usize) -> Option<bool> {
         n += 1;
         let change_kpa = change_kpa(frame, taxel);
         own += change_kpa.powi(2);
-        for (sums, others_kpa) in [(&mut now, others_kpa(frame)), (&mut before, others_kpa(frame - 1))] {
+        for (sums, others_kpa) in [
+            (&mut now, others_kpa(frame)),
+            (&mut before, others_kpa(frame - 1)),
+        ] {
             sums[0] += others_kpa.powi(2);
             sums[1] += others_kpa * change_kpa;
         }

@@ -81,7 +81,10 @@ mod tests {
             *reading_kpa = 0.01 * (*reading_kpa / 0.01).round() - 0.0037;
         }
         let finding = quantum(&recording(vec![stepped]));
-        assert!((finding.found().unwrap().step_kpa - 0.01).abs() < 1e-9, "{finding:?}");
+        assert!(
+            (finding.found().unwrap().step_kpa - 0.01).abs() < 1e-9,
+            "{finding:?}"
+        );
         assert!(quantum(&recording(vec![smooth])).why_not().is_some());
     }
 }

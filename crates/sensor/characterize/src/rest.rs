@@ -35,10 +35,7 @@ impl<'a> Rest<'a> {
         }
         let is_clear = |frame: &usize| {
             let at_mm = press.gel_from_indenter[*frame].position_mm;
-            let top_mm = sensor
-                .gel
-                .solid
-                .top_height_mm(at_mm.x, at_mm.y, &sensor.surfaces);
+            let top_mm = sensor.gel.solid.top_height_mm(at_mm.x, at_mm.y, &sensor.surfaces);
             top_mm.is_none_or(|top_mm| at_mm.z > top_mm + CLEAR_MM)
         };
         let n = press.time_s.len();
@@ -79,7 +76,11 @@ mod tests {
     #[test]
     fn without_a_force_the_pose_tells() {
         let sensor = SensorFile::phystac().unwrap().sensor;
-        let top_mm = sensor.gel.solid.top_height_mm(0.0, 0.0, &sensor.surfaces).unwrap();
+        let top_mm = sensor
+            .gel
+            .solid
+            .top_height_mm(0.0, 0.0, &sensor.surfaces)
+            .unwrap();
         let mut press = press(&Shape {
             rest_s: 2.0,
             ..Shape::default()

@@ -103,7 +103,11 @@ impl Imperfection {
             }
         }
         if !self.drift_kpa_per_k.is_finite() {
-            return Err(wrong("drift_kpa_per_k", self.drift_kpa_per_k, "give a finite number"));
+            return Err(wrong(
+                "drift_kpa_per_k",
+                self.drift_kpa_per_k,
+                "give a finite number",
+            ));
         }
         let chances = self.dead_chance + self.stuck_chance + self.late_chance;
         if chances > 1.0 {

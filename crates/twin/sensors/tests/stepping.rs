@@ -161,8 +161,15 @@ fn all_taxels_drift_alike_and_grow_in_their_own_way() {
     };
     let found = readings(&warm, 500, 1, 3, &[-5.0]);
     let sensors: Vec<&[f32]> = found[0].chunks(N_TAXELS).collect();
-    assert!(sensors.iter().all(|taxels| taxels.iter().all(|reading| *reading == taxels[0])));
-    let square = sensors.iter().map(|taxels| f64::from(taxels[0]).powi(2)).sum::<f64>();
+    assert!(
+        sensors
+            .iter()
+            .all(|taxels| taxels.iter().all(|reading| *reading == taxels[0]))
+    );
+    let square = sensors
+        .iter()
+        .map(|taxels| f64::from(taxels[0]).powi(2))
+        .sum::<f64>();
     assert!(((square / 500.0).sqrt() - 1.0).abs() < 0.1, "{square}");
     let growing = Imperfection {
         growth_deviation_per_kpa: 0.01,
@@ -177,7 +184,10 @@ fn all_taxels_drift_alike_and_grow_in_their_own_way() {
             (found_kpa / perfect_kpa - 1.0) / perfect_kpa
         });
         if perfect[0][taxel] > 1.0 {
-            assert!(per_kpa[0] != 0.0 && (per_kpa[1] / per_kpa[0] - 1.0).abs() < 0.01, "{per_kpa:?}");
+            assert!(
+                per_kpa[0] != 0.0 && (per_kpa[1] / per_kpa[0] - 1.0).abs() < 0.01,
+                "{per_kpa:?}"
+            );
         }
     }
 }

@@ -55,7 +55,10 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
     }
     let named = arguments.sensor.as_ref().and_then(|_| sensor.import());
     let Some(import) = arguments.import.clone().or(named) else {
-        bail!("nothing says how to read {}; name a file with --import", files[0].display());
+        bail!(
+            "nothing says how to read {}; name a file with --import",
+            files[0].display()
+        );
     };
     Ok(Recorded {
         recording: import_files(&import, &files)?.0,
@@ -76,7 +79,11 @@ fn command(arguments: &FastImperfection) -> String {
     add("--import", &arguments.import);
     add("--out", &arguments.out);
     if !arguments.recordings.is_empty() {
-        let patterns: Vec<String> = arguments.recordings.iter().map(|pattern| quoted(pattern)).collect();
+        let patterns: Vec<String> = arguments
+            .recordings
+            .iter()
+            .map(|pattern| quoted(pattern))
+            .collect();
         words += &format!(" --recordings {}", patterns.join(" "));
     }
     words

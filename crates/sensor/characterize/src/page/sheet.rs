@@ -5,8 +5,8 @@ use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 
 use super::words::{NOT_GIVEN, if_found, number, or_not, span};
-use super::{parts, plots};
-use crate::{Characterization, Fate};
+use super::{parts, plots, read_out};
+use crate::Characterization;
 
 /// The figures of a characterization on one page.
 #[must_use]
@@ -55,13 +55,13 @@ impl Characterization {
         rows.extend(repeats(self));
         rows.extend(over_time(self));
         rows.extend(beside(self));
-        rows.extend(read_out(self));
+        rows.extend(read_out::rows(self));
         rows
     }
 }
 
 /// Name, value and condition of a figure; one that is not given has no condition.
-fn row(name: &str, value: String, condition: String) -> [String; 3] {
+pub(super) fn row(name: &str, value: String, condition: String) -> [String; 3] {
     let is_missing = value.starts_with(NOT_GIVEN);
     let condition = if is_missing { String::new() } else { condition };
     [name.to_owned(), value, condition]
@@ -275,39 +275,6 @@ fn beside(found: &Characterization) -> Vec<[String; 3]> {
                 .temperature_drift
                 .found()
                 .map_or(String::new(), |_| "unloaded, by taxel".into()),
-        ),
-    ]
-}
-
-/// What the read-out does.
-fn read_out(found: &Characterization) -> Vec<[String; 3]> {
-    let with = |fate: Fate| found.conditions.iter().filter(|taxel| taxel.fate == fate).count();
-    vec![
-        row(
-            "Frames",
-            or_not(&found.timing, |timing| {
-                let (rate_hz, jitter) = (number(timing.rate_hz, 3), number(100.0 * timing.jitter, 2));
-                format!("{rate_hz} Hz, jitter {jitter} %")
-            }),
-            if_found(&found.timing, |timing| {
-                let (all, gaps) = (timing.n_intervals, timing.n_gaps);
-                format!("mean and standard deviation of {all} times between frames, without {gaps} gaps")
-            }),
-        ),
-        row(
-            "Step of readings",
-            or_not(&found.quantum, |quantum| format!("{} kPa", number(quantum.step_kpa, 3))),
-            "smallest difference of which the others are multiples".into(),
-        ),
-        row(
-            "Taxels that fail",
-            format!(
-                "{} dead, {} stuck, {} late",
-                with(Fate::Dead),
-                with(Fate::Stuck),
-                with(Fate::Late)
-            ),
-            format!("of {}", found.conditions.len()),
         ),
     ]
 }

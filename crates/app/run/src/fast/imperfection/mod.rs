@@ -3,6 +3,7 @@
 //! A trained model tells how its taxels and mountings differ, recordings what the read-out does. What neither tells is left out, with the reason: nothing
 //! is guessed. Every width says where it comes from and on how many values it rests.
 
+mod motion;
 mod of_model;
 mod of_readings;
 mod text;
@@ -16,11 +17,11 @@ use twintac_sensors::Imperfection;
 
 use self::of_model::Casting;
 use self::text::{Line, text};
+use crate::RunError;
 use crate::characterization::Recorded;
 use crate::doubtful::left_out;
 use crate::files::write_file;
 use crate::unseen::refuse_other_taxels;
-use crate::RunError;
 
 /// What imperfections are found from. Without a model or without recordings, what they would tell is left out.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +55,10 @@ pub struct FoundImperfection {
 /// A model that cannot be read.
 pub fn sensor_of_model(folder: &Path) -> Result<SensorFile, RunError> {
     let model = Model::load(folder)?;
-    Ok(SensorFile::parse(&folder.join("twin.json"), &model.record.sensor)?)
+    Ok(SensorFile::parse(
+        &folder.join("twin.json"),
+        &model.record.sensor,
+    )?)
 }
 
 /// Finds the imperfections of sensors of a kind.

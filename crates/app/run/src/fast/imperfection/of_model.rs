@@ -6,6 +6,7 @@ use digitac::{BenchEstimate, Estimate, Gains};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 
+use super::motion::Motion;
 use super::text::Line;
 use super::width::{Width, digits, mean};
 
@@ -23,16 +24,6 @@ pub(super) struct Casting<'a> {
     pub(super) doubtful: BTreeSet<usize>,
 }
 
-/// A rigid motion of all ports in their plane.
-struct Motion {
-    shift_mm: [f64; 2],
-    shift_error_mm: f64,
-    turn_rad: f64,
-    turn_error_rad: f64,
-    /// What each port is off by itself, mm.
-    own_mm: Width,
-}
-
 /// The lines that a model tells, or says that there is none.
 pub(super) fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
     let Some(casting) = casting else {
@@ -45,7 +36,10 @@ pub(super) fn lines(casting: Option<&Casting<'_>>) -> Vec<Line> {
             "tilt_deviation_rad",
         ];
         let why = "a trained model tells it, and none was given";
-        return fields.into_iter().map(|field| Line::left_out(field, why)).collect();
+        return fields
+            .into_iter()
+            .map(|field| Line::left_out(field, why))
+            .collect();
     };
     let [place, turn] = casting.mounting();
     vec![
@@ -158,7 +152,7 @@ impl Casting<'_> {
     fn mounting(&self) -> [Line; 2] {
         let fields = ["place_deviation_mm", "turn_deviation_rad"];
         let Some(motion) = self.motion() else {
-            let why = "it takes three ports whose places were fitted";
+            let why = "it takes three ports whose places the model fitted along x and along y";
             return fields.map(|field| Line::left_out(field, why));
         };
         let own = format!(
@@ -190,51 +184,24 @@ impl Casting<'_> {
         };
         let [place, turn] = fields;
         [
-            line(place, &motion.shift_mm, motion.shift_error_mm, "shift along x and y", "mm"),
+            line(
+                place,
+                &motion.shift_mm,
+                motion.shift_error_mm,
+                "shift along x and y",
+                "mm",
+            ),
             line(turn, &[motion.turn_rad], motion.turn_error_rad, "turn", "rad"),
         ]
     }
 
-    /// The least-squares rigid motion of the ports, small turns.
     fn motion(&self) -> Option<Motion> {
         let ports = self.bench.ports.iter().zip(&self.sensor.taxels).enumerate();
         let (shifts_mm, places_mm): (Vec<[f64; 2]>, Vec<[f64; 2]>) = ports
             .filter(|(taxel, _)| !self.doubtful.contains(taxel))
             .map(|(_, (port, taxel))| (port.shift_mm, [taxel.position_mm.x, taxel.position_mm.y]))
             .unzip();
-        let n = shifts_mm.len();
-        let are_fitted = shifts_mm.iter().flatten().any(|shift_mm| *shift_mm != 0.0);
-        if n < 3 || !are_fitted {
-            return None;
-        }
-        let middle = |of: &[[f64; 2]]| {
-            [0, 1].map(|axis: usize| mean(&of.iter().map(|mm| mm[axis]).collect::<Vec<_>>()))
-        };
-        let (shift_mm, center_mm) = (middle(&shifts_mm), middle(&places_mm));
-        let arms = places_mm
-            .iter()
-            .map(|[x, y]| [x - center_mm[0], y - center_mm[1]]);
-        let (mut arm_square, mut moment) = (0.0, 0.0);
-        for ([x, y], [dx, dy]) in arms.clone().zip(&shifts_mm) {
-            arm_square += x * x + y * y;
-            moment += x * dy - y * dx;
-        }
-        let turn_rad = moment / arm_square;
-        let own_mm: Vec<f64> = arms
-            .zip(&shifts_mm)
-            .flat_map(|([x, y], [dx, dy])| {
-                [dx - shift_mm[0] + turn_rad * y, dy - shift_mm[1] - turn_rad * x]
-            })
-            .collect();
-        let freedom = (2 * n - 3) as f64;
-        let own_mm = Width::about_zero(&own_mm)?.times((2.0 * n as f64 / freedom).sqrt());
-        Some(Motion {
-            shift_mm,
-            shift_error_mm: own_mm.value / (n as f64).sqrt(),
-            turn_rad,
-            turn_error_rad: own_mm.value / arm_square.sqrt(),
-            own_mm,
-        })
+        Motion::of(&shifts_mm, &places_mm)
     }
 }
 
@@ -249,7 +216,12 @@ mod tests {
     use super::*;
 
     /// A bench of so many mountings.
-    fn bench(random: &mut RandomStream, n: usize, deviation_mm: f64, ports: Vec<PortEstimate>) -> BenchEstimate {
+    fn bench(
+        random: &mut RandomStream,
+        n: usize,
+        deviation_mm: f64,
+        ports: Vec<PortEstimate>,
+    ) -> BenchEstimate {
         let mut height = |number: usize| {
             let estimate = Estimate {
                 value: 0.1 + normal(random, deviation_mm) + normal(random, 0.02),
@@ -331,7 +303,10 @@ mod tests {
         }
         for (square, (field, expected)) in squares.into_iter().zip(expected) {
             let found = square.sqrt();
-            assert!((found / expected - 1.0).abs() < 0.12, "{field}: {found}, not {expected}");
+            assert!(
+                (found / expected - 1.0).abs() < 0.12,
+                "{field}: {found}, not {expected}"
+            );
         }
     }
 

@@ -40,9 +40,13 @@ pub(super) fn lines(
             "jitter",
         ];
         let why = "recordings tell it, and none were given";
-        return fields.into_iter().map(|field| Line::left_out(field, why)).collect();
+        return fields
+            .into_iter()
+            .map(|field| Line::left_out(field, why))
+            .collect();
     };
-    let surroundings = "it belongs to where a sensor is used, not to the sensor; without it, drift is without effect";
+    let surroundings =
+        "it belongs to where a sensor is used, not to the sensor; without it, drift is without effect";
     let told = Told::of(found, doubtful);
     let mut lines = vec![told.offset()];
     lines.extend(told.drift());
@@ -117,9 +121,11 @@ impl<'a> Told<'a> {
             Err(why) => return fields.map(|field| Line::left_out(field, why.clone())),
         };
         let coefficients: Vec<f64> = taxels.iter().map(|taxel| taxel.coefficient_kpa_per_k).collect();
-        let [low_c, high_c] = taxels.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], taxel| {
-            [low.min(taxel.between_c[0]), high.max(taxel.between_c[1])]
-        });
+        let [low_c, high_c] = taxels
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], taxel| {
+                [low.min(taxel.between_c[0]), high.max(taxel.between_c[1])]
+            });
         let between = format!("{} to {} °C", digits(low_c, 3), digits(high_c, 3));
         let [common, own] = fields;
         let deviation = Width::about_mean(&coefficients).map_or_else(

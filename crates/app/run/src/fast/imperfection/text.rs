@@ -36,7 +36,9 @@ impl Line {
 
 /// The file's text. Values have three digits.
 pub(super) fn text(sensor: &str, command: &str, lines: &[Line]) -> String {
-    let mut text = comment(&format!("How far sensors like {sensor} are from perfect, as found by"));
+    let mut text = comment(&format!(
+        "How far sensors like {sensor} are from perfect, as found by"
+    ));
     text += &format!("#   {command}\n");
     text += &comment(
         "`±` is a standard error. What could not be found is left out, and stands here with the reason. Fill it in by hand if you know it.",
@@ -94,7 +96,10 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines.iter().all(|line| line.chars().count() <= LONGEST), "{text}");
         let values = (0..lines.len()).filter(|line| lines[*line].contains(" = "));
-        assert!(values.into_iter().all(|line| lines[line - 1].starts_with("# ")), "{text}");
+        assert!(
+            values.into_iter().all(|line| lines[line - 1].starts_with("# ")),
+            "{text}"
+        );
         assert!(text.contains("# jitter is left out: nobody looked."), "{text}");
     }
 }
