@@ -54,7 +54,7 @@ pub(super) fn lines(
     lines.push(Line::left_out("temperature_time_s", surroundings));
     lines.extend(told.noise());
     lines.push(told.hysteresis(has_memory));
-    lines.extend(fates(&found.conditions, found.provenance, doubtful));
+    lines.extend(fates(&found.conditions, found.provenance));
     lines.extend(timing(found));
     lines
 }
@@ -193,6 +193,10 @@ impl<'a> Told<'a> {
     /// A play of half width `h`, as part of the reading, has a largest gap of 2 h / (1 + h) of full scale.
     fn hysteresis(&self, has_memory: bool) -> Line {
         let field = "hysteresis";
+        if self.found.n_used == 0 {
+            let why = "both ways are compared at the same force, and of no press it is known";
+            return Line::left_out(field, why);
+        }
         let taxels = match self.counted(&self.found.hysteresis, |taxel| &taxel.taxel) {
             Ok(taxels) => taxels,
             Err(why) => return Line::left_out(field, why),
@@ -222,15 +226,9 @@ impl<'a> Told<'a> {
     }
 }
 
-fn fates(conditions: &[Condition], provenance: Provenance, doubtful: &BTreeSet<usize>) -> [Line; 3] {
-    let trusted: Vec<&Condition> = conditions
-        .iter()
-        .enumerate()
-        .filter(|(taxel, _)| !doubtful.contains(taxel))
-        .map(|(_, condition)| condition)
-        .collect();
-    let n = trusted.len();
-    let n_timed = trusted.iter().filter(|taxel| taxel.n_timed > 0).count();
+fn fates(conditions: &[Condition], provenance: Provenance) -> [Line; 3] {
+    let n = conditions.len();
+    let n_timed = conditions.iter().filter(|taxel| taxel.n_timed > 0).count();
     let fates = [
         ("dead_chance", Fate::Dead, "dead"),
         ("stuck_chance", Fate::Stuck, "stuck"),
@@ -241,7 +239,7 @@ fn fates(conditions: &[Condition], provenance: Provenance, doubtful: &BTreeSet<u
             let why = "no press is so fast that it tells whether a taxel is a frame behind";
             return Line::left_out(field, why);
         }
-        let seen = trusted.iter().filter(|taxel| taxel.fate == fate).count();
+        let seen = conditions.iter().filter(|taxel| taxel.fate == fate).count();
         let told = if fate == Fate::Late {
             format!(", of which {n_timed} could be told")
         } else {
