@@ -95,11 +95,8 @@ mod tests {
         assert_eq!(found, expected);
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines.iter().all(|line| line.chars().count() <= LONGEST), "{text}");
-        let values = (0..lines.len()).filter(|line| lines[*line].contains(" = "));
-        assert!(
-            values.into_iter().all(|line| lines[line - 1].starts_with("# ")),
-            "{text}"
-        );
+        let mut values = (0..lines.len()).filter(|line| lines[*line].contains(" = "));
+        assert!(values.all(|line| lines[line - 1].starts_with("# ")), "{text}");
         assert!(text.contains("# jitter is left out: nobody looked."), "{text}");
     }
 }
