@@ -99,10 +99,11 @@ mod tests {
             let values: Vec<f64> = (0..8).map(|_| 3.0 + normal(&mut random, 0.2)).collect();
             let found = Width::about_mean(&values).unwrap();
             assert_eq!(found.n, 8);
-            off += ((found.value - 0.2) / found.uncertainty).powi(2);
+            off += ((found.value - 0.2) / (0.2 / 14.0_f64.sqrt())).powi(2);
+            assert!((found.uncertainty - found.value / 14.0_f64.sqrt()).abs() < 1e-12);
         }
-        // The standard error is one of eight values: its own size is known to a quarter.
-        assert!((0.8..2.0).contains(&(off / 400.0)), "{off}");
+        // The standard error of a deviation of eight values is a quarter of it, and deviations are off by as much.
+        assert!((0.8..1.25).contains(&(off / 400.0)), "{off}");
         let many: Vec<f64> = (0..4000).map(|_| normal(&mut random, 0.2)).collect();
         let found = Width::about_zero(&many).unwrap();
         assert!((found.value - 0.2).abs() < 4.0 * found.uncertainty && found.uncertainty < 0.003);
