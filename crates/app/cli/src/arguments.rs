@@ -67,6 +67,8 @@ pub(crate) enum Command {
 pub(crate) enum FastCommand {
     /// Train a fast twin from a sensor's description alone.
     Train(FastTrain),
+    /// Find how imperfect sensors are, from a trained model and recordings: a file for many simulated sensors.
+    Imperfection(FastImperfection),
 }
 
 /// The gel is pressed at random with finite elements, and networks learn from that. Then they are judged on presses that taught nothing. Presses that are solved are
@@ -100,6 +102,29 @@ pub(crate) struct FastTrain {
     /// Print the judgement as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Each width has a comment: where it comes from, real or emulated, how sure it is, and on how many values it rests. What neither model nor recordings tell is left out, with
+/// the reason. Without --out the file is printed.
+#[derive(Args, Debug)]
+#[command(group = ArgGroup::new("source").required(true).multiple(true))]
+pub(crate) struct FastImperfection {
+    /// Folder of a trained model: a run's `model`. It tells how gains and port laws of taxels differ, contact heights, place and turn.
+    #[arg(long, value_name = "DIR", group = "source")]
+    pub(crate) model: Option<PathBuf>,
+    /// Recordings of the sensor: presses.parquet files, MCAP logs, CSV files, or patterns. They tell noise, steps, zeros, drift with temperature,
+    /// hysteresis, rate, jitter, and taxels that fail.
+    #[arg(long, value_name = "FILES", num_args = 1.., group = "source")]
+    pub(crate) recordings: Vec<String>,
+    /// How to read CSV recordings (TOML) [default: the file that --sensor names].
+    #[arg(long, value_name = "FILE", requires = "recordings")]
+    pub(crate) import: Option<PathBuf>,
+    /// Sensor description (TOML) [default: the model's].
+    #[arg(long, value_name = "FILE", required_unless_present = "model")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// File to write (TOML, a table [imperfection]).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]

@@ -8,14 +8,9 @@ use twintac::{Body, Error, FastGel, Imperfection, Pose, SensorBatch, Shape, Touc
 const N_SENSORS: usize = 1024;
 
 fn main() -> Result<(), Error> {
-    let imperfection = Imperfection {
-        gain_deviation: 0.05, // of the gain
-        noise_deviation_kpa: 0.02,
-        hysteresis: 0.02,          // of the reading, to either side
-        dead_chance: 0.01,         // of each taxel
-        height_deviation_mm: 0.05, // of where the sensor is mounted
-        ..Imperfection::default()
-    };
+    // Made by `twintac fast imperfection` from a model and recordings of the emulated bench.
+    let text = include_str!("data/imperfection.toml");
+    let imperfection = Imperfection::parse("imperfection.toml", text)?;
     for (name, imperfection) in [("perfect", Imperfection::default()), ("imperfect", imperfection)] {
         let (readings_kpa, seconds) = step(imperfection, 100)?;
         println!(

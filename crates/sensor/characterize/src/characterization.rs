@@ -5,11 +5,12 @@ use twintac_recording::{Provenance, Recording};
 use twintac_sensor::Sensor;
 
 use crate::recorded::Recorded;
+use crate::rest::Rest;
 use crate::{
-    CharacterizeError, CharacterizeOptions, CoveredRange, Creep, CrossTalk, DetectionLimit, Finding,
-    Hysteresis, KnownStep, MeanSensitivity, Noise, Repeatability, RiseTime, Sensitivity, TemperatureDrift,
-    UnloadedCourse, ZeroReturn, creep, cross_talk, detection, drift, hysteresis, noise, range, repeatability,
-    rise, sensitivity,
+    CharacterizeError, CharacterizeOptions, Condition, CoveredRange, Creep, CrossTalk, DetectionLimit,
+    Finding, FrameTiming, Hysteresis, KnownStep, MeanSensitivity, Noise, Quantum, Repeatability, RiseTime,
+    Sensitivity, TemperatureDrift, UnloadedCourse, ZeroReturn, condition, creep, cross_talk, detection,
+    drift, hysteresis, noise, quantum, range, repeatability, rise, sensitivity, timing,
 };
 
 /// A sensor's characterization. Each figure says by itself what it is of, and is missing with a reason where the presses do not give it.
@@ -53,6 +54,12 @@ pub struct Characterization {
     pub zero_return: Finding<Vec<ZeroReturn>>,
     /// How each taxel's zero moves with temperature.
     pub temperature_drift: Finding<Vec<TemperatureDrift>>,
+    /// How often frames come, and how evenly.
+    pub timing: Finding<FrameTiming>,
+    /// The smallest step between readings.
+    pub quantum: Finding<Quantum>,
+    /// Which taxels are dead, stuck or late.
+    pub conditions: Vec<Condition>,
 }
 
 /// Characterizes a sensor from recorded presses. `unloaded` are unloaded readings with temperatures, where there are any.
@@ -68,7 +75,8 @@ pub fn characterize(
     check(recording, sensor)?;
     let taxels = &recording.taxels;
     let recorded = Recorded::all(recording, sensor, options);
-    let noise = noise::noise(&recorded, taxels, options);
+    let rests = Rest::all(recording, sensor);
+    let noise = noise::noise(&rests, taxels, options);
     let sensitivity = sensitivity::sensitivity(&recorded, taxels, options);
     let detection_limit = detection::limits(&noise, &sensitivity, options);
     let mut indenters: Vec<String> = recording
@@ -93,8 +101,11 @@ pub fn characterize(
         creep: creep::creep(&recorded, taxels, options),
         cross_talk: cross_talk::cross_talk(&recorded, taxels, options),
         repeatability: repeatability::repeatability(&recorded, taxels, options),
-        zero_return: drift::zero_return(&recorded, taxels),
+        zero_return: drift::zero_return(&rests, taxels),
         temperature_drift: drift::with_temperature(unloaded),
+        timing: timing::timing(recording),
+        quantum: quantum::quantum(recording),
+        conditions: condition::conditions(recording),
         noise,
         sensitivity,
         detection_limit,

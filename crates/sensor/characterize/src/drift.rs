@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::Finding;
-use crate::recorded::Recorded;
+use crate::rest::Rest;
 use crate::statistics::{binned, line, mean};
 
 /// Smallest change of temperature that tells a coefficient, K.
@@ -47,12 +47,9 @@ pub struct TemperatureDrift {
     pub course: Vec<[f64; 2]>,
 }
 
-pub(crate) fn zero_return(recorded: &[Recorded<'_>], taxels: &[String]) -> Finding<Vec<ZeroReturn>> {
+pub(crate) fn zero_return(rests: &[Rest<'_>], taxels: &[String]) -> Finding<Vec<ZeroReturn>> {
     let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
-        let changes = recorded.iter().filter_map(|press| {
-            let before_kpa = mean(&press.readings_kpa(taxel, &press.phases.rest))?;
-            Some(mean(&press.readings_kpa(taxel, &press.phases.rest_after))? - before_kpa)
-        });
+        let changes = rests.iter().filter_map(|rest| rest.change_kpa(taxel));
         let squares: Vec<f64> = changes.map(|change_kpa: f64| change_kpa.powi(2)).collect();
         Some(ZeroReturn {
             taxel: name.clone(),
@@ -103,7 +100,7 @@ pub(crate) fn with_temperature(courses: &[UnloadedCourse]) -> Finding<Vec<Temper
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, press};
+    use crate::synthetic::{Shape, press, rests};
 
     #[test]
     fn a_coefficient_is_found_where_the_temperature_changes() {
@@ -145,7 +142,7 @@ mod tests {
             ..Shape::default()
         };
         let presses = [press(&shape)];
-        let finding = zero_return(&all(&presses), &["a".to_owned(), "b".to_owned()]);
+        let finding = zero_return(&rests(&presses), &["a".to_owned(), "b".to_owned()]);
         assert!((finding.found().unwrap()[0].rms_kpa - 0.3).abs() < 1e-9);
     }
 }

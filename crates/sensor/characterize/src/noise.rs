@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::recorded::Recorded;
+use crate::rest::Rest;
 use crate::statistics::{deviation, mean};
 use crate::{CharacterizeOptions, Finding};
 
@@ -25,15 +25,15 @@ pub struct Noise {
 }
 
 pub(crate) fn noise(
-    recorded: &[Recorded<'_>],
+    rests: &[Rest<'_>],
     taxels: &[String],
     options: &CharacterizeOptions,
 ) -> Finding<Vec<Noise>> {
     let found = taxels.iter().enumerate().filter_map(|(taxel, name)| {
         let (mut squares, mut freedom, mut n_readings) = (0.0, 0, 0);
         let mut changes_kpa = Vec::new();
-        for press in recorded {
-            let rest = press.readings_kpa(taxel, &press.phases.rest);
+        for press in rests {
+            let rest = press.readings_kpa(taxel, &press.before);
             if let Some(deviation_kpa) = deviation(&rest).filter(|_| rest.len() >= FEWEST_FRAMES) {
                 squares += deviation_kpa.powi(2) * (rest.len() - 1) as f64;
                 freedom += rest.len() - 1;
@@ -57,8 +57,8 @@ pub(crate) fn noise(
 }
 
 /// Changes of the mean between neighbouring windows before a press. Their true mean is zero.
-fn window_changes_kpa(press: &Recorded<'_>, taxel: usize, window_s: f64) -> Vec<f64> {
-    let rest = press.phases.rest.clone();
+fn window_changes_kpa(press: &Rest<'_>, taxel: usize, window_s: f64) -> Vec<f64> {
+    let rest = press.before.clone();
     let times_s = &press.press.time_s[rest.clone()];
     let Some(first_s) = times_s.first() else {
         return Vec::new();
@@ -86,7 +86,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, all, press};
+    use crate::synthetic::{Shape, press, rests};
 
     #[test]
     fn known_noise_is_found() {
@@ -97,7 +97,7 @@ mod tests {
         };
         let presses = [press(&shape), press(&shape)];
         let names = ["a".to_owned(), "b".to_owned()];
-        let finding = noise(&all(&presses), &names, &CharacterizeOptions::default());
+        let finding = noise(&rests(&presses), &names, &CharacterizeOptions::default());
         let found = finding.found().unwrap();
         assert_eq!(found.len(), 2);
         assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
@@ -112,7 +112,7 @@ mod tests {
         };
         let presses = [press(&shape)];
         let finding = noise(
-            &all(&presses),
+            &rests(&presses),
             &["a".to_owned(), "b".to_owned()],
             &CharacterizeOptions::default(),
         );

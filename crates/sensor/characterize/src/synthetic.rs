@@ -1,11 +1,12 @@
 //! Presses of known answer, for tests.
 
 use glam::DVec3;
-use twintac_recording::{Control, Press};
+use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
 use crate::phases::Phases;
 use crate::recorded::Recorded;
+use crate::rest::Rest;
 
 /// A trapezoid of force on one taxel, a second after the start; a second taxel feels a part of it.
 pub(crate) struct Shape {
@@ -104,4 +105,27 @@ pub(crate) fn recorded(press: &Press) -> Recorded<'_> {
 /// As [`recorded`], of many.
 pub(crate) fn all(presses: &[Press]) -> Vec<Recorded<'_>> {
     presses.iter().map(recorded).collect()
+}
+
+/// Where presses are unloaded, by their force.
+pub(crate) fn rests(presses: &[Press]) -> Vec<Rest<'_>> {
+    let rest = |press| {
+        let phases = Phases::of(press).unwrap();
+        Rest {
+            press,
+            before: phases.rest,
+            after: phases.rest_after,
+        }
+    };
+    presses.iter().map(rest).collect()
+}
+
+/// Presses of a sensor with two taxels.
+pub(crate) fn recording(presses: Vec<Press>) -> Recording {
+    Recording {
+        sensor: "synthetic".into(),
+        provenance: Provenance::Simulated,
+        taxels: vec!["a".into(), "b".into()],
+        presses,
+    }
 }

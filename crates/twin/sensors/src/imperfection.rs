@@ -10,9 +10,13 @@ use twintac_config::{ConfigError, Document};
 pub struct Imperfection {
     /// Deviation of each taxel's gain, as part of it.
     pub gain_deviation: f64,
+    /// Deviation of how much each taxel's reading grows beyond proportion for each kPa of it, 1/kPa.
+    pub growth_deviation_per_kpa: f64,
     /// Deviation of each taxel's zero, kPa.
     pub offset_deviation_kpa: f64,
-    /// Deviation of how much each taxel drifts with temperature, kPa/K.
+    /// How much all taxels drift with temperature, kPa/K; of either sign.
+    pub drift_kpa_per_k: f64,
+    /// Deviation of how much each taxel drifts with temperature beyond that, kPa/K.
     pub drift_deviation_kpa_per_k: f64,
     /// Deviation of the temperature from that of the tare, K. It wanders within [`Self::temperature_time_s`].
     pub temperature_deviation_k: f64,
@@ -38,8 +42,10 @@ pub struct Imperfection {
     pub height_deviation_mm: f64,
     /// Deviation of the sensor's place along x and along y, mm.
     pub place_deviation_mm: f64,
-    /// Deviation of the sensor's turn about each axis, radians.
+    /// Deviation of the sensor's turn about its upright axis, radians.
     pub turn_deviation_rad: f64,
+    /// Deviation of its tilt about x and about y, radians.
+    pub tilt_deviation_rad: f64,
 }
 
 /// A file with the table `[imperfection]`.
@@ -63,6 +69,7 @@ impl Imperfection {
     fn check(&self, document: &Document<File>) -> Result<(), ConfigError> {
         let widths = [
             ("gain_deviation", self.gain_deviation),
+            ("growth_deviation_per_kpa", self.growth_deviation_per_kpa),
             ("offset_deviation_kpa", self.offset_deviation_kpa),
             ("drift_deviation_kpa_per_k", self.drift_deviation_kpa_per_k),
             ("temperature_deviation_k", self.temperature_deviation_k),
@@ -73,6 +80,7 @@ impl Imperfection {
             ("height_deviation_mm", self.height_deviation_mm),
             ("place_deviation_mm", self.place_deviation_mm),
             ("turn_deviation_rad", self.turn_deviation_rad),
+            ("tilt_deviation_rad", self.tilt_deviation_rad),
         ];
         let parts = [
             ("hysteresis", self.hysteresis),
@@ -85,7 +93,7 @@ impl Imperfection {
             document.error(&format!("imperfection.{name}"), format!("is {value}"), hint)
         };
         for (name, value) in widths {
-            if value < 0.0 {
+            if !value.is_finite() || value < 0.0 {
                 return Err(wrong(name, value, "give zero or more"));
             }
         }
@@ -93,6 +101,13 @@ impl Imperfection {
             if !(0.0..=1.0).contains(&value) {
                 return Err(wrong(name, value, "give a part from 0 to 1"));
             }
+        }
+        if !self.drift_kpa_per_k.is_finite() {
+            return Err(wrong(
+                "drift_kpa_per_k",
+                self.drift_kpa_per_k,
+                "give a finite number",
+            ));
         }
         let chances = self.dead_chance + self.stuck_chance + self.late_chance;
         if chances > 1.0 {
@@ -132,6 +147,8 @@ mod tests {
                 "noise_deviation_kpa",
             ),
             ("[imperfection]\nhysteresis = 1.5\n", "hysteresis"),
+            ("[imperfection]\ntilt_deviation_rad = nan\n", "tilt_deviation_rad"),
+            ("[imperfection]\ndrift_kpa_per_k = inf\n", "drift_kpa_per_k"),
             (
                 "[imperfection]\ndead_chance = 0.6\nlate_chance = 0.5\n",
                 "late_chance",

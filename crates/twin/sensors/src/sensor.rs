@@ -28,6 +28,7 @@ pub(crate) struct Sensor {
 struct Taxel {
     fate: Fate,
     gain: f64,
+    growth_per_kpa: f64,
     offset_kpa: f64,
     drift_kpa_per_k: f64,
     /// What hysteresis lets through, kPa.
@@ -51,8 +52,10 @@ impl Sensor {
     /// Draws the sensor of a number. The same seed and number give the same sensor, whatever else there is.
     pub(crate) fn draw(imperfection: &Imperfection, n_taxels: usize, seed: u64, number: u64) -> Self {
         let mut random = stream(seed, &format!("sensor {number}"));
-        let mut turn = || normal(&mut random, imperfection.turn_deviation_rad);
-        let rotation = DQuat::from_scaled_axis(DVec3::new(turn(), turn(), turn())).normalize();
+        let mut turn = |deviation_rad: f64| normal(&mut random, deviation_rad);
+        let tilt = imperfection.tilt_deviation_rad;
+        let axis = DVec3::new(turn(tilt), turn(tilt), turn(imperfection.turn_deviation_rad));
+        let rotation = DQuat::from_scaled_axis(axis).normalize();
         let mut place = || normal(&mut random, imperfection.place_deviation_mm);
         let (x_mm, y_mm) = (place(), place());
         let position_mm = DVec3::new(x_mm, y_mm, normal(&mut random, imperfection.height_deviation_mm));
@@ -161,7 +164,13 @@ impl Taxel {
             },
             gain: 1.0 + normal(random, imperfection.gain_deviation),
             offset_kpa: normal(random, imperfection.offset_deviation_kpa),
-            drift_kpa_per_k: normal(random, imperfection.drift_deviation_kpa_per_k),
+            drift_kpa_per_k: imperfection.drift_kpa_per_k
+                + normal(random, imperfection.drift_deviation_kpa_per_k),
+            growth_per_kpa: if imperfection.growth_deviation_per_kpa > 0.0 {
+                normal(random, imperfection.growth_deviation_per_kpa)
+            } else {
+                0.0
+            },
             behind_kpa: 0.0,
             before_kpa: 0.0,
             delivered_kpa: None,
@@ -183,7 +192,8 @@ impl Taxel {
         random: &mut RandomStream,
     ) {
         let drift_kpa = self.drift_kpa_per_k * temperature_k;
-        let mut reading_kpa = self.gain * through_kpa + self.offset_kpa + drift_kpa;
+        let growth = (1.0 + self.growth_per_kpa * through_kpa.abs()).max(0.0);
+        let mut reading_kpa = self.gain * growth * through_kpa + self.offset_kpa + drift_kpa;
         if imperfection.noise_deviation_kpa > 0.0 {
             reading_kpa += normal(random, imperfection.noise_deviation_kpa);
         }
@@ -197,5 +207,28 @@ impl Taxel {
             Fate::Stuck => self.delivered_kpa.unwrap_or(reading_kpa),
             Fate::Late => before_kpa,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_is_upright_and_a_tilt_is_not() {
+        let axis = |imperfection: &Imperfection| {
+            let drawn = Sensor::draw(imperfection, 1, 1, 0);
+            drawn.actual_from_described.rotation.to_scaled_axis()
+        };
+        let turned = axis(&Imperfection {
+            turn_deviation_rad: 0.1,
+            ..Imperfection::default()
+        });
+        assert!(turned.z != 0.0 && turned.truncate().length() == 0.0, "{turned}");
+        let tilted = axis(&Imperfection {
+            tilt_deviation_rad: 0.1,
+            ..Imperfection::default()
+        });
+        assert!(tilted.z == 0.0 && tilted.x != 0.0 && tilted.y != 0.0, "{tilted}");
     }
 }

@@ -30,6 +30,7 @@ fn imperfection() -> Imperfection {
         jitter: 0.1,
         place_deviation_mm: 0.3,
         turn_deviation_rad: 0.01,
+        tilt_deviation_rad: 0.01,
         ..Imperfection::default()
     }
 }

@@ -46,7 +46,9 @@ fn readings(
 fn all_imperfections() -> Imperfection {
     Imperfection {
         gain_deviation: 0.05,
+        growth_deviation_per_kpa: 0.01,
         offset_deviation_kpa: 0.2,
+        drift_kpa_per_k: -0.1,
         drift_deviation_kpa_per_k: 0.05,
         temperature_deviation_k: 2.0,
         temperature_time_s: 60.0,
@@ -61,6 +63,7 @@ fn all_imperfections() -> Imperfection {
         height_deviation_mm: 0.05,
         place_deviation_mm: 0.3,
         turn_deviation_rad: 0.01,
+        tilt_deviation_rad: 0.01,
     }
 }
 
@@ -146,6 +149,47 @@ fn widths_are_those_that_were_asked_for() {
     };
     let part = felt().filter(|(reading, _)| **reading == 0.0).count() as f64 / felt().count() as f64;
     assert!((part - 0.2).abs() < 0.03, "{part}");
+}
+
+#[test]
+fn all_taxels_drift_alike_and_grow_in_their_own_way() {
+    let warm = Imperfection {
+        drift_kpa_per_k: -0.5,
+        temperature_deviation_k: 2.0,
+        temperature_time_s: 60.0,
+        ..Imperfection::default()
+    };
+    let found = readings(&warm, 500, 1, 3, &[-5.0]);
+    let sensors: Vec<&[f32]> = found[0].chunks(N_TAXELS).collect();
+    assert!(
+        sensors
+            .iter()
+            .all(|taxels| taxels.iter().all(|reading| *reading == taxels[0]))
+    );
+    let square = sensors
+        .iter()
+        .map(|taxels| f64::from(taxels[0]).powi(2))
+        .sum::<f64>();
+    assert!(((square / 500.0).sqrt() - 1.0).abs() < 0.1, "{square}");
+    let growing = Imperfection {
+        growth_deviation_per_kpa: 0.01,
+        ..Imperfection::default()
+    };
+    let depths_mm = [1.0, 2.0];
+    let perfect = readings(&Imperfection::default(), 1, 1, 3, &depths_mm);
+    let found = readings(&growing, 1, 1, 3, &depths_mm);
+    for taxel in 0..N_TAXELS {
+        let per_kpa = [0, 1].map(|step: usize| {
+            let (perfect_kpa, found_kpa) = (perfect[step][taxel], found[step][taxel]);
+            (found_kpa / perfect_kpa - 1.0) / perfect_kpa
+        });
+        if perfect[0][taxel] > 1.0 {
+            assert!(
+                per_kpa[0] != 0.0 && (per_kpa[1] / per_kpa[0] - 1.0).abs() < 0.01,
+                "{per_kpa:?}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A fast twin, from a sensor's description alone: presses of the solved gel to learn from, training, and presses to be judged on.
 
+mod imperfection;
 mod plot;
 mod strange;
 pub(crate) mod tables;
@@ -20,6 +21,7 @@ use crate::files::{read_json, sha256, write_file, write_json};
 use crate::progress::Work;
 use crate::{Progress, RunError};
 
+pub use imperfection::{FoundImperfection, ImperfectionSources, find_imperfection, sensor_of_model};
 pub use strange::Told;
 
 /// File of the fast twin in its folder.

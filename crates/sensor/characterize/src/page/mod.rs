@@ -2,6 +2,7 @@
 
 mod parts;
 mod plots;
+mod read_out;
 mod report;
 mod sheet;
 mod words;

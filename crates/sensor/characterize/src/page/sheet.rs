@@ -5,7 +5,7 @@ use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 
 use super::words::{NOT_GIVEN, if_found, number, or_not, span};
-use super::{parts, plots};
+use super::{parts, plots, read_out};
 use crate::Characterization;
 
 /// The figures of a characterization on one page.
@@ -55,12 +55,13 @@ impl Characterization {
         rows.extend(repeats(self));
         rows.extend(over_time(self));
         rows.extend(beside(self));
+        rows.extend(read_out::rows(self));
         rows
     }
 }
 
 /// Name, value and condition of a figure; one that is not given has no condition.
-fn row(name: &str, value: String, condition: String) -> [String; 3] {
+pub(super) fn row(name: &str, value: String, condition: String) -> [String; 3] {
     let is_missing = value.starts_with(NOT_GIVEN);
     let condition = if is_missing { String::new() } else { condition };
     [name.to_owned(), value, condition]

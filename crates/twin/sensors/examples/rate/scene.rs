@@ -40,6 +40,7 @@ jitter = 0.1
 height_deviation_mm = 0.05
 place_deviation_mm = 0.3
 turn_deviation_rad = 0.01
+tilt_deviation_rad = 0.01
 ";
 
 /// What presses.

@@ -1,0 +1,100 @@
+//! `twintac fast imperfection`: how imperfect sensors are, from a trained model and recordings.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use twintac_run::characterization::Recorded;
+use twintac_run::fast::{ImperfectionSources, find_imperfection, sensor_of_model};
+use twintac_run::{SensorFile, import_files};
+
+use super::files::expand;
+use crate::arguments::FastImperfection;
+use crate::output::print;
+use crate::progress::Bars;
+
+/// Finds the widths, and prints or writes the file of them.
+pub(crate) fn run(arguments: &FastImperfection) -> Result<()> {
+    let sensor = match (&arguments.sensor, &arguments.model) {
+        (Some(file), _) => SensorFile::read(file)?,
+        (None, Some(model)) => sensor_of_model(model)?,
+        (None, None) => bail!("there is no sensor; name its description with --sensor"),
+    };
+    let recorded = if arguments.recordings.is_empty() {
+        None
+    } else {
+        Some(read(arguments, &sensor)?)
+    };
+    let command = command(arguments);
+    let sources = ImperfectionSources {
+        sensor: &sensor,
+        model: arguments.model.as_deref(),
+        recorded: recorded.as_ref(),
+        command: &command,
+    };
+    let found = find_imperfection(&sources)?;
+    let Some(out) = &arguments.out else {
+        return print(found.text.trim_end());
+    };
+    found.write(out)?;
+    print(&format!("found     {}", found.found.join(", ")))?;
+    print(&format!("left out  {}", found.left_out.join(", ")))?;
+    print(&format!("file      {}", out.display()))
+}
+
+fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
+    let files = expand(&arguments.recordings)?;
+    let is_csv = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "csv");
+    if !files.iter().any(is_csv) {
+        return Ok(Recorded::read(&files, &Bars::default())?);
+    }
+    if let Some(other) = files.iter().find(|file| !is_csv(file)) {
+        bail!(
+            "{} is no CSV file, as others are; give either CSV files or Parquet files and logs",
+            other.display()
+        );
+    }
+    let named = arguments.sensor.as_ref().and_then(|_| sensor.import());
+    let Some(import) = arguments.import.clone().or(named) else {
+        bail!(
+            "nothing says how to read {}; name a file with --import",
+            files[0].display()
+        );
+    };
+    Ok(Recorded {
+        recording: import_files(&import, &files)?.0,
+        unloaded: Vec::new(),
+    })
+}
+
+/// The command in words, for the head of the file.
+fn command(arguments: &FastImperfection) -> String {
+    let mut words = "twintac fast imperfection".to_owned();
+    let mut add = |name: &str, value: &Option<PathBuf>| {
+        if let Some(value) = value {
+            words += &format!(" {name} {}", quoted(&value.display().to_string()));
+        }
+    };
+    add("--model", &arguments.model);
+    add("--sensor", &arguments.sensor);
+    add("--import", &arguments.import);
+    add("--out", &arguments.out);
+    if !arguments.recordings.is_empty() {
+        let patterns: Vec<String> = arguments
+            .recordings
+            .iter()
+            .map(|pattern| quoted(pattern))
+            .collect();
+        words += &format!(" --recordings {}", patterns.join(" "));
+    }
+    words
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "/._-=+:,".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\n', " ").replace('\'', "'\\''"))
+    }
+}

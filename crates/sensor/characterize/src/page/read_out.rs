@@ -1,0 +1,40 @@
+//! What the read-out does, as rows of the data sheet.
+
+use super::sheet::row;
+use super::words::{if_found, number, or_not};
+use crate::{Characterization, Fate};
+
+/// Name, value and condition of each figure.
+pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
+    let with = |fate: Fate| found.conditions.iter().filter(|taxel| taxel.fate == fate).count();
+    vec![
+        row(
+            "Frames",
+            or_not(&found.timing, |timing| {
+                let (rate_hz, jitter) = (number(timing.rate_hz, 3), number(100.0 * timing.jitter, 2));
+                format!("{rate_hz} Hz, jitter {jitter} %")
+            }),
+            if_found(&found.timing, |timing| {
+                let (all, gaps) = (timing.n_intervals, timing.n_gaps);
+                format!("mean and standard deviation of {all} times between frames, without {gaps} gaps")
+            }),
+        ),
+        row(
+            "Step of readings",
+            or_not(&found.quantum, |quantum| {
+                format!("{} kPa", number(quantum.step_kpa, 3))
+            }),
+            "smallest difference of which the others are multiples".into(),
+        ),
+        row(
+            "Taxels that fail",
+            format!(
+                "{} dead, {} stuck, {} late",
+                with(Fate::Dead),
+                with(Fate::Stuck),
+                with(Fate::Late)
+            ),
+            format!("of {}", found.conditions.len()),
+        ),
+    ]
+}

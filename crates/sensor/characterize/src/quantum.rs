@@ -1,0 +1,90 @@
+//! The smallest step between readings.
+//!
+//! Readings of a press that stand on a lattice differ by multiples of its step. The step is the smallest difference of two neighbours in size, if
+//! nearly all other differences of neighbours are multiples of it.
+
+use serde::Serialize;
+use twintac_recording::Recording;
+
+use crate::Finding;
+
+/// Differences below this are rounding, kPa.
+const ROUNDING_KPA: f64 = 1e-9;
+
+/// Largest difference that is looked at, in steps: of larger ones nobody can tell whether they are multiples.
+const MOST_STEPS: f64 = 100.0;
+
+/// How far a difference may be from a multiple, in steps.
+const OFF_STEPS: f64 = 0.05;
+
+/// Which part of the differences has to be multiples.
+const MOST: f64 = 0.99;
+
+/// Fewest differences that tell.
+const FEWEST: usize = 20;
+
+/// The distance of values that are told apart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Quantum {
+    /// The smallest step between readings, kPa.
+    pub step_kpa: f64,
+    /// Differences that it was found from.
+    pub n_differences: usize,
+}
+
+pub(crate) fn quantum(recording: &Recording) -> Finding<Quantum> {
+    let mut differences_kpa = Vec::new();
+    for press in &recording.presses {
+        for taxel in 0..recording.taxels.len() {
+            let valid = press.taxels_kpa.iter().zip(&press.valid);
+            let mut sorted: Vec<f64> = valid
+                .filter(|(_, valid)| valid[taxel])
+                .map(|(readings_kpa, _)| readings_kpa[taxel])
+                .collect();
+            sorted.sort_by(f64::total_cmp);
+            let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
+            differences_kpa.extend(steps.filter(|step_kpa| *step_kpa > ROUNDING_KPA));
+        }
+    }
+    let step_kpa = differences_kpa.iter().copied().fold(f64::INFINITY, f64::min);
+    let near: Vec<f64> = differences_kpa
+        .iter()
+        .map(|difference_kpa| difference_kpa / step_kpa)
+        .filter(|steps| *steps <= MOST_STEPS)
+        .collect();
+    let n_multiples = near
+        .iter()
+        .filter(|steps| (*steps - steps.round()).abs() < OFF_STEPS)
+        .count();
+    if near.len() < FEWEST || (n_multiples as f64) < MOST * near.len() as f64 {
+        return Finding::NotGiven("readings do not stand on a lattice of equal steps".to_owned());
+    }
+    Finding::Found(Quantum {
+        step_kpa,
+        n_differences: near.len(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{Shape, press, recording};
+
+    #[test]
+    fn a_known_step_is_found_and_readings_without_steps_have_none() {
+        let smooth = press(&Shape {
+            noise_kpa: 0.02,
+            ..Shape::default()
+        });
+        let mut stepped = smooth.clone();
+        for reading_kpa in stepped.taxels_kpa.iter_mut().flatten() {
+            *reading_kpa = 0.01 * (*reading_kpa / 0.01).round() - 0.0037;
+        }
+        let finding = quantum(&recording(vec![stepped]));
+        assert!(
+            (finding.found().unwrap().step_kpa - 0.01).abs() < 1e-9,
+            "{finding:?}"
+        );
+        assert!(quantum(&recording(vec![smooth])).why_not().is_some());
+    }
+}

@@ -1,0 +1,80 @@
+//! How often frames come, and how evenly.
+
+use serde::Serialize;
+use twintac_recording::Recording;
+
+use crate::Finding;
+use crate::statistics::{deviation, mean, median};
+
+/// Times between frames beyond so many medians are frames that are missing.
+const GAP: f64 = 1.5;
+
+/// Fewest times between frames that tell.
+const FEWEST: usize = 20;
+
+/// When frames come, by the recordings' time stamps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrameTiming {
+    /// Frames in a second: one over the mean time between neighbours, Hz.
+    pub rate_hz: f64,
+    /// Standard deviation of the time between neighbours, as part of its mean.
+    pub jitter: f64,
+    /// Times that it was found from.
+    pub n_intervals: usize,
+    /// Times longer than one and a half of the median, which are left out.
+    pub n_gaps: usize,
+}
+
+pub(crate) fn timing(recording: &Recording) -> Finding<FrameTiming> {
+    let presses = recording.presses.iter();
+    let all_s: Vec<f64> = presses
+        .flat_map(|press| press.time_s.windows(2).map(|pair| pair[1] - pair[0]))
+        .collect();
+    let usual_s = median(&all_s).unwrap_or(0.0);
+    let neighbours_s: Vec<f64> = all_s
+        .iter()
+        .copied()
+        .filter(|interval_s| *interval_s <= GAP * usual_s)
+        .collect();
+    match (mean(&neighbours_s), deviation(&neighbours_s)) {
+        (Some(mean_s), Some(deviation_s)) if neighbours_s.len() >= FEWEST => Finding::Found(FrameTiming {
+            rate_hz: 1.0 / mean_s,
+            jitter: deviation_s / mean_s,
+            n_intervals: neighbours_s.len(),
+            n_gaps: all_s.len() - neighbours_s.len(),
+        }),
+        _ => Finding::NotGiven(format!(
+            "presses have {} times between frames in all, and it takes {FEWEST}",
+            all_s.len()
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{Shape, noise, press, recording};
+
+    #[test]
+    fn a_known_rate_and_jitter_are_found_beside_a_gap() {
+        let mut shaken = press(&Shape {
+            loading_s: 20.0,
+            ..Shape::default()
+        });
+        let mut time_s = 0.0;
+        for (frame, stamp_s) in shaken.time_s.iter_mut().enumerate() {
+            time_s += 0.02 * (1.0 + 0.05 * noise(0.0, frame)) + if frame == 500 { 0.2 } else { 0.0 };
+            *stamp_s = time_s;
+        }
+        let finding = timing(&recording(vec![shaken]));
+        let found = finding.found().unwrap();
+        assert!((found.rate_hz - 50.0).abs() < 0.1, "{found:?}");
+        assert!((found.jitter - 0.05).abs() < 0.001, "{found:?}");
+        assert_eq!(found.n_gaps, 1);
+        let few = press(&Shape {
+            rate_hz: 2.0,
+            ..Shape::default()
+        });
+        assert!(timing(&recording(vec![few])).why_not().is_some());
+    }
+}
