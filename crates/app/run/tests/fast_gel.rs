@@ -24,6 +24,7 @@ fn lessons_are_kept_and_tables_follow_from_them() {
         n_lessons: 20,
         n_exams: 2,
         n_slides: 0,
+        n_strange: 0,
         own_indenters: true,
         train: TrainSettings {
             n_steps: 200,

@@ -84,7 +84,11 @@ impl FastGel {
             }
         }
         let kept = &self.novelty.kept;
-        tensors.push(("novelty.kept".into(), vec![kept.n_rows(), N_TRAITS], bytes(&kept.values)));
+        tensors.push((
+            "novelty.kept".into(),
+            vec![kept.n_rows(), N_TRAITS],
+            bytes(&kept.values),
+        ));
         tensors.push(("novelty.scale".into(), vec![N_TRAITS], bytes(&self.novelty.scale)));
         let views = tensors.iter().map(|(name, shape, bytes)| {
             let view = TensorView::new(Dtype::F32, shape.clone(), bytes).map_err(FastFileError::new)?;
@@ -185,13 +189,10 @@ fn layer(tensors: &SafeTensors<'_>, name: &str, n_inputs: usize) -> Result<Linea
 }
 
 /// The numbers of a tensor of this shape; `None` where any length will do.
-fn tensor(
-    tensors: &SafeTensors<'_>,
-    name: &str,
-    shape: &[Option<usize>],
-) -> Result<Vec<f32>, FastFileError> {
+fn tensor(tensors: &SafeTensors<'_>, name: &str, shape: &[Option<usize>]) -> Result<Vec<f32>, FastFileError> {
     let found = tensors.tensor(name).map_err(FastFileError::new)?;
-    let fits = |(expected, found): (&Option<usize>, &usize)| expected.is_none_or(|expected| expected == *found);
+    let fits =
+        |(expected, found): (&Option<usize>, &usize)| expected.is_none_or(|expected| expected == *found);
     let is_so = found.shape().len() == shape.len() && shape.iter().zip(found.shape()).all(fits);
     if !is_so || found.dtype() != Dtype::F32 {
         return Err(FastFileError::new(format!("`{name}` does not fit the rest")));

@@ -104,34 +104,18 @@ pub(crate) fn deepest_mm(sensor: &Sensor) -> f64 {
     limit_mm.min(DEEPEST * (high.z - low.z))
 }
 
-/// The sizes of a gel that presses are drawn for.
-pub(crate) struct Scales {
-    /// Lowest corner in plan, mm.
-    pub(crate) low_mm: DVec2,
-    /// Length and width, mm.
-    pub(crate) size_mm: DVec2,
-    /// The width over that for which shapes have the sizes below.
-    pub(crate) width: f64,
-    height_mm: f64,
-}
-
-impl Scales {
-    pub(crate) fn of(sensor: &Sensor) -> Self {
-        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-        let size_mm = (high - low).truncate();
-        Self {
-            low_mm: low.truncate(),
-            size_mm,
-            width: size_mm.element_product().sqrt() / WIDTH_MM,
-            height_mm: high.z - low.z,
-        }
-    }
+/// By how much shapes are larger than the sizes below.
+pub(crate) fn scale(sensor: &Sensor) -> f64 {
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    (high - low).truncate().element_product().sqrt() / WIDTH_MM
 }
 
 /// Draws a press for a sensor.
 pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> Draw {
-    let scales = Scales::of(sensor);
-    let (scale, size_mm) = (scales.width, scales.size_mm);
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    let size_mm = (high - low).truncate();
+    let scale = scale(sensor);
+    let height_mm = high.z - low.z;
     let is_lesson = purpose == Purpose::Lesson;
     let shape = match (is_lesson, random.random_range(0..7)) {
         (false, kind) => unseen(kind, scale, random),
@@ -153,10 +137,10 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     let rotation = turned(tilt, random);
     Draw {
         shape,
-        place_mm: scales.low_mm + size_mm * within,
+        place_mm: low.truncate() + size_mm * within,
         rotation,
         depth_mm: deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0),
-        edge_mm: scales.height_mm / HEIGHT_MM
+        edge_mm: height_mm / HEIGHT_MM
             * if finest_mm < coarsest_mm {
                 random.random_range(finest_mm..coarsest_mm)
             } else {

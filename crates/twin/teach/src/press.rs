@@ -3,15 +3,14 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec2, DVec3};
-use rand::Rng;
 use twintac_fast::{Lesson, LessonFrame};
 use twintac_sensor::{Sensor, Taxel};
 use twintac_shape::{Pose, Shape};
 use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSettings};
 
-use crate::boulder::exam_surfaces;
 use crate::Strange;
-use crate::draw::{Draw, Purpose, Scales, Slide, deepest_mm, draw, own, upright};
+use crate::boulder::exam_surfaces;
+use crate::draw::{Draw, Purpose, Slide, draw, own, upright};
 
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
@@ -156,32 +155,19 @@ impl Teacher {
         self.press(&upright(&self.sensor, shape, place_mm, spin_rad, depth_mm))
     }
 
-    /// A shape and poses of it that are unlike all that is taught. They are not solved: nothing is known of what the gel answers.
+    /// A press unlike all that is taught, on the finest mesh: only the moments that are.
     ///
     /// # Errors
-    /// None that is known.
-    pub fn strange(&self, strange: Strange, seed: u64, number: u64) -> Result<(Shape, Vec<Pose>), TeachError> {
+    /// A sensor that cannot be meshed.
+    pub fn strange(&self, strange: Strange, seed: u64, number: u64) -> Result<Lesson, TeachError> {
         let name = format!("strange {} {number}", strange.name());
         let random = &mut twintac_random::stream(seed, &name);
-        let scales = Scales::of(&self.sensor);
-        let (shape, rotation, [least, most]) = strange.draw(&scales, random);
-        let within = DVec2::new(random.random(), random.random());
-        let above = Pose {
-            position_mm: (scales.low_mm + scales.size_mm * within).extend(0.0),
-            rotation,
-        };
-        let Some(touch) = self.touch(&shape, &above)? else {
-            return Ok((shape, Vec::new()));
-        };
-        let pose = |frame: u32| {
-            let part = f64::from(frame) / f64::from(N_FRAMES - 1);
-            let depth_mm = (least + part * (most - least)) * deepest_mm(&self.sensor);
-            Pose {
-                position_mm: touch.position_mm - depth_mm * DVec3::Z,
-                ..touch
-            }
-        };
-        Ok((shape, (0..N_FRAMES).map(pose).collect()))
+        let (drawn, from_mm) = strange.draw(&self.sensor, random);
+        let mut press = self.press(&drawn)?;
+        let n_solved = press.frames.len();
+        let from_frame = (from_mm / drawn.depth_mm * f64::from(N_FRAMES)).floor() as usize;
+        press.frames.drain(..from_frame.min(n_solved));
+        Ok(press)
     }
 
     /// Straight down, as far as the solver comes.

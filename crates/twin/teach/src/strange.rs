@@ -1,15 +1,16 @@
-//! Contacts unlike those that are taught, to see that they are told from them. They need no solver.
+//! Presses unlike those that are taught, to see that they are told from them.
 
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 use twintac_random::RandomStream;
+use twintac_sensor::Sensor;
 use twintac_shape::{Part, Pose, Shape};
 
-use crate::draw::{LARGEST_TILT, Scales, simple};
+use crate::draw::{Draw, LARGEST_TILT, deepest_mm, scale, simple, upright};
 
-/// What is strange about a contact.
+/// What is strange about a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Strange {
     /// Taught shapes, deeper than any is taught.
@@ -26,13 +27,7 @@ pub enum Strange {
 
 impl Strange {
     /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Deeper,
-        Self::Thin,
-        Self::Sharp,
-        Self::Tilted,
-        Self::Crowded,
-    ];
+    pub const ALL: [Self; 5] = [Self::Deeper, Self::Thin, Self::Sharp, Self::Tilted, Self::Crowded];
 
     /// In a word.
     #[must_use]
@@ -46,20 +41,28 @@ impl Strange {
         }
     }
 
-    /// A shape, how it is turned, and between what depths it is strange, as parts of the greatest depth that is taught.
-    pub(crate) fn draw(self, scales: &Scales, random: &mut RandomStream) -> (Shape, DQuat, [f64; 2]) {
+    /// A press, and the depth from which it is strange, mm.
+    pub(crate) fn draw(self, sensor: &Sensor, random: &mut RandomStream) -> (Draw, f64) {
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let within = DVec2::new(random.random(), random.random());
+        let place_mm = low.truncate() + (high - low).truncate() * within;
         let tilt = match self {
             Self::Tilted => random.random_range(2.0..3.3) * LARGEST_TILT,
             _ => random.random_range(0.0..LARGEST_TILT),
         };
         let axis = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
-        let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
-        let rotation = (DQuat::from_axis_angle(axis, tilt) * spin).normalize();
-        let depths = match self {
-            Self::Deeper => [1.1, 1.4],
-            _ => [0.2, 1.0],
+        let shape = self.shape(scale(sensor), random);
+        let deepest_mm = deepest_mm(sensor);
+        let (depth_mm, from_mm) = match self {
+            Self::Deeper => (1.3 * deepest_mm, deepest_mm),
+            _ => (random.random_range(0.35..1.0) * deepest_mm, 0.0),
         };
-        (self.shape(scales.width, random), rotation, depths)
+        let drawn = upright(sensor, &shape, place_mm, random.random_range(0.0..TAU), depth_mm);
+        let drawn = Draw {
+            rotation: (DQuat::from_axis_angle(axis, tilt) * drawn.rotation).normalize(),
+            ..drawn
+        };
+        (drawn, from_mm)
     }
 
     fn shape(self, scale: f64, random: &mut RandomStream) -> Shape {
@@ -88,7 +91,9 @@ impl Strange {
                         shape: Shape::Sphere {
                             radius_mm: scale * random.random_range(1.3..2.3),
                         },
-                        whole_from_part: Pose::from_position(scale * DVec3::new(6.0 * column, 6.0 * row, 0.0)),
+                        whole_from_part: Pose::from_position(
+                            scale * DVec3::new(6.0 * column, 6.0 * row, 0.0),
+                        ),
                     }
                 });
                 Shape::Union {

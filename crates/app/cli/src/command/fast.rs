@@ -3,7 +3,7 @@
 use anyhow::Result;
 use twintac_fast::{GroupErrors, Judgement};
 use twintac_run::SensorFile;
-use twintac_run::fast::{FAST_GEL, FastSettings, train_fast};
+use twintac_run::fast::{FAST_GEL, FastSettings, Told, train_fast};
 
 use crate::arguments::FastTrain;
 use crate::output::print;
@@ -46,15 +46,30 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
         print_group("the same, sliding and tilting", &found.slides.overall)?;
     }
     if let Some(strange) = &found.strange {
-        print("contacts unlike all that was taught, %: flagged, and how often they look stranger than held-out presses")?;
-        let familiar = strange.familiar_flagged_percent;
-        print(&format!("{:<28} {familiar:>7.1}", "held-out presses"))?;
-        for (kind, flagged) in &strange.flagged_percent {
-            print(&format!("{kind:<28} {flagged:>7.1} {:>8.1}", strange.auroc_percent[kind]))?;
-        }
-        print(&format!("{:<28} {:>7} {:>8.1}", "all", "", strange.overall_auroc_percent))?;
+        print_strange(strange)?;
     }
     Ok(())
+}
+
+fn print_strange(found: &Told) -> Result<()> {
+    let familiar = found.familiar_flagged_percent;
+    print(&format!(
+        "unlike all that was taught: errors, flagged %, how often they look stranger than held-out presses, of which {familiar:.1} % are flagged"
+    ))?;
+    for (kind, told) in &found.kinds {
+        let errors = &told.errors;
+        print(&format!(
+            "{:<28} {:>7} {:>8.2} {:>7.2} {:>7.2} {:>9.1} {:>7.1}",
+            format!("  {kind}"),
+            errors.n_frames,
+            errors.nearest_percent,
+            errors.all_percent,
+            errors.force_percent,
+            told.flagged_percent,
+            told.auroc_percent
+        ))?;
+    }
+    print(&format!("{:<61} {:>17.1}", "  all", found.auroc_percent))
 }
 
 fn print_judgement(name: &str, found: &Judgement) -> Result<()> {

@@ -20,9 +20,10 @@ use crate::error::At;
 use crate::files::{read_json, sha256, write_file, write_json};
 use crate::progress::Work;
 use crate::{Progress, RunError};
+use strange::strange_presses;
 
 pub use imperfection::{FoundImperfection, ImperfectionSources, find_imperfection, sensor_of_model};
-pub use strange::Told;
+pub use strange::{Told, ToldKind};
 
 /// File of the fast twin in its folder.
 pub const FAST_GEL: &str = "fast.safetensors";
@@ -43,6 +44,8 @@ pub struct FastSettings {
     pub n_exams: u64,
     /// Presses of such shapes that slide and tilt.
     pub n_slides: u64,
+    /// Presses of each kind that is unlike all that is taught.
+    pub n_strange: u64,
     /// Whether presses are those of the sensor's own indenters, upright and near its ports: for the twin of a bench.
     pub own_indenters: bool,
     /// How the networks are trained.
@@ -55,6 +58,7 @@ impl Default for FastSettings {
             n_lessons: 2000,
             n_exams: 100,
             n_slides: 40,
+            n_strange: 12,
             own_indenters: false,
             train: TrainSettings::default(),
         }
@@ -122,6 +126,8 @@ pub fn train_fast(
     let slides = presses("slides", n_slides, folder, progress, &|number| {
         teacher.slide(seed, number)
     })?;
+    let n_strange = if is_own { 0 } else { settings.n_strange };
+    let strange = strange_presses(&teacher, n_strange, folder, seed, progress)?;
     let lessons = presses(
         "lessons",
         settings.n_lessons,
@@ -149,12 +155,10 @@ pub fn train_fast(
     drop(work);
     write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
     let surfaces = exam_surfaces().map_err(TeachError::from)?;
-    let strange = match is_own {
-        true => None,
-        false => Some(Told::of(&gel, &teacher, &held_out, seed)?),
-    };
     let result = FastResult {
-        strange,
+        strange: (n_strange > 0)
+            .then(|| Told::of(&gel, &held_out, &strange))
+            .transpose()?,
         sensor: sensor.sensor.name.clone(),
         provenance: Provenance::Simulated,
         own_indenters: is_own,

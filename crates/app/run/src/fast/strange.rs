@@ -1,26 +1,52 @@
 //! Whether a fast gel tells contacts that it was not taught from those that it was.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use twintac_fast::{Body, FastGel, FastReader, Lesson};
-use twintac_shape::{Pose, Shape, ShapeError, Surfaces};
-use twintac_teach::{Strange, TeachError, Teacher};
+use twintac_fast::{Body, FastGel, FastReader, GroupErrors, Lesson};
+use twintac_shape::{ShapeError, Surfaces};
+use twintac_teach::{Strange, Teacher};
 
-/// Strange presses of each kind.
-const N_OF_KIND: u64 = 40;
+use super::presses;
+use crate::{Progress, RunError};
 
 /// How well contacts unlike all that was taught are told from presses like lessons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Told {
     /// Part of the moments of presses like lessons whose novelty is above 1, %.
     pub familiar_flagged_percent: f64,
-    /// The same of each kind of strange contact.
-    pub flagged_percent: BTreeMap<String, f64>,
-    /// How often a strange contact has a higher novelty than a familiar one, %: the area under the receiver operating characteristic.
-    pub auroc_percent: BTreeMap<String, f64>,
-    /// The same for all kinds together.
-    pub overall_auroc_percent: f64,
+    /// Each kind of strange contact.
+    pub kinds: BTreeMap<String, ToldKind>,
+    /// How often any of them has a higher novelty than a familiar one, %: the area under the receiver operating characteristic.
+    pub auroc_percent: f64,
+}
+
+/// How well one kind is told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToldKind {
+    /// Part of the moments whose novelty is above 1, %.
+    pub flagged_percent: f64,
+    /// How often such a contact has a higher novelty than a familiar one, %.
+    pub auroc_percent: f64,
+    /// Errors there.
+    pub errors: GroupErrors,
+}
+
+/// Presses unlike all that is taught, kind by kind; so many of each.
+pub(super) fn strange_presses(
+    teacher: &Teacher,
+    n_of_kind: u64,
+    folder: &Path,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Result<Vec<(Strange, Vec<Lesson>)>, RunError> {
+    let of_kind = |kind: Strange| {
+        let solve = |number| teacher.strange(kind, seed, number);
+        let name = format!("strange/{}", kind.name());
+        Ok((kind, presses(&name, n_of_kind, folder, progress, &solve)?))
+    };
+    Strange::ALL.into_iter().map(of_kind).collect()
 }
 
 impl Told {
@@ -28,44 +54,43 @@ impl Told {
     ///
     /// # Errors
     /// A shape that can't be.
-    pub(super) fn of(gel: &FastGel, teacher: &Teacher, familiar: &[Lesson], seed: u64) -> Result<Self, TeachError> {
+    pub(super) fn of(
+        gel: &FastGel,
+        familiar: &[Lesson],
+        strange: &[(Strange, Vec<Lesson>)],
+    ) -> Result<Self, ShapeError> {
         let mut reader = gel.reader();
-        let mut known = Vec::new();
-        for press in familiar {
-            let poses = press.frames.iter().map(|frame| frame.gel_from_indenter);
-            known.extend(novelties(&mut reader, &press.shape, poses)?);
-        }
+        let mut known = novelties(&mut reader, familiar)?;
         known.sort_by(f32::total_cmp);
-        let (mut flagged_percent, mut auroc_percent) = (BTreeMap::new(), BTreeMap::new());
-        let mut all = Vec::new();
-        for kind in Strange::ALL {
-            let mut strange = Vec::new();
-            for number in 0..N_OF_KIND {
-                let (shape, poses) = teacher.strange(kind, seed, number)?;
-                strange.extend(novelties(&mut reader, &shape, poses.into_iter())?);
-            }
-            flagged_percent.insert(kind.name().to_owned(), flagged(&strange));
-            auroc_percent.insert(kind.name().to_owned(), auroc(&known, &strange));
-            all.extend(strange);
+        let (mut kinds, mut all) = (BTreeMap::new(), Vec::new());
+        for (kind, presses) in strange {
+            let novelties = novelties(&mut reader, presses)?;
+            let told = ToldKind {
+                flagged_percent: flagged(&novelties),
+                auroc_percent: auroc(&known, &novelties),
+                errors: gel.judge(presses, &Surfaces::new())?.overall,
+            };
+            kinds.insert(kind.name().to_owned(), told);
+            all.extend(novelties);
         }
         Ok(Self {
             familiar_flagged_percent: flagged(&known),
-            flagged_percent,
-            auroc_percent,
-            overall_auroc_percent: auroc(&known, &all),
+            kinds,
+            auroc_percent: auroc(&known, &all),
         })
     }
 }
 
-/// Of the moments at which the shape touches.
-fn novelties(
-    reader: &mut FastReader,
-    shape: &Shape,
-    poses: impl Iterator<Item = Pose>,
-) -> Result<Vec<f32>, ShapeError> {
-    let body = Body::new(shape, &Surfaces::new())?;
-    let novelties = poses.map(|pose| reader.novelty(&[(&body, pose)]));
-    Ok(novelties.filter(|novelty| *novelty > 0.0).collect())
+/// Of the moments at which shapes touch.
+fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f32>, ShapeError> {
+    let mut all = Vec::new();
+    for press in presses {
+        let body = Body::new(&press.shape, &Surfaces::new())?;
+        let frames = press.frames.iter();
+        let novelties = frames.map(|frame| reader.novelty(&[(&body, frame.gel_from_indenter)]));
+        all.extend(novelties.filter(|novelty| *novelty > 0.0));
+    }
+    Ok(all)
 }
 
 fn flagged(novelties: &[f32]) -> f64 {

@@ -39,8 +39,15 @@ fn of_level(grid: &SurfaceGrid, points: &[[f32; N_CHANNELS]], level: usize) -> [
             inside += (here - 1.0).max(0.0);
             sum = [sum[0] + here * x, sum[1] + here * y];
             squares += here * (x * x + y * y);
-            let beside = [(i + 1 < n_x).then(|| share(i + 1, j)), (j + 1 < n_y).then(|| share(i, j + 1))];
-            steps += beside.into_iter().flatten().map(|beside| (beside - here).abs()).sum::<f32>();
+            let beside = [
+                (i + 1 < n_x).then(|| share(i + 1, j)),
+                (j + 1 < n_y).then(|| share(i, j + 1)),
+            ];
+            steps += beside
+                .into_iter()
+                .flatten()
+                .map(|beside| (beside - here).abs())
+                .sum::<f32>();
         }
     }
     if near <= 0.0 {

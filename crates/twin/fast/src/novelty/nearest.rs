@@ -7,7 +7,7 @@ use crate::surface::SurfaceGrid;
 use crate::training::Frames;
 
 /// Contacts that stand for all that were taught.
-const N_KEPT: usize = 1024;
+const N_KEPT: usize = 4096;
 
 /// One lesson of so many is not kept, but says how far contacts of the same kinds are from those that are.
 const ONE_APART_OF: usize = 8;
@@ -55,7 +55,10 @@ impl Novelty {
         let mut apart: Vec<f32> = of(true).iter().map(|traits| novelty.nearest(traits)).collect();
         apart.sort_by(f32::total_cmp);
         let last_familiar = (FAMILIAR * apart.len() as f64) as usize;
-        novelty.unit = apart.get(last_familiar).or(apart.last()).map_or(1.0, |unit| unit.max(f32::MIN_POSITIVE));
+        novelty.unit = apart
+            .get(last_familiar)
+            .or(apart.last())
+            .map_or(1.0, |unit| unit.max(f32::MIN_POSITIVE));
         novelty
     }
 
