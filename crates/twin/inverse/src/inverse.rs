@@ -69,21 +69,7 @@ impl<M: ContactModel> Inverse<M> {
     /// # Errors
     /// No shape, settings that are not above zero.
     pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
-        let positive = [
-            ("noise_kpa", settings.noise_kpa),
-            ("correlated_s", settings.correlated_s),
-            ("shape_memory_s", settings.shape_memory_s),
-            ("touch_deviations", settings.touch_deviations),
-            ("deepest_mm", settings.deepest_mm),
-            ("n_starts", settings.n_starts as f64),
-            ("n_steps", settings.n_steps as f64),
-        ];
-        if let Some((field, found)) = positive
-            .into_iter()
-            .find(|(_, value)| value.is_nan() || *value <= 0.0)
-        {
-            return Err(InverseError::Setting { field, found });
-        }
+        settings.check()?;
         if model.n_shapes() == 0 {
             return Err(InverseError::NoShape);
         }
@@ -102,6 +88,12 @@ impl<M: ContactModel> Inverse<M> {
     #[must_use]
     pub fn model(&self) -> &M {
         &self.model
+    }
+
+    /// What is assumed.
+    #[must_use]
+    pub fn settings(&self) -> &InverseSettings {
+        &self.settings
     }
 
     /// Known shapes.

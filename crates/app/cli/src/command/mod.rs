@@ -9,6 +9,7 @@ mod export;
 mod fast;
 mod files;
 mod follow;
+mod locate;
 mod mesh;
 mod paper;
 mod predict;
@@ -45,6 +46,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::CrossValidate(arguments) => cross_validate::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
+        Command::Locate(arguments) => locate::run(&arguments),
         Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments),
         Command::Report(arguments) => stages::report(&arguments),
     }
