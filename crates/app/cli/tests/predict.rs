@@ -184,7 +184,13 @@ impl Files {
         let model = run.join("training/held-out");
         let locate = |settings: &str, indenter: &str| {
             let settings = self.write("inverse.toml", settings);
-            let locate = ["locate", "--model", model.to_str().unwrap(), "--recordings", presses.to_str().unwrap()];
+            let locate = [
+                "locate",
+                "--model",
+                model.to_str().unwrap(),
+                "--recordings",
+                presses.to_str().unwrap(),
+            ];
             twintac(&[&locate[..], &["--indenter", indenter, "--settings", &settings]].concat())
         };
         for (settings, indenter, word) in [
@@ -204,7 +210,10 @@ impl Files {
         let table = String::from_utf8(output.stdout).unwrap();
         let mut rows = table.lines();
         let header = rows.next().unwrap();
-        assert!(header.starts_with("provenance,press,taught,time_s,indenter,x_mm,y_mm,depth_mm,"), "{header}");
+        assert!(
+            header.starts_with("provenance,press,taught,time_s,indenter,x_mm,y_mm,depth_mm,"),
+            "{header}"
+        );
         let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
         let number = |row: &str, name: &str| row.split(',').nth(column(name)).unwrap().parse::<f64>();
         let (mut places_mm, mut depths_mm) = (Vec::new(), Vec::new());

@@ -69,12 +69,24 @@ fn finds_places_and_depths(run: &Path) {
     assert!(errors.frames_missed * 50 < errors.frames, "{errors:?}");
     assert!(errors.place_mm.median < LARGEST_PLACE_MM, "{errors:?}");
     assert!(errors.depth_percent.median < LARGEST_DEPTH_PERCENT, "{errors:?}");
-    assert!(errors.depth_at_peak_percent.median < LARGEST_DEPTH_PERCENT, "{errors:?}");
-    let within = [errors.place_within_two_deviations_percent, errors.depth_within_two_deviations_percent];
+    assert!(
+        errors.depth_at_peak_percent.median < LARGEST_DEPTH_PERCENT,
+        "{errors:?}"
+    );
+    let within = [
+        errors.place_within_two_deviations_percent,
+        errors.depth_within_two_deviations_percent,
+    ];
     assert!(within.iter().all(|percent| *percent > 80.0), "{errors:?}");
     // Away from the gel, nothing is found.
     let frames = found.presses.iter().flat_map(|press| &press.frames);
-    let above: Vec<_> = frames.filter(|frame| frame.true_depth_mm.is_some_and(|depth_mm| depth_mm < -1.0)).collect();
+    let above: Vec<_> = frames
+        .filter(|frame| frame.true_depth_mm.is_some_and(|depth_mm| depth_mm < -1.0))
+        .collect();
     let n_found = above.iter().filter(|frame| frame.place_mm.is_some()).count();
-    assert!(n_found * 50 < above.len(), "{n_found} of {} frames above the gel", above.len());
+    assert!(
+        n_found * 50 < above.len(),
+        "{n_found} of {} frames above the gel",
+        above.len()
+    );
 }

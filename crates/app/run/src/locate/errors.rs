@@ -68,7 +68,10 @@ impl Quantiles {
         errors.sort_by(f64::total_cmp);
         let at = |part: f64| {
             let last = errors.len().saturating_sub(1) as f64;
-            errors.get((part * last).round() as usize).copied().unwrap_or(f64::NAN)
+            errors
+                .get((part * last).round() as usize)
+                .copied()
+                .unwrap_or(f64::NAN)
         };
         Self {
             median: at(0.5),
@@ -92,7 +95,8 @@ impl FrameError {
         let way_mm = [0, 1].map(|axis| place_mm[axis] - frame.true_place_mm[axis]);
         let depth_mm = frame.depth_mm? - frame.true_depth_mm?;
         // What is not looked for has no deviation.
-        let is_within = |axis: usize| deviation_mm[axis] == 0.0 || way_mm[axis].abs() <= 2.0 * deviation_mm[axis];
+        let is_within =
+            |axis: usize| deviation_mm[axis] == 0.0 || way_mm[axis].abs() <= 2.0 * deviation_mm[axis];
         Some(Self {
             x_mm: way_mm[0],
             place_mm: way_mm[0].hypot(way_mm[1]),
@@ -109,11 +113,16 @@ impl LocationErrors {
         let frames = presses.iter().flat_map(|press| &press.frames);
         let largest_kpa = frames.map(|frame| frame.largest_kpa).fold(0.0, f64::max);
         let counts = |frame: &&LocatedFrame| {
-            frame.largest_kpa > FELT * largest_kpa && frame.true_depth_mm.is_some_and(|depth_mm| depth_mm > 0.0)
+            frame.largest_kpa > FELT * largest_kpa
+                && frame.true_depth_mm.is_some_and(|depth_mm| depth_mm > 0.0)
         };
         let own: Vec<&LocatedPress> = presses.iter().filter(|press| press.taught == taught).collect();
-        let places = |errors: &[(f64, FrameError)]| Quantiles::of(errors.iter().map(|(_, error)| error.place_mm).collect());
-        let depths = |errors: &[(f64, FrameError)]| Quantiles::of(errors.iter().map(|(percent, _)| *percent).collect());
+        let places = |errors: &[(f64, FrameError)]| {
+            Quantiles::of(errors.iter().map(|(_, error)| error.place_mm).collect())
+        };
+        let depths = |errors: &[(f64, FrameError)]| {
+            Quantiles::of(errors.iter().map(|(percent, _)| *percent).collect())
+        };
         let mut of_presses = Vec::new();
         let (mut n_felt, mut n_frames, mut all, mut at_peak) = (0, 0, Vec::new(), Vec::new());
         for press in &own {
@@ -125,7 +134,9 @@ impl LocationErrors {
             n_felt += 1;
             n_frames += felt.len();
             let percent = 100.0 / depth_mm(peak);
-            let found = |frame: &LocatedFrame| FrameError::of(frame).map(|error| (percent * error.depth_mm.abs(), error));
+            let found = |frame: &LocatedFrame| {
+                FrameError::of(frame).map(|error| (percent * error.depth_mm.abs(), error))
+            };
             let of_frames: Vec<(f64, FrameError)> = felt.iter().copied().filter_map(found).collect();
             of_presses.push(PressErrors {
                 name: press.name.clone(),
@@ -195,14 +206,26 @@ mod tests {
             frame(1.5, 60.0, None),
             frame(2.0, 60.0, Some([0.3, -0.3])),
         ];
-        let presses = [press(false, frames), press(true, vec![frame(1.0, 100.0, Some([0.0, 0.0]))])];
+        let presses = [
+            press(false, frames),
+            press(true, vec![frame(1.0, 100.0, Some([0.0, 0.0]))]),
+        ];
         let errors = LocationErrors::of(&presses, false).unwrap();
         assert_eq!([errors.presses, errors.frames, errors.frames_missed], [1, 3, 1]);
         assert!((errors.place_mm.of_90_percent - 0.3).abs() < 1e-9, "{errors:?}");
         assert!((errors.place_at_peak_mm.median - 0.3).abs() < 1e-9, "{errors:?}");
-        assert!((errors.depth_percent.of_90_percent - 15.0).abs() < 1e-9, "{errors:?}");
-        assert!((errors.place_within_two_deviations_percent - 50.0).abs() < 1e-9, "{errors:?}");
-        assert!((errors.depth_within_two_deviations_percent - 50.0).abs() < 1e-9, "{errors:?}");
+        assert!(
+            (errors.depth_percent.of_90_percent - 15.0).abs() < 1e-9,
+            "{errors:?}"
+        );
+        assert!(
+            (errors.place_within_two_deviations_percent - 50.0).abs() < 1e-9,
+            "{errors:?}"
+        );
+        assert!(
+            (errors.depth_within_two_deviations_percent - 50.0).abs() < 1e-9,
+            "{errors:?}"
+        );
         let [x_mm, depth_mm] = errors.of_presses[0].at_peak_mm.unwrap();
         assert!((x_mm - 0.3).abs() < 1e-9 && (depth_mm + 0.3).abs() < 1e-9);
         let taught = LocationErrors::of(&presses, true).unwrap();

@@ -219,7 +219,11 @@ impl Locator {
         let time_s = press.time_s[frame];
         let since_s = following.before_s.map_or(0.0, |before_s| time_s - before_s);
         following.before_s = Some(time_s);
-        let contact = following.step(since_s, (&press.taxels_kpa[frame], &press.valid[frame]), &self.taxels);
+        let contact = following.step(
+            since_s,
+            (&press.taxels_kpa[frame], &press.valid[frame]),
+            &self.taxels,
+        );
         let contact = contact.cloned();
         let found = contact.as_ref();
         LocatedFrame {

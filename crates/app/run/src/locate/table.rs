@@ -56,7 +56,11 @@ pub(super) fn tables(
 fn places(gel: &Gel, taxels: &[usize]) -> [DVec2; 2] {
     let sensor = gel.sensor();
     let (bottom, top) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-    let own = || taxels.iter().map(|taxel| sensor.taxels[*taxel].position_mm.truncate());
+    let own = || {
+        taxels
+            .iter()
+            .map(|taxel| sensor.taxels[*taxel].position_mm.truncate())
+    };
     let low = own().reduce(DVec2::min).unwrap_or_default();
     let high = own().reduce(DVec2::max).unwrap_or_default();
     let is_wide = (high - low).cmpgt(DVec2::ZERO);
@@ -87,7 +91,11 @@ fn solve(
             tip_radius_mm,
         })
     };
-    let requests = lattice.places_mm().into_iter().map(request).collect::<Result<Vec<_>, _>>();
+    let requests = lattice
+        .places_mm()
+        .into_iter()
+        .map(request)
+        .collect::<Result<Vec<_>, _>>();
     Ok(store.depth_tables(&requests?)?)
 }
 
@@ -112,7 +120,10 @@ fn readings(
     };
     let twin_at = |place: &DVec2| Ok(TwinAtPlace::new(&model.twin, &at(*place), &bench, "")?);
     let twins: Vec<TwinAtPlace> = places.par_iter().map(twin_at).collect::<Result<_, RunError>>()?;
-    let deepest_mm = twins.iter().map(TwinAtPlace::max_depth_mm).fold(f64::INFINITY, f64::min);
+    let deepest_mm = twins
+        .iter()
+        .map(TwinAtPlace::max_depth_mm)
+        .fold(f64::INFINITY, f64::min);
     let n_depths = (deepest_mm / DEPTH_STEP_MM).ceil() as usize + 1;
     let depth_step_mm = deepest_mm / (n_depths as f64 - 1.0);
     let mut readings_kpa = vec![Vec::new(); n_depths * places.len()];

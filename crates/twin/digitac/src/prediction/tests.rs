@@ -177,7 +177,10 @@ fn the_zero_follows_an_untouched_sensor_that_drifts() {
         undo.step(0.02, &mut readings_kpa);
         undo.settle(0.02);
     }
-    assert!(readings_kpa.iter().all(|reading| reading.abs() < 0.1), "{readings_kpa:?}");
+    assert!(
+        readings_kpa.iter().all(|reading| reading.abs() < 0.1),
+        "{readings_kpa:?}"
+    );
     undo.tare();
     readings_kpa = [-40.0; N_TAXELS];
     undo.step(0.5, &mut readings_kpa);

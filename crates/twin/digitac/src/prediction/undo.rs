@@ -52,7 +52,11 @@ impl WithoutMemory {
     /// # Panics
     /// Readings of another length.
     pub fn step(&mut self, since_previous_s: f64, readings_kpa: &mut [f64]) {
-        assert_eq!(readings_kpa.len(), self.zero_kpa.len(), "a reading for each taxel");
+        assert_eq!(
+            readings_kpa.len(),
+            self.zero_kpa.len(),
+            "a reading for each taxel"
+        );
         for (taxel, reading) in readings_kpa.iter_mut().enumerate() {
             let shares = &self.shares[taxel];
             let overstresses = &mut self.overstress_kpa[taxel];
