@@ -3,33 +3,14 @@
 use std::sync::Arc;
 
 use twintac_fast::FastGel;
-use twintac_shape::{ShapeError, Surfaces};
+use twintac_shape::Surfaces;
 
+use crate::error::InverseError;
 use crate::fast_model::{FastModel, KnownShape};
 use crate::hypothesis::Prior;
 use crate::model::ContactModel;
 use crate::settings::InverseSettings;
 use crate::starts::Starts;
-
-/// Why there is no inverse.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum InverseError {
-    /// A shape that can't be.
-    #[error(transparent)]
-    Shape(#[from] ShapeError),
-    /// No shape is known.
-    #[error("no known shape: at least one is needed")]
-    NoShape,
-    /// A setting that can't be.
-    #[error("the inverse's `{field}` is {found}, expected a number above 0")]
-    Setting {
-        /// Its name.
-        field: &'static str,
-        /// What it is.
-        found: f64,
-    },
-}
 
 /// What is prepared of a model and its known shapes.
 #[derive(Clone, Debug)]

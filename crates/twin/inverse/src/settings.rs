@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::inverse::InverseError;
+use crate::error::InverseError;
 
 /// How sure readings and model are, and how fast a contact changes.
 ///

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{LocatedFrame, LocatedPress};
+use super::frames::{LocatedFrame, LocatedPress};
 
 /// A press is felt where its largest reading exceeds this part of the largest of all presses.
 const FELT: f64 = 0.03;
