@@ -150,6 +150,8 @@ proptest! {
         for variant in [Variant::PressureMemory, Variant::PressureMemoryMlp] {
             let twin = twin(variant, seed, N_TAXELS);
             let (mut state, mut rested, mut undo) = (twin.state(), twin.state(), twin.without_memory());
+            state.tare_untouched();
+            rested.tare_untouched();
             let frames = std::iter::once([0.0; N_TAXELS].to_vec()).chain(press.pressure_kpa.clone());
             for (number, seen) in frames.enumerate() {
                 let since_s = 0.02 + 0.3 * (number % 3) as f64;
@@ -184,7 +186,10 @@ fn the_zero_follows_an_untouched_sensor_that_drifts() {
     undo.tare();
     readings_kpa = [-40.0; N_TAXELS];
     undo.step(0.5, &mut readings_kpa);
-    assert_eq!(readings_kpa, [0.0; N_TAXELS]);
+    assert!(
+        readings_kpa.iter().all(|reading| reading.abs() < 1e-9),
+        "{readings_kpa:?}"
+    );
 }
 
 #[test]
