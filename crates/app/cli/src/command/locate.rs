@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use twintac_run::{
-    Located, LocatedFrame, LocatedPress, LocationErrors, Locator, import_files, read_recordings,
+    Located, LocatedFrame, LocatedPress, LocationErrors, Locator, Progress, import_files, read_recordings,
 };
 
 use super::files::expand;
@@ -20,9 +20,10 @@ pub(crate) fn run(arguments: &Locate) -> Result<()> {
         None => read_recordings(&files)?,
     };
     let settings = Locator::settings(arguments.settings.as_deref())?;
-    let locator = Locator::open(&arguments.model, &arguments.indenter, settings, &Bars::default())?;
+    let bars = Bars::default();
+    let locator = Locator::open(&arguments.model, &arguments.indenter, settings, &bars)?;
     let mut located = locator.locate(&recording)?;
-    eprint!("{}", summary(&located));
+    summary(&located).lines().for_each(|line| bars.note(line));
     if arguments.errors {
         located.presses.clear();
     }
