@@ -56,6 +56,8 @@ pub(crate) enum Command {
     CrossValidate(CrossValidate),
     /// Print what a sensor would read along a path or a protocol, by its trained twin.
     Predict(Predict),
+    /// Find where and how deep a sensor is touched from its readings, by its trained twin.
+    Locate(Locate),
     /// The twin without finite elements: touch at the rate of reinforcement learning.
     #[command(subcommand)]
     Fast(FastCommand),
@@ -499,6 +501,33 @@ pub(crate) struct Predict {
     /// Print everything as JSON instead of comma-separated values.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Frames are taken as they came. Nothing is told of the poses that the recording has: they judge. Known are the indenters, the contact heights of the twin's own
+/// files, and that a press begins untouched.
+#[derive(Args, Debug)]
+pub(crate) struct Locate {
+    /// Folder of a model: a run's `model`.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) model: PathBuf,
+    /// Recordings: CSV files, presses.parquet files, or patterns.
+    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
+    pub(crate) recordings: Vec<String>,
+    /// How to read CSV recordings (TOML).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Names of the sensor's indenters that may touch it [default: all].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) indenter: Vec<String>,
+    /// What the inverse assumes (TOML), where it differs from the defaults: noise_kpa, model_part, deepest_mm, and others.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
+    /// Print everything as JSON instead of comma-separated values.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print as JSON how far off places and depths are, without the frames.
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) errors: bool,
 }
 
 /// A file for a picture.

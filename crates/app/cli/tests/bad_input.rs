@@ -461,6 +461,19 @@ fn a_prediction_without_a_twin() {
 }
 
 #[test]
+fn places_that_cannot_be_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let nothing = folder.path().join("none.parquet");
+    let locate = |more: &[&str]| twintac(&[&["locate", "--model", text(folder.path())], more].concat());
+    refused(&locate(&[]), &["--recordings"]);
+    refused(&locate(&["--recordings", text(&nothing)]), &["none.parquet"]);
+    refused(
+        &locate(&["--recordings", text(&nothing), "--json", "--errors"]),
+        &["--json", "--errors", "cannot be used with"],
+    );
+}
+
+#[test]
 fn a_stream_that_cannot_be() {
     let strip = root().join("sensors/strip4-gel-a.toml");
     let stream = |more: &[&str]| twintac(&[&["stream", "--lab"], more].concat());

@@ -46,6 +46,7 @@ fn help_on_each_command() {
         "adapt",
         "cross-validate",
         "predict",
+        "locate",
         "report",
     ] {
         insta::assert_snapshot!(format!("help_{command}"), said(&["help", command]));

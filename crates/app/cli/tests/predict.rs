@@ -1,4 +1,4 @@
-//! `predict`: from a tiny trained twin to readings along paths and protocols.
+//! A tiny trained twin: `predict`, from it to readings along paths and protocols, and what else can be done with a model.
 
 #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
 
@@ -176,6 +176,60 @@ impl Files {
         assert!(!Path::new(&refused).exists());
     }
 
+    /// It finds from readings where and how deep it was pressed: rows beside what the recording says. Settings that cannot be are refused before
+    /// anything is solved.
+    fn locate(&self) {
+        let run = self.folder.path().join("run");
+        let presses = run.join("recordings/presses.parquet");
+        let model = run.join("training/held-out");
+        let locate = |settings: &str, indenter: &str| {
+            let settings = self.write("inverse.toml", settings);
+            let locate = [
+                "locate",
+                "--model",
+                model.to_str().unwrap(),
+                "--recordings",
+                presses.to_str().unwrap(),
+            ];
+            twintac(&[&locate[..], &["--indenter", indenter, "--settings", &settings]].concat())
+        };
+        for (settings, indenter, word) in [
+            ("noise_kpa = 0.0", "sphere-25", "noise_kpa"),
+            ("noise = 1.0", "sphere-25", "noise"),
+            ("", "thumb", "thumb"),
+        ] {
+            let output = locate(settings, indenter);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{said}");
+            assert!(said.contains(word) && output.stdout.is_empty(), "{said}");
+        }
+        let output = locate("deepest_mm = 1.2", "sphere-25");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains("presses that it never saw: "), "{said}");
+        let table = String::from_utf8(output.stdout).unwrap();
+        let mut rows = table.lines();
+        let header = rows.next().unwrap();
+        assert!(
+            header.starts_with("provenance,press,taught,time_s,indenter,x_mm,y_mm,depth_mm,"),
+            "{header}"
+        );
+        let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
+        let number = |row: &str, name: &str| row.split(',').nth(column(name)).unwrap().parse::<f64>();
+        let (mut places_mm, mut depths_mm) = (Vec::new(), Vec::new());
+        for row in rows.filter(|row| row.contains(",false,") && number(row, "true_depth_mm").unwrap() > 0.4) {
+            let off = |found: &str, truth: &str| number(row, found).unwrap() - number(row, truth).unwrap();
+            places_mm.push(off("x_mm", "true_x_mm").hypot(off("y_mm", "true_y_mm")));
+            depths_mm.push(off("depth_mm", "true_depth_mm").abs());
+        }
+        let median = |errors: &mut Vec<f64>| {
+            errors.sort_by(f64::total_cmp);
+            errors[errors.len() / 2]
+        };
+        let (place_mm, depth_mm) = (median(&mut places_mm), median(&mut depths_mm));
+        assert!(place_mm < 1.0 && depth_mm < 0.15, "{place_mm} mm, {depth_mm} mm");
+    }
+
     /// What is printed as JSON.
     fn predicted(&self, arguments: &[&str]) -> Value {
         let output = self.predict(&[arguments, &["--json"]].concat());
@@ -225,6 +279,7 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     files.refuse_what_taught();
     files.judge_again();
     files.adapt();
+    files.locate();
     let [path, protocol, ball] = [("path.toml", PATH), ("one.toml", ONE_PRESS), ("ball.toml", BALL)]
         .map(|(name, text)| files.write(name, text));
 

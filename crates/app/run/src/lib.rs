@@ -35,7 +35,7 @@
 //!
 //! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`] hears. What is wrong is a [`RunError`].
 //!
-//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`adapt_model`] adapts one to another sensor, a [`Predictor`] takes one along a path or a protocol, [`calibration`] fits a gel's material, [`characterization`] reads
+//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`adapt_model`] adapts one to another sensor, a [`Predictor`] takes one along a path or a protocol, a [`Locator`] finds what touches by one, [`calibration`] fits a gel's material, [`characterization`] reads
 //! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
 //! out, [`export`](mod@export) makes tables of logs.
 
@@ -54,6 +54,7 @@ mod error;
 pub mod export;
 pub mod fast;
 mod files;
+mod locate;
 pub mod mesh;
 mod metrics;
 mod model;
@@ -77,6 +78,7 @@ pub use cross_validation::{CrossValidated, CrossValidation, CrossValidationPlan,
 pub use digitac::HeldOut;
 pub use error::RunError;
 pub use files::sha256_of_file;
+pub use locate::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator};
 pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};
 pub use predict::{Predicted, Predictor};
 pub use progress::{Outcome, Progress, Silent};

@@ -5,10 +5,14 @@
 use std::path::{Path, PathBuf};
 
 use digitac::{BenchSettings, TrainSettings, Variant};
-use twintac_run::{Caller, Run, RunSettings, SensorFile};
+use twintac_run::{Caller, Locator, Run, RunSettings, SensorFile, Silent, read_recordings};
 
 /// Largest error of the nearest taxel in contact, % of each file's largest reading. A curve without physics has 1.0, predicting nothing 48.
 const LARGEST_PERCENT: f64 = 1.2;
+
+/// Largest medians of how far off places, mm, and depths, % of each press's deepest, are that the twin finds from readings.
+const LARGEST_PLACE_MM: f64 = 0.4;
+const LARGEST_DEPTH_PERCENT: f64 = 4.0;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
@@ -51,4 +55,38 @@ fn a_twin_of_a_real_gel_stays_under_its_error() {
     let percent = metrics.twin.overall.nearest_in_contact_percent;
     assert!(percent < LARGEST_PERCENT, "{percent} %");
     assert_eq!(metrics.twin.frames_not_simulated, 0);
+    finds_places_and_depths(folder.path());
+}
+
+/// Presses that the twin never saw are found from their readings, frame by frame, and it is known how well.
+fn finds_places_and_depths(run: &Path) {
+    let settings = Locator::settings(None).unwrap();
+    let locator = Locator::open(&run.join("training/held-out"), &[], settings, &Silent).unwrap();
+    let recording = read_recordings(&[run.join("recordings/presses.parquet")]).unwrap();
+    let found = locator.locate(&recording).unwrap();
+    let errors = found.unseen.unwrap();
+    assert!(errors.presses >= 10 && errors.frames > 1000, "{errors:?}");
+    assert!(errors.frames_missed * 50 < errors.frames, "{errors:?}");
+    assert!(errors.place_mm.median < LARGEST_PLACE_MM, "{errors:?}");
+    assert!(errors.depth_percent.median < LARGEST_DEPTH_PERCENT, "{errors:?}");
+    assert!(
+        errors.depth_at_peak_percent.median < LARGEST_DEPTH_PERCENT,
+        "{errors:?}"
+    );
+    let within = [
+        errors.place_within_two_deviations_percent,
+        errors.depth_within_two_deviations_percent,
+    ];
+    assert!(within.iter().all(|percent| *percent > 80.0), "{errors:?}");
+    // Away from the gel, nothing is found.
+    let frames = found.presses.iter().flat_map(|press| &press.frames);
+    let above: Vec<_> = frames
+        .filter(|frame| frame.true_depth_mm.is_some_and(|depth_mm| depth_mm < -1.0))
+        .collect();
+    let n_found = above.iter().filter(|frame| frame.place_mm.is_some()).count();
+    assert!(
+        n_found * 50 < above.len(),
+        "{n_found} of {} frames above the gel",
+        above.len()
+    );
 }

@@ -5,7 +5,7 @@
 //! about the bench; [`pair()`] puts measured and simulated frames side by side on one clock ([`Warp`]); a
 //! [`Split`] divides presses into training, validation and test; [`train()`] makes a [`Twin`] of each [`Variant`];
 //! [`evaluate()`] computes its errors; and a [`Model`] keeps it in a folder. A twin in use is a [`TwinState`], or a [`TwinAtPlace`]: stepped frame
-//! by frame. [`predict()`] takes it along planned presses.
+//! by frame. [`predict()`] takes it along planned presses. [`WithoutMemory`] goes the other way, from readings to those of a gel without memory.
 //!
 //! *Memory* means that a reading depends on earlier frames: beside the elastic reading it has overstresses, each of which follows every
 //! change of the elastic reading and fades with a time constant of its own (quasi-linear viscoelasticity). Each room, as the folders of this
@@ -46,7 +46,9 @@ pub use evaluation::{
 pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
 pub use network::{Twin, Variant};
-pub use prediction::{Prediction, TwinAtPlace, TwinState, at_place, predict, simulated_recording};
+pub use prediction::{
+    Prediction, TwinAtPlace, TwinState, WithoutMemory, at_place, predict, simulated_recording,
+};
 pub use training::{
     Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train,
 };

@@ -3,33 +3,14 @@
 use std::sync::Arc;
 
 use twintac_fast::FastGel;
-use twintac_shape::{ShapeError, Surfaces};
+use twintac_shape::Surfaces;
 
+use crate::error::InverseError;
 use crate::fast_model::{FastModel, KnownShape};
 use crate::hypothesis::Prior;
 use crate::model::ContactModel;
 use crate::settings::InverseSettings;
 use crate::starts::Starts;
-
-/// Why there is no inverse.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum InverseError {
-    /// A shape that can't be.
-    #[error(transparent)]
-    Shape(#[from] ShapeError),
-    /// No shape is known.
-    #[error("no known shape: at least one is needed")]
-    NoShape,
-    /// A setting that can't be.
-    #[error("the inverse's `{field}` is {found}, expected a number above 0")]
-    Setting {
-        /// Its name.
-        field: &'static str,
-        /// What it is.
-        found: f64,
-    },
-}
 
 /// What is prepared of a model and its known shapes.
 #[derive(Clone, Debug)]
@@ -69,21 +50,7 @@ impl<M: ContactModel> Inverse<M> {
     /// # Errors
     /// No shape, settings that are not above zero.
     pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
-        let positive = [
-            ("noise_kpa", settings.noise_kpa),
-            ("correlated_s", settings.correlated_s),
-            ("shape_memory_s", settings.shape_memory_s),
-            ("touch_deviations", settings.touch_deviations),
-            ("deepest_mm", settings.deepest_mm),
-            ("n_starts", settings.n_starts as f64),
-            ("n_steps", settings.n_steps as f64),
-        ];
-        if let Some((field, found)) = positive
-            .into_iter()
-            .find(|(_, value)| value.is_nan() || *value <= 0.0)
-        {
-            return Err(InverseError::Setting { field, found });
-        }
+        settings.check()?;
         if model.n_shapes() == 0 {
             return Err(InverseError::NoShape);
         }
@@ -102,6 +69,12 @@ impl<M: ContactModel> Inverse<M> {
     #[must_use]
     pub fn model(&self) -> &M {
         &self.model
+    }
+
+    /// What is assumed.
+    #[must_use]
+    pub fn settings(&self) -> &InverseSettings {
+        &self.settings
     }
 
     /// Known shapes.

@@ -15,6 +15,7 @@
 //! ```
 
 mod contact;
+mod error;
 mod fast_model;
 mod floor;
 mod hypothesis;
@@ -28,9 +29,10 @@ mod tracker;
 mod turn;
 
 pub use contact::Contact;
+pub use error::InverseError;
 pub use fast_model::{FastModel, KnownShape};
 pub use floor::FloorMap;
-pub use inverse::{Inverse, InverseError};
+pub use inverse::Inverse;
 pub use model::{ContactModel, Domain, Press};
 pub use settings::InverseSettings;
 pub use table_model::{ReadingTable, TableModel};

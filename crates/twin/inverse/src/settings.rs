@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::InverseError;
+
 /// How sure readings and model are, and how fast a contact changes.
 ///
 /// The variance of a reading `p` in a frame, where `m` is the largest reading: `noise² + (model_part p)² + (model_part_of_largest m)²`. The noise
@@ -54,5 +56,30 @@ impl Default for InverseSettings {
             n_steps: 1,
             deepest_mm: 5.0,
         }
+    }
+}
+
+impl InverseSettings {
+    /// Whether these settings can be.
+    ///
+    /// # Errors
+    /// [`InverseError::Setting`], which names the first that is not above zero.
+    pub fn check(&self) -> Result<(), InverseError> {
+        let positive = [
+            ("noise_kpa", self.noise_kpa),
+            ("correlated_s", self.correlated_s),
+            ("shape_memory_s", self.shape_memory_s),
+            ("touch_deviations", self.touch_deviations),
+            ("deepest_mm", self.deepest_mm),
+            ("n_starts", self.n_starts as f64),
+            ("n_steps", self.n_steps as f64),
+        ];
+        if let Some((field, found)) = positive
+            .into_iter()
+            .find(|(_, value)| value.is_nan() || *value <= 0.0)
+        {
+            return Err(InverseError::Setting { field, found });
+        }
+        Ok(())
     }
 }

@@ -10,6 +10,7 @@ mod fast;
 mod files;
 mod follow;
 mod imperfection;
+mod locate;
 mod mesh;
 mod paper;
 mod predict;
@@ -46,6 +47,7 @@ pub(crate) fn run(command: Command) -> Result<()> {
         Command::Adapt(arguments) => adapt::run(&arguments),
         Command::CrossValidate(arguments) => cross_validate::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
+        Command::Locate(arguments) => locate::run(&arguments),
         Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments),
         Command::Fast(FastCommand::Imperfection(arguments)) => imperfection::run(&arguments),
         Command::Report(arguments) => stages::report(&arguments),

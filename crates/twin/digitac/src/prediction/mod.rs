@@ -5,7 +5,9 @@ mod planned;
 mod state;
 #[cfg(test)]
 mod tests;
+mod undo;
 
 pub use at_place::TwinAtPlace;
 pub use planned::{Prediction, at_place, predict, simulated_recording};
 pub use state::TwinState;
+pub use undo::WithoutMemory;

@@ -144,6 +144,54 @@ proptest! {
     }
 }
 
+proptest! {
+    #[test]
+    fn readings_without_memory_are_those_of_a_rested_gel(press in press(), seed in 0..1000_u64, zero_kpa in -900.0..900.0_f64) {
+        for variant in [Variant::PressureMemory, Variant::PressureMemoryMlp] {
+            let twin = twin(variant, seed, N_TAXELS);
+            let (mut state, mut rested, mut undo) = (twin.state(), twin.state(), twin.without_memory());
+            state.tare_untouched();
+            rested.tare_untouched();
+            let frames = std::iter::once([0.0; N_TAXELS].to_vec()).chain(press.pressure_kpa.clone());
+            for (number, seen) in frames.enumerate() {
+                let since_s = 0.02 + 0.3 * (number % 3) as f64;
+                let (mut readings_kpa, mut expected_kpa) = ([0.0; N_TAXELS], [0.0; N_TAXELS]);
+                state.step(since_s, &seen, &mut readings_kpa);
+                rested.rest(0);
+                rested.step(since_s, &seen, &mut expected_kpa);
+                readings_kpa.iter_mut().for_each(|reading| *reading += zero_kpa);
+                undo.step(since_s, &mut readings_kpa);
+                for (found, expected) in readings_kpa.iter().zip(expected_kpa) {
+                    prop_assert!((found - expected).abs() < 1e-9, "{}: {} {}", variant, found, expected);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_zero_follows_an_untouched_sensor_that_drifts() {
+    let twin = twin(Variant::PressureMemory, 3, N_TAXELS);
+    let mut undo = twin.without_memory();
+    let mut readings_kpa = [0.0; N_TAXELS];
+    for frame in 0..2000 {
+        readings_kpa = [100.0 + 0.001 * f64::from(frame); N_TAXELS];
+        undo.step(0.02, &mut readings_kpa);
+        undo.settle(0.02);
+    }
+    assert!(
+        readings_kpa.iter().all(|reading| reading.abs() < 0.1),
+        "{readings_kpa:?}"
+    );
+    undo.tare();
+    readings_kpa = [-40.0; N_TAXELS];
+    undo.step(0.5, &mut readings_kpa);
+    assert!(
+        readings_kpa.iter().all(|reading| reading.abs() < 1e-9),
+        "{readings_kpa:?}"
+    );
+}
+
 #[test]
 fn an_untouched_sensor_reads_zero_after_either_tare() {
     for variant in Variant::ALL {

@@ -1,0 +1,235 @@
+//! How far off the places and depths are that were found, where the recording says what they were.
+
+use serde::Serialize;
+
+use super::frames::{LocatedFrame, LocatedPress};
+
+/// A press is felt where its largest reading exceeds this part of the largest of all presses.
+const FELT: f64 = 0.03;
+
+/// How far off. Frames count in which the tip is in the gel and the largest reading exceeds 3 % of the largest of all presses of the recording.
+/// Depths are judged in % of the deepest of the same press.
+#[derive(Clone, Debug, Serialize)]
+pub struct LocationErrors {
+    /// Presses that are felt.
+    pub presses: usize,
+    /// Presses that are not felt in any frame.
+    pub presses_not_felt: usize,
+    /// Frames that count.
+    pub frames: usize,
+    /// Frames that count in which nothing was found.
+    pub frames_missed: usize,
+    /// Distance of the place, mm, in the frames.
+    pub place_mm: Quantiles,
+    /// The same in the deepest frame of each press, the last of those that are alike.
+    pub place_at_peak_mm: Quantiles,
+    /// Error of the depth, % of the press's largest, in the frames.
+    pub depth_percent: Quantiles,
+    /// The same in the deepest frame of each press.
+    pub depth_at_peak_percent: Quantiles,
+    /// Places in frames that lie within two stated deviations, along each axis that is looked for, %.
+    pub place_within_two_deviations_percent: f64,
+    /// Depths in frames that lie within two stated deviations, %.
+    pub depth_within_two_deviations_percent: f64,
+    /// The presses that are felt.
+    pub of_presses: Vec<PressErrors>,
+}
+
+/// How far off a press is.
+#[derive(Clone, Debug, Serialize)]
+pub struct PressErrors {
+    /// The press's name.
+    pub name: String,
+    /// Place along x and y, mm.
+    pub place_mm: [f64; 2],
+    /// Largest depth, mm.
+    pub deepest_mm: f64,
+    /// Largest reading of its frames that count, kPa.
+    pub largest_kpa: f64,
+    /// Median distance of the place, mm.
+    pub place_error_mm: f64,
+    /// Median error of the depth, % of the deepest.
+    pub depth_error_percent: f64,
+    /// Error of the place along x and of the depth in the deepest frame, mm; found less true. `None` if nothing was found.
+    pub at_peak_mm: Option<[f64; 2]>,
+}
+
+/// The middle of errors, and what 90 of 100 do not exceed.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Quantiles {
+    /// Median.
+    pub median: f64,
+    /// What 90 of 100 do not exceed.
+    pub of_90_percent: f64,
+}
+
+impl Quantiles {
+    fn of(mut errors: Vec<f64>) -> Self {
+        errors.sort_by(f64::total_cmp);
+        let at = |part: f64| {
+            let last = errors.len().saturating_sub(1) as f64;
+            errors
+                .get((part * last).round() as usize)
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        Self {
+            median: at(0.5),
+            of_90_percent: at(0.9),
+        }
+    }
+}
+
+/// Errors of a frame.
+struct FrameError {
+    x_mm: f64,
+    place_mm: f64,
+    depth_mm: f64,
+    is_place_within: bool,
+    is_depth_within: bool,
+}
+
+impl FrameError {
+    fn of(frame: &LocatedFrame) -> Option<Self> {
+        let (place_mm, deviation_mm) = (frame.place_mm?, frame.place_deviation_mm?);
+        let way_mm = [0, 1].map(|axis| place_mm[axis] - frame.true_place_mm[axis]);
+        let depth_mm = frame.depth_mm? - frame.true_depth_mm?;
+        // What is not looked for has no deviation.
+        let is_within =
+            |axis: usize| deviation_mm[axis] == 0.0 || way_mm[axis].abs() <= 2.0 * deviation_mm[axis];
+        Some(Self {
+            x_mm: way_mm[0],
+            place_mm: way_mm[0].hypot(way_mm[1]),
+            depth_mm,
+            is_place_within: is_within(0) && is_within(1),
+            is_depth_within: depth_mm.abs() <= 2.0 * frame.depth_deviation_mm?,
+        })
+    }
+}
+
+impl LocationErrors {
+    /// Of the presses that have taught or have not.
+    pub(super) fn of(presses: &[LocatedPress], taught: bool) -> Option<Self> {
+        let frames = presses.iter().flat_map(|press| &press.frames);
+        let largest_kpa = frames.map(|frame| frame.largest_kpa).fold(0.0, f64::max);
+        let counts = |frame: &&LocatedFrame| {
+            frame.largest_kpa > FELT * largest_kpa
+                && frame.true_depth_mm.is_some_and(|depth_mm| depth_mm > 0.0)
+        };
+        let own: Vec<&LocatedPress> = presses.iter().filter(|press| press.taught == taught).collect();
+        let places = |errors: &[(f64, FrameError)]| {
+            Quantiles::of(errors.iter().map(|(_, error)| error.place_mm).collect())
+        };
+        let depths = |errors: &[(f64, FrameError)]| {
+            Quantiles::of(errors.iter().map(|(percent, _)| *percent).collect())
+        };
+        let mut of_presses = Vec::new();
+        let (mut n_felt, mut n_frames, mut all, mut at_peak) = (0, 0, Vec::new(), Vec::new());
+        for press in &own {
+            let depth_mm = |frame: &LocatedFrame| frame.true_depth_mm.unwrap_or(f64::NEG_INFINITY);
+            let felt: Vec<&LocatedFrame> = press.frames.iter().filter(counts).collect();
+            let Some(peak) = felt.iter().max_by(|a, b| depth_mm(a).total_cmp(&depth_mm(b))) else {
+                continue;
+            };
+            n_felt += 1;
+            n_frames += felt.len();
+            let percent = 100.0 / depth_mm(peak);
+            let found = |frame: &LocatedFrame| {
+                FrameError::of(frame).map(|error| (percent * error.depth_mm.abs(), error))
+            };
+            let of_frames: Vec<(f64, FrameError)> = felt.iter().copied().filter_map(found).collect();
+            of_presses.push(PressErrors {
+                name: press.name.clone(),
+                place_mm: peak.true_place_mm,
+                deepest_mm: depth_mm(peak),
+                largest_kpa: felt.iter().map(|frame| frame.largest_kpa).fold(0.0, f64::max),
+                place_error_mm: places(&of_frames).median,
+                depth_error_percent: depths(&of_frames).median,
+                at_peak_mm: FrameError::of(peak).map(|error| [error.x_mm, error.depth_mm]),
+            });
+            at_peak.extend(found(peak));
+            all.extend(of_frames);
+        }
+        let share = |is_within: &dyn Fn(&FrameError) -> bool| {
+            let n_within = all.iter().filter(|(_, error)| is_within(error)).count();
+            100.0 * n_within as f64 / all.len().max(1) as f64
+        };
+        (n_felt > 0).then(|| Self {
+            presses: n_felt,
+            presses_not_felt: own.len() - n_felt,
+            frames: n_frames,
+            frames_missed: n_frames - all.len(),
+            place_mm: places(&all),
+            place_at_peak_mm: places(&at_peak),
+            depth_percent: depths(&all),
+            depth_at_peak_percent: depths(&at_peak),
+            place_within_two_deviations_percent: share(&|error| error.is_place_within),
+            depth_within_two_deviations_percent: share(&|error| error.is_depth_within),
+            of_presses,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame at x = 3, found so far off along x and in depth.
+    fn frame(true_depth_mm: f64, largest_kpa: f64, off_mm: Option<[f64; 2]>) -> LocatedFrame {
+        LocatedFrame {
+            time_s: 0.0,
+            indenter: None,
+            place_mm: off_mm.map(|[x, _]| [3.0 + x, 0.0]),
+            place_deviation_mm: off_mm.map(|_| [0.1, 0.0]),
+            depth_mm: off_mm.map(|[_, depth]| true_depth_mm + depth),
+            depth_deviation_mm: off_mm.map(|_| 0.1),
+            force_n: None,
+            misfit: None,
+            true_place_mm: [3.0, 0.0],
+            true_depth_mm: Some(true_depth_mm),
+            largest_kpa,
+        }
+    }
+
+    #[test]
+    fn frames_count_that_are_felt_in_the_gel() {
+        let press = |taught: bool, frames: Vec<LocatedFrame>| LocatedPress {
+            name: String::new(),
+            mounting: String::new(),
+            taught,
+            frames,
+        };
+        let frames = vec![
+            frame(-0.5, 50.0, Some([9.0, 9.0])),
+            frame(0.1, 2.0, Some([9.0, 9.0])),
+            frame(1.0, 50.0, Some([-0.15, 0.1])),
+            frame(1.5, 60.0, None),
+            frame(2.0, 60.0, Some([0.3, -0.3])),
+        ];
+        let presses = [
+            press(false, frames),
+            press(true, vec![frame(1.0, 100.0, Some([0.0, 0.0]))]),
+        ];
+        let errors = LocationErrors::of(&presses, false).unwrap();
+        assert_eq!([errors.presses, errors.frames, errors.frames_missed], [1, 3, 1]);
+        assert!((errors.place_mm.of_90_percent - 0.3).abs() < 1e-9, "{errors:?}");
+        assert!((errors.place_at_peak_mm.median - 0.3).abs() < 1e-9, "{errors:?}");
+        assert!(
+            (errors.depth_percent.of_90_percent - 15.0).abs() < 1e-9,
+            "{errors:?}"
+        );
+        assert!(
+            (errors.place_within_two_deviations_percent - 50.0).abs() < 1e-9,
+            "{errors:?}"
+        );
+        assert!(
+            (errors.depth_within_two_deviations_percent - 50.0).abs() < 1e-9,
+            "{errors:?}"
+        );
+        let [x_mm, depth_mm] = errors.of_presses[0].at_peak_mm.unwrap();
+        assert!((x_mm - 0.3).abs() < 1e-9 && (depth_mm + 0.3).abs() < 1e-9);
+        let taught = LocationErrors::of(&presses, true).unwrap();
+        assert!(taught.place_mm.median.abs() < 1e-12);
+        assert!(LocationErrors::of(&presses[..1], true).is_none());
+    }
+}

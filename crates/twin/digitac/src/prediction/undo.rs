@@ -1,0 +1,97 @@
+//! The memory of barometers, taken off what they read.
+//!
+//! A barometer reads `r + Σ c q` above its zero, where the overstresses `q` follow its own relaxed reading `r` and nothing else. So what is read tells `r`,
+//! taxel by taxel and frame by frame, whatever touches the gel.
+
+use crate::Twin;
+use crate::features::overstress_step;
+
+/// Turns readings as they come into those of a gel that has always rested: what a [`TwinState`](crate::TwinState) reads in its first frame after
+/// [`rest`](crate::TwinState::rest). Frames allocate nothing.
+///
+/// It needs no tare: the first frame is that of an untouched sensor, and so is every frame that [`settle`](Self::settle) is called after. The zero
+/// follows those.
+#[derive(Clone, Debug)]
+pub struct WithoutMemory {
+    /// Share of each overstress in the reading; `[n_taxels][n_time_constants]`.
+    shares: Vec<Vec<f64>>,
+    time_constants_s: Vec<f64>,
+    is_untouched: bool,
+    /// `[n_taxels]`
+    zero_kpa: Vec<f64>,
+    /// `[n_taxels]`
+    relaxed_kpa: Vec<f64>,
+    /// `[n_taxels][n_time_constants]`
+    overstress_kpa: Vec<Vec<f64>>,
+}
+
+impl Twin {
+    /// Takes the twin's memory off the readings of a sensor whose gel has rested.
+    #[must_use]
+    pub fn without_memory(&self) -> WithoutMemory {
+        let gains = self.gains();
+        let n_taxels = self.taxels().len();
+        WithoutMemory {
+            shares: (0..n_taxels)
+                .map(|taxel| gains.memory.get(taxel).cloned().unwrap_or_default())
+                .collect(),
+            time_constants_s: gains.time_constants_s.clone(),
+            is_untouched: true,
+            zero_kpa: vec![0.0; n_taxels],
+            relaxed_kpa: vec![0.0; n_taxels],
+            overstress_kpa: vec![vec![0.0; gains.time_constants_s.len()]; n_taxels],
+        }
+    }
+}
+
+impl WithoutMemory {
+    /// One more frame: readings, kPa above anything that stays the same, become those of the relaxed gel above its zero. `[n_taxels]`
+    ///
+    /// `since_previous_s` is the time since the last frame, s, not negative.
+    ///
+    /// # Panics
+    /// Readings of another length.
+    pub fn step(&mut self, since_previous_s: f64, readings_kpa: &mut [f64]) {
+        assert_eq!(
+            readings_kpa.len(),
+            self.zero_kpa.len(),
+            "a reading for each taxel"
+        );
+        for (taxel, reading) in readings_kpa.iter_mut().enumerate() {
+            let shares = &self.shares[taxel];
+            let overstresses = &mut self.overstress_kpa[taxel];
+            let before = self.relaxed_kpa[taxel];
+            let (mut remembered, mut at_once) = (0.0, 1.0);
+            for ((q, constant_s), share) in overstresses.iter_mut().zip(&self.time_constants_s).zip(shares) {
+                let (kept, arrived) = overstress_step(since_previous_s, *constant_s);
+                *q = kept * *q - arrived * before;
+                remembered += share * *q;
+                at_once += share * arrived;
+            }
+            if self.is_untouched {
+                self.zero_kpa[taxel] = *reading - remembered;
+            }
+            let relaxed = (*reading - self.zero_kpa[taxel] - remembered) / at_once;
+            for (q, constant_s) in overstresses.iter_mut().zip(&self.time_constants_s) {
+                *q += overstress_step(since_previous_s, *constant_s).1 * relaxed;
+            }
+            self.relaxed_kpa[taxel] = relaxed;
+            *reading = relaxed;
+        }
+        self.is_untouched = false;
+    }
+
+    /// Nothing touched the sensor in the last frame: the zero moves by a part, from 0 to 1, of the way to what was read.
+    pub fn settle(&mut self, part: f64) {
+        for (zero, relaxed) in self.zero_kpa.iter_mut().zip(&mut self.relaxed_kpa) {
+            *zero += part * *relaxed;
+            *relaxed -= part * *relaxed;
+        }
+    }
+
+    /// The next frame is of an untouched sensor, and what stays the same in readings may be another: a recording goes on elsewhere. What the gel
+    /// remembers stays.
+    pub fn tare(&mut self) {
+        self.is_untouched = true;
+    }
+}
