@@ -333,10 +333,15 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
     let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
     let places = places.at_bench(&made.bench);
     let tables = Formula.depth_tables(&places.requests).unwrap();
-    let adapted = |used: &[usize]| {
-        let pressed = (&places, &tables[..]);
-        adapt(&other, pressed, used, &twin, &made.bench, &BTreeSet::new()).unwrap()
+    let sensor = NewSensor {
+        recording: &other,
+        places: &places,
+        tables: &tables,
+        twin: &twin,
+        bench: &made.bench,
+        left_out: &BTreeSet::new(),
     };
+    let adapted = |used: &[usize]| adapt(&sensor, used).unwrap();
     let used = [2, 7, 12, 16, 19];
     let found = adapted(&used);
     let height = found.adaptation.contact_offset_mm["file0"];
@@ -384,10 +389,15 @@ fn presses_to_adapt_with_are_spread_over_files_and_taxels() {
     let places = places.at_bench(&made.bench);
     let tables = Formula.depth_tables(&places.requests).unwrap();
     let all: Vec<usize> = (0..other.presses.len()).collect();
-    let choose = |n_presses, seed| {
-        let (pressed, learned) = ((&places, &tables[..]), (&twin, &made.bench));
-        choose_presses(&other, pressed, &all, learned, &BTreeSet::new(), n_presses, seed).unwrap()
+    let sensor = NewSensor {
+        recording: &other,
+        places: &places,
+        tables: &tables,
+        twin: &twin,
+        bench: &made.bench,
+        left_out: &BTreeSet::new(),
     };
+    let choose = |n_presses, seed| choose_presses(&sensor, &all, n_presses, seed).unwrap();
     let chosen = choose(5, 1);
     let files: BTreeSet<&str> = chosen
         .iter()
