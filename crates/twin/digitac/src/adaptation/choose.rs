@@ -5,8 +5,6 @@
 //! Atkinson, Donev and Tobias 2007, chapter 10; one after the other). That spreads them over files, whose contact heights differ, over taxels, and
 //! over distances from these.
 
-use std::collections::BTreeSet;
-
 use rand::seq::SliceRandom;
 
 use super::NewSensor;
