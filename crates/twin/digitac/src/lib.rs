@@ -31,7 +31,7 @@ mod seed;
 mod synthetic;
 mod training;
 
-pub use adaptation::{Adaptation, Adapted, adapt, choose_presses};
+pub use adaptation::{Adaptation, Adapted, NewSensor, adapt, choose_presses};
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
     BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate,

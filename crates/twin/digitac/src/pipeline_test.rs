@@ -333,10 +333,15 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
     let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
     let places = places.at_bench(&made.bench);
     let tables = Formula.depth_tables(&places.requests).unwrap();
-    let adapted = |used: &[usize]| {
-        let pressed = (&places, &tables[..]);
-        adapt(&other, pressed, used, &twin, &made.bench, &BTreeSet::new()).unwrap()
+    let sensor = NewSensor {
+        recording: &other,
+        places: &places,
+        tables: &tables,
+        twin: &twin,
+        bench: &made.bench,
+        left_out: &BTreeSet::new(),
     };
+    let adapted = |used: &[usize]| adapt(&sensor, used).unwrap();
     let used = [2, 7, 12, 16, 19];
     let found = adapted(&used);
     let height = found.adaptation.contact_offset_mm["file0"];
@@ -373,6 +378,41 @@ fn another_sensor_is_met_with_its_gains_and_its_height() {
 }
 
 #[test]
+fn a_port_beside_its_description_is_not_carried_over_to_another_sensor() {
+    let truth = Truth::new();
+    let mut made = make(&truth, 21);
+    let twin = train_quietly(&made, &settings(&[Variant::PressureMemory], 1))
+        .remove(0)
+        .twin;
+    // The tables have no slopes by the ports' places: presses say nothing of them.
+    let shifted = PortEstimate {
+        shift_mm: [0.3, 0.0],
+        wider_mm: 0.0,
+    };
+    made.bench.ports = vec![shifted; 4];
+    let other = truth.recording(21);
+    let places = Places::of(&other, &Formula, &PlaceSettings::default()).unwrap();
+    let places = places.at_bench(&made.bench);
+    let tables = Formula.depth_tables(&places.requests).unwrap();
+    let sensor = NewSensor {
+        recording: &other,
+        places: &places,
+        tables: &tables,
+        twin: &twin,
+        bench: &made.bench,
+        left_out: &BTreeSet::new(),
+    };
+    let found = adapt(&sensor, &[2, 7, 12, 16, 19]).unwrap();
+    assert_eq!(found.bench.ports.len(), 4);
+    let mut shifts_mm = found.bench.ports.iter().map(|port| port.shift_mm[0]);
+    assert!(
+        shifts_mm.all(|shift_mm| shift_mm.abs() < 1e-6),
+        "{:?}",
+        found.bench.ports
+    );
+}
+
+#[test]
 fn presses_to_adapt_with_are_spread_over_files_and_taxels() {
     let truth = Truth::new();
     let made = make(&truth, 21);
@@ -384,10 +424,15 @@ fn presses_to_adapt_with_are_spread_over_files_and_taxels() {
     let places = places.at_bench(&made.bench);
     let tables = Formula.depth_tables(&places.requests).unwrap();
     let all: Vec<usize> = (0..other.presses.len()).collect();
-    let choose = |n_presses, seed| {
-        let (pressed, learned) = ((&places, &tables[..]), (&twin, &made.bench));
-        choose_presses(&other, pressed, &all, learned, &BTreeSet::new(), n_presses, seed).unwrap()
+    let sensor = NewSensor {
+        recording: &other,
+        places: &places,
+        tables: &tables,
+        twin: &twin,
+        bench: &made.bench,
+        left_out: &BTreeSet::new(),
     };
+    let choose = |n_presses, seed| choose_presses(&sensor, &all, n_presses, seed).unwrap();
     let chosen = choose(5, 1);
     let files: BTreeSet<&str> = chosen
         .iter()

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use digitac::{
-    Adapted, BenchEstimate, Estimate, Evaluation, Model, Places, Twin, Variant, adapt, choose_presses,
+    Adapted, BenchEstimate, Estimate, Evaluation, Model, NewSensor, Places, Twin, Variant, adapt,
+    choose_presses,
 };
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
@@ -78,27 +79,23 @@ impl<'a> NewGel<'a> {
         n_presses: usize,
         seed: u64,
     ) -> Result<Vec<usize>, RunError> {
-        Ok(choose_presses(
-            self.recording,
-            (&self.places, &self.tables),
-            candidates,
-            (self.twin, &self.bench),
-            &self.left_out,
-            n_presses,
-            seed,
-        )?)
+        Ok(choose_presses(&self.sensor(), candidates, n_presses, seed)?)
     }
 
     /// The twin and its bench, adapted with some presses.
     pub(super) fn adapt(&self, used: &[usize]) -> Result<Adapted, RunError> {
-        Ok(adapt(
-            self.recording,
-            (&self.places, &self.tables),
-            used,
-            self.twin,
-            &self.bench,
-            &self.left_out,
-        )?)
+        Ok(adapt(&self.sensor(), used)?)
+    }
+
+    fn sensor(&self) -> NewSensor<'_> {
+        NewSensor {
+            recording: self.recording,
+            places: &self.places,
+            tables: &self.tables,
+            twin: self.twin,
+            bench: &self.bench,
+            left_out: &self.left_out,
+        }
     }
 
     /// The errors of some presses.

@@ -7,10 +7,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
-use twintac_depth_table::DepthTable;
-use twintac_recording::Recording;
 
-use crate::bench_fit::{BenchEstimate, Estimate, LearnedBench, Places, features};
+use super::NewSensor;
+use crate::bench_fit::{BenchEstimate, Estimate};
 use crate::features::Sample;
 use crate::physical_fit::Posterior;
 use crate::{DigitacError, Features, Gains, Twin, Variant};
@@ -47,19 +46,12 @@ pub struct Adapted {
     pub adaptation: Adaptation,
 }
 
-/// Adapts a twin and what was found of its bench to the presses `used` of another sensor. Taxels in `left_out` do not count for what all taxels
-/// share. `tables` answer `places.requests`.
+/// Adapts a twin and what was found of its bench to the presses `used` of another sensor.
 ///
 /// # Errors
 /// The paper's variant, which has no gains; no presses; tables that do not go with the places; damaged presses.
-pub fn adapt(
-    recording: &Recording,
-    (places, tables): (&Places, &[DepthTable]),
-    used: &[usize],
-    twin: &Twin,
-    bench: &BenchEstimate,
-    left_out: &BTreeSet<usize>,
-) -> Result<Adapted, DigitacError> {
+pub fn adapt(sensor: &NewSensor<'_>, used: &[usize]) -> Result<Adapted, DigitacError> {
+    let twin = sensor.twin;
     if twin.variant() == Variant::Paper {
         return Err(DigitacError::Setting {
             setting: "variant",
@@ -73,20 +65,12 @@ pub fn adapt(
             found: "none".into(),
         });
     }
-    let learned = LearnedBench {
-        recording,
-        places,
-        tables,
-        bench,
-        gains: twin.gains(),
-        left_out,
-    };
     let chosen: BTreeSet<usize> = used.iter().copied().collect();
-    let (bench, posterior) = learned.fit(&chosen)?;
-    let features = features(recording, places, tables, &bench)?;
+    let (bench, posterior) = sensor.learned().fit(&chosen)?;
+    let features = sensor.features(&bench)?;
     let with = twin.adapted(posterior.gains.clone(), true);
     let without = twin.adapted(posterior.gains.clone(), false);
-    let deviation_kpa = |twin: &Twin| deviation_kpa(twin, recording, &features, &chosen, left_out);
+    let deviation_kpa = |twin: &Twin| deviation_kpa(twin, sensor, &features, &chosen);
     let keeps_correction = twin.variant().has_perceptron() && deviation_kpa(&with) < deviation_kpa(&without);
     let adaptation = Adaptation {
         used: used.to_vec(),
@@ -138,13 +122,12 @@ fn barometers(posterior: &Posterior) -> Adaptation {
 /// Sum of a twin's absolute deviations from the readings of some presses, kPa.
 fn deviation_kpa(
     twin: &Twin,
-    recording: &Recording,
+    sensor: &NewSensor<'_>,
     features: &[Features],
     chosen: &BTreeSet<usize>,
-    left_out: &BTreeSet<usize>,
 ) -> f64 {
     let predicted = twin.predict(&features.iter().collect::<Vec<_>>());
-    let presses = recording.presses.iter().zip(&predicted).enumerate();
+    let presses = sensor.recording.presses.iter().zip(&predicted).enumerate();
     let chosen = presses.filter(|(index, _)| chosen.contains(index));
     chosen
         .map(|(_, (press, predicted))| {
@@ -152,7 +135,7 @@ fn deviation_kpa(
                 readings_kpa: &press.taxels_kpa,
                 valid: &press.valid,
             };
-            sample.deviation_kpa(predicted, left_out)
+            sample.deviation_kpa(predicted, sensor.left_out)
         })
         .sum()
 }

@@ -5,15 +5,11 @@
 //! Atkinson, Donev and Tobias 2007, chapter 10; one after the other). That spreads them over files, whose contact heights differ, over taxels, and
 //! over distances from these.
 
-use std::collections::BTreeSet;
-
 use rand::seq::SliceRandom;
-use twintac_depth_table::DepthTable;
-use twintac_recording::Recording;
 
-use crate::bench_fit::{BenchEstimate, LearnedBench, Places, features};
+use super::NewSensor;
 use crate::numerics::inverse_symmetric;
-use crate::{DigitacError, Twin, seed};
+use crate::{DigitacError, seed};
 
 /// Of more candidates, chance takes so many.
 const MAX_CANDIDATES: usize = 120;
@@ -21,16 +17,13 @@ const MAX_CANDIDATES: usize = 120;
 const ASIDE: usize = 5;
 
 /// Presses among `candidates` to adapt a twin with, `n_presses` at most, in the order in which they were chosen. At each step chance leaves a fifth of
-/// the candidates aside. `tables` answer `places.requests`; `bench` is what was found where the twin was trained; taxels in `left_out` do not count.
+/// the candidates aside.
 ///
 /// # Errors
 /// Tables that do not go with the places; damaged presses.
 pub fn choose_presses(
-    recording: &Recording,
-    (places, tables): (&Places, &[DepthTable]),
+    sensor: &NewSensor<'_>,
     candidates: &[usize],
-    (twin, bench): (&Twin, &BenchEstimate),
-    left_out: &BTreeSet<usize>,
     n_presses: usize,
     seed_number: u64,
 ) -> Result<Vec<usize>, DigitacError> {
@@ -38,17 +31,11 @@ pub fn choose_presses(
     let mut left = candidates.to_vec();
     left.shuffle(&mut random);
     left.truncate(MAX_CANDIDATES.max(n_presses));
-    let features = features(recording, places, tables, bench)?;
-    let predicted_kpa = twin.predict(&features.iter().collect::<Vec<_>>());
-    let learned = LearnedBench {
-        recording,
-        places,
-        tables,
-        bench,
-        gains: twin.gains(),
-        left_out,
-    };
-    let (told, known) = learned.information(&left.iter().copied().collect(), &predicted_kpa)?;
+    let features = sensor.features(sensor.bench)?;
+    let predicted_kpa = sensor.twin.predict(&features.iter().collect::<Vec<_>>());
+    let (told, known) = sensor
+        .learned()
+        .information(&left.iter().copied().collect(), &predicted_kpa)?;
     let n = known.len();
     let mut all = vec![0.0; n * n];
     told.values().for_each(|matrix| add(&mut all, matrix));

@@ -2,6 +2,8 @@
 
 mod adapt;
 mod choose;
+mod new_sensor;
 
 pub use adapt::{Adaptation, Adapted, adapt};
 pub use choose::choose_presses;
+pub use new_sensor::NewSensor;

@@ -139,7 +139,8 @@ impl<'a> BenchProblem<'a> {
         self
     }
 
-    /// What was learned of each unknown, and by how much another bench may differ from it: standard deviations.
+    /// What was learned of each unknown, and by how much another bench may differ from it: standard deviations. Ports are looked for around where
+    /// they are described.
     pub(super) fn learned(&self, learned: &BenchEstimate, widths: &BenchWidths) -> Vec<(f64, f64)> {
         let heights = self.mountings.iter();
         let mut values: Vec<(f64, f64)> = heights
@@ -152,10 +153,9 @@ impl<'a> BenchProblem<'a> {
             let wider_mm = learned.ports.first().map_or(0.0, |port| port.wider_mm);
             values.push((wider_mm, widths.port_mm));
         }
-        for port in &learned.ports {
-            let shifts = self.axes.iter().map(|axis| port.shift_mm[*axis]);
-            values.extend(shifts.map(|shift_mm| (shift_mm, widths.port_mm)));
-        }
+        // Where a port of one cast is beside its description says nothing of another cast's.
+        let n_shifts = learned.ports.len() * self.axes.len();
+        values.extend(std::iter::repeat_n((0.0, widths.port_mm), n_shifts));
         let factors = learned
             .smooth_factor
             .iter()
