@@ -38,7 +38,7 @@ impl Novelty {
             .map(|number| 1.0 / deviation(contacts.iter().map(|(_, traits)| traits[number])))
             .collect();
         let scaled = |traits: &[f32; N_TRAITS]| std::array::from_fn(|number| traits[number] * scale[number]);
-        let is_apart = |lesson: usize| lesson % ONE_APART_OF == 0;
+        let is_apart = |lesson: usize| lesson.is_multiple_of(ONE_APART_OF);
         let of = |apart: bool| {
             let own = contacts.iter().filter(|(lesson, _)| is_apart(*lesson) == apart);
             own.map(|(_, traits)| scaled(traits)).collect::<Vec<_>>()
