@@ -59,7 +59,8 @@ impl Twin {
         let rate_hz = self.sensor.file().sensor.readout.rate_hz;
         let bench = &self.model.record.bench;
         let plans = std::slice::from_ref(&press.plan);
-        Ok(digitac::predict(&self.model.twin, bench, &self.gel, plans, rate_hz)?.swap_remove(0))
+        let twin = (&self.model.twin, self.model.record.certainty.as_ref());
+        Ok(digitac::predict(twin, bench, &self.gel, plans, rate_hz)?.swap_remove(0))
     }
 
     /// The twin at the place of a press and down to its depth, to be stepped with depths or poses as they come. Takes a second; a step then
