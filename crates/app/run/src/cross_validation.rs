@@ -204,7 +204,8 @@ impl Run {
                 places: &simulation.places,
                 tables: &tables,
                 contacts: &contacts,
-                intervals_block_mm: (plan.intervals && row.without.is_none()).then_some(settings.split.block_mm),
+                intervals_block_mm: (plan.intervals && row.without.is_none())
+                    .then_some(settings.split.block_mm),
                 bench: &row.settings.bench,
                 pair: &row.settings.pair,
                 train: &train,

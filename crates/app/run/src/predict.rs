@@ -117,7 +117,12 @@ impl Predictor {
     }
 
     /// Where and with what the gel is touched along a path; `[n_frames]`.
-    fn contacts(&self, shape: &Shape, path: &PressPath, followed: &Followed) -> Result<Vec<Contact>, RunError> {
+    fn contacts(
+        &self,
+        shape: &Shape,
+        path: &PressPath,
+        followed: &Followed,
+    ) -> Result<Vec<Contact>, RunError> {
         let mut before: Option<(DQuat, Underside)> = None;
         let mut contacts = Vec::with_capacity(followed.frames.len());
         for (frame, planned) in followed.frames.iter().zip(path.frames()) {

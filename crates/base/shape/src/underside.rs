@@ -61,7 +61,8 @@ fn radii_mm() -> impl Iterator<Item = f64> {
 /// Where heights are taken, mm.
 fn places_mm() -> impl Iterator<Item = DVec2> {
     let step = std::f64::consts::TAU / N_DIRECTIONS as f64;
-    let ring = move |radius_mm: f64| (0..N_DIRECTIONS).map(move |i| radius_mm * DVec2::from_angle(step * i as f64));
+    let ring =
+        move |radius_mm: f64| (0..N_DIRECTIONS).map(move |i| radius_mm * DVec2::from_angle(step * i as f64));
     std::iter::once(DVec2::ZERO).chain(radii_mm().flat_map(ring))
 }
 
@@ -69,9 +70,11 @@ fn places_mm() -> impl Iterator<Item = DVec2> {
 fn areas_mm2() -> impl Iterator<Item = f64> {
     let (first_mm, ratio, _) = RINGS;
     let pi = std::f64::consts::PI;
-    let share = move |radius_mm: f64| pi * radius_mm * radius_mm * (ratio - 1.0 / ratio) / N_DIRECTIONS as f64;
+    let share =
+        move |radius_mm: f64| pi * radius_mm * radius_mm * (ratio - 1.0 / ratio) / N_DIRECTIONS as f64;
     let middle = pi * first_mm * first_mm / ratio;
-    std::iter::once(middle).chain(radii_mm().flat_map(move |radius_mm| std::iter::repeat_n(share(radius_mm), N_DIRECTIONS)))
+    std::iter::once(middle)
+        .chain(radii_mm().flat_map(move |radius_mm| std::iter::repeat_n(share(radius_mm), N_DIRECTIONS)))
 }
 
 /// Height of the turned shape's underside above its origin at a place, mm; `None` beside it.

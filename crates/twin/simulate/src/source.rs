@@ -1,7 +1,7 @@
 //! A gel as a source of tables over depth.
 
-use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, SourceError};
 use glam::DQuat;
+use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, SourceError};
 use twintac_shape::{Pose, Shape, Underside};
 
 use crate::{Gel, PressPlace, SimulateError};

@@ -75,7 +75,10 @@ fn sureness(found: &CertaintySpread) -> Vec<String> {
         ));
     }
     if let Some(told_apart) = &found.told_apart {
-        lines.push(format!("  told from what taught: area under the curve {}", spread(told_apart)));
+        lines.push(format!(
+            "  told from what taught: area under the curve {}",
+            spread(told_apart)
+        ));
     }
     lines
 }

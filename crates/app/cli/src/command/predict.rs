@@ -68,7 +68,12 @@ fn table(predicted: &Predicted) -> Result<String> {
             }
             if let (Some(sure), true) = (&press.certainty, is_sure) {
                 for (reading_kpa, half_kpa) in readings_kpa.iter().zip(&sure.half_width_kpa[frame]) {
-                    write!(out, ",{:.5},{:.5}", reading_kpa - half_kpa, reading_kpa + half_kpa)?;
+                    write!(
+                        out,
+                        ",{:.5},{:.5}",
+                        reading_kpa - half_kpa,
+                        reading_kpa + half_kpa
+                    )?;
                 }
                 write!(out, ",{:.3},{}", sure.unlikeness[frame], sure.is_unlike[frame])?;
             }

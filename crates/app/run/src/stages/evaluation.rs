@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use digitac::{Baselines, CertaintyScore, Evaluation, Model, PairedPress, Repeatability, Scale, evaluate, repeatability, score_certainty};
+use digitac::{
+    Baselines, CertaintyScore, Evaluation, Model, PairedPress, Repeatability, Scale, evaluate, repeatability,
+    score_certainty,
+};
 use serde::{Deserialize, Serialize};
 
 use super::training::VariantRecord;

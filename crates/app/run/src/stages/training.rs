@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use digitac::{
-    BenchSettings, Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split, TrainSettings, Trained, Variant, calibrate,
+    BenchSettings, Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale,
+    Score, Split, TrainSettings, Trained, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;

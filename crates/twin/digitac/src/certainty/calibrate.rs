@@ -12,7 +12,8 @@ use super::{Certainty, Contact};
 use crate::bench_fit::{features, refine_bench};
 use crate::evaluation::predict_some;
 use crate::{
-    BenchEstimate, BenchSettings, DigitacError, PairedPress, Places, Scale, Split, TrainSettings, Variant, train,
+    BenchEstimate, BenchSettings, DigitacError, PairedPress, Places, Scale, Split, TrainSettings, Variant,
+    train,
 };
 
 /// Part of the readings that is to lie within the intervals.
@@ -61,7 +62,9 @@ struct Frame {
 }
 
 /// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without a quarter of what taught, four times; and without
-/// the deepest and the outermost fifth, for physics alone. `None` if too few presses teach.
+/// the deepest and the outermost fifth. `None` if too few presses teach.
+///
+/// A perceptron on top of the physics is left out of these twins: it corrects little, and takes most of a training's time.
 ///
 /// # Errors
 /// Those of the fits.
@@ -70,6 +73,7 @@ pub fn calibrate(
     split: &Split,
     variant: Variant,
 ) -> Result<Option<Certainty>, DigitacError> {
+    let variant = variant.without_perceptron();
     let teachers: BTreeSet<usize> = split.train.iter().chain(&split.validation).copied().collect();
     let folds = lessons.folds(&teachers);
     let n_presses: usize = folds.iter().map(BTreeSet::len).sum();
@@ -80,7 +84,10 @@ pub fn calibrate(
     for fold in &folds {
         frames.extend(lessons.without(fold, split, variant)?);
     }
-    let errors: Vec<(Known, f64)> = frames.iter().flat_map(|frame| frame.readings.iter().copied()).collect();
+    let errors: Vec<(Known, f64)> = frames
+        .iter()
+        .flat_map(|frame| frame.readings.iter().copied())
+        .collect();
     let spread = Spread::fit(&errors);
     let factor = |in_contact: bool| {
         let of_state = frames.iter().filter(|frame| (frame.depth_mm > 0.0) == in_contact);
@@ -108,8 +115,10 @@ pub fn calibrate(
     };
     let mut growths = Vec::new();
     for unlike in lessons.unlike(&teachers)? {
-        let frames = lessons.without(&unlike, split, variant.without_perceptron())?;
-        let unlike = frames.iter().filter(|frame| frame.unlikeness > certainty.threshold);
+        let frames = lessons.without(&unlike, split, variant)?;
+        let unlike = frames
+            .iter()
+            .filter(|frame| frame.unlikeness > certainty.threshold);
         growths.extend(unlike.flat_map(|frame| {
             let usual = certainty.factor(frame.depth_mm);
             let needed = frame.readings.iter();
@@ -143,7 +152,8 @@ impl Lessons<'_> {
         for &press in teachers {
             let (indenter, at) = (&self.presses[press].indenter[..], self.place_mm(press));
             let [low, high] = limits[indenter];
-            let is_outer = |axis: usize| low[axis] < high[axis] && (at[axis] == low[axis] || at[axis] == high[axis]);
+            let is_outer =
+                |axis: usize| low[axis] < high[axis] && (at[axis] == low[axis] || at[axis] == high[axis]);
             if !(is_outer(0) || is_outer(1)) {
                 let [x, y] = at.map(|mm| (mm / self.block_mm).round() as i64);
                 groups.entry((indenter, y, x)).or_default().push(press);
@@ -185,7 +195,11 @@ impl Lessons<'_> {
         variant: Variant,
     ) -> Result<Vec<Frame>, DigitacError> {
         let stays = |presses: &[usize]| -> Vec<usize> {
-            presses.iter().copied().filter(|press| !left.contains(press)).collect()
+            presses
+                .iter()
+                .copied()
+                .filter(|press| !left.contains(press))
+                .collect()
         };
         let (train_with, mut validation) = (stays(&split.train), stays(&split.validation));
         if train_with.is_empty() {

@@ -9,6 +9,8 @@ mod certain;
 mod judge;
 mod spread;
 mod taught;
+#[cfg(test)]
+mod tests;
 
 pub use calibrate::{Lessons, calibrate};
 pub use certain::{Certainty, PressCertainty};

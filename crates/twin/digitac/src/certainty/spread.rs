@@ -44,10 +44,17 @@ impl Spread {
     pub(super) fn fit(errors: &[(Known, f64)]) -> Self {
         let thin = errors.len().div_ceil(MOST_READINGS).max(1);
         let errors: Vec<(Known, f64)> = errors.iter().copied().step_by(thin).collect();
-        let size_kpa = errors.iter().map(|(_, error)| error.abs()).sum::<f64>() / (errors.len() as f64).max(1.0);
+        let size_kpa =
+            errors.iter().map(|(_, error)| error.abs()).sum::<f64>() / (errors.len() as f64).max(1.0);
         let size_kpa = size_kpa.max(f64::MIN_POSITIVE);
         let mut parts = [size_kpa, 0.01, 0.01, 0.01, 0.01];
-        let bounds = [[1e-3 * size_kpa, 10.0 * size_kpa], [1e-5, 1.0], [1e-5, 1.0], [1e-5, 1.0], [1e-5, 1.0]];
+        let bounds = [
+            [1e-3 * size_kpa, 10.0 * size_kpa],
+            [1e-5, 1.0],
+            [1e-5, 1.0],
+            [1e-5, 1.0],
+            [1e-5, 1.0],
+        ];
         for _ in 0..N_ROUNDS {
             for part in 0..parts.len() {
                 let [low, high] = bounds[part].map(f64::ln);

@@ -80,8 +80,9 @@ impl Taught {
                 place_mm: contact.place_mm,
                 depth_mm: depths.fold(0.0, f64::max),
             };
-            let is_same =
-                |known: &Underside| known == &contact.underside || known.unlikeness(&contact.underside, 1.0) < SAME_UNDERSIDE;
+            let is_same = |known: &Underside| {
+                known == &contact.underside || known.unlikeness(&contact.underside, 1.0) < SAME_UNDERSIDE
+            };
             match undersides.iter_mut().find(|(known, _)| is_same(known)) {
                 Some((_, own)) => own.push(deepest),
                 None => undersides.push((contact.underside.clone(), vec![deepest])),
@@ -91,7 +92,9 @@ impl Taught {
         let deepest_mm = all().map(|press| press.depth_mm).fold(0.0, f64::max);
         let nearest_other = |press: &Deepest| {
             let distances = all().map(|other| distance_mm(press.place_mm, other.place_mm));
-            let nearest = distances.filter(|mm| *mm > SAME_PLACE_MM).fold(f64::INFINITY, f64::min);
+            let nearest = distances
+                .filter(|mm| *mm > SAME_PLACE_MM)
+                .fold(f64::INFINITY, f64::min);
             nearest.is_finite().then_some(nearest)
         };
         let mut spacings: Vec<f64> = all().filter_map(nearest_other).collect();

@@ -10,8 +10,9 @@ use super::new_taxel;
 use super::unlike::{ToldApart, tell_apart};
 use crate::bench_fit::{fit_radius, radius_weights};
 use crate::{
-    Baselines, BenchEstimate, BenchSettings, CertaintyScore, Contact, DigitacError, Errors, Fold, Lessons, PairSettings, Places, Scale,
-    Score, TrainSettings, Twin, Variant, calibrate, choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
+    Baselines, BenchEstimate, BenchSettings, Certainty, CertaintyScore, Contact, DigitacError, Errors, Fold,
+    Lessons, PairSettings, PairedPress, Places, Scale, Score, TrainSettings, Twin, Variant, calibrate,
+    choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
 };
 
 /// A recording, the gel at its places, and how twins of it are made.
@@ -71,9 +72,7 @@ pub struct Judgement {
 /// # Errors
 /// Those of the fits; too few presses.
 pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> {
-    let Bench {
-        recording, places, ..
-    } = *bench;
+    let (recording, places) = (bench.recording, bench.places);
     let left_out = &bench.bench.left_out;
     let split = &fold.split;
     let teachers = [&split.train[..], &split.validation].concat();
@@ -122,25 +121,7 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     let twin = chosen.twin.clone();
     let variant = twin.variant();
 
-    let certainty = match (bench.intervals_block_mm, fold.taxel) {
-        (Some(block_mm), None) => {
-            let lessons = Lessons {
-                recording,
-                presses: &pairs,
-                places,
-                tables: &tables,
-                contacts: bench.contacts,
-                bench: &fitted,
-                bench_settings: bench.bench,
-                train: bench.train,
-                block_mm,
-                scale: &scale,
-            };
-            calibrate(&lessons, split, variant)?
-        }
-        _ => None,
-    };
-
+    let certainty = bench.certainty((fold, variant), &pairs, &tables, &fitted, &scale)?;
     let test = bench.touch_new_files(fold, &teachers, &tables, &twin, &mut fitted)?;
     let pairs = pair(recording, places, &tables, &fitted, bench.pair)?;
     if let Some(taxel) = fold.taxel {
@@ -149,7 +130,13 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         }
     }
     let certainty = certainty.map(|certainty| {
-        score_certainty((&twin, &certainty), &pairs, (places, bench.contacts), &test, &scale)
+        score_certainty(
+            (&twin, &certainty),
+            &pairs,
+            (places, bench.contacts),
+            &test,
+            &scale,
+        )
     });
     let judged = trained
         .iter()
@@ -166,7 +153,7 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         variants: BTreeMap::new(),
         kernel: None,
         tip_radius_mm: found.tip_radius_mm.map(|radius| radius.value),
-        certainty,
+        certainty: certainty.as_ref().map(sure),
         told_apart: tell_apart(fold, &test, &pairs, places, bench.contacts),
         n_frames_not_simulated: 0,
         n_frames: 0,
@@ -185,6 +172,33 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
 }
 
 impl Bench<'_> {
+    /// How sure the twin of a division is, if intervals are to be judged.
+    fn certainty(
+        &self,
+        (fold, variant): (&Fold, Variant),
+        pairs: &[PairedPress],
+        tables: &[DepthTable],
+        fitted: &BenchEstimate,
+        scale: &Scale,
+    ) -> Result<Option<Certainty>, DigitacError> {
+        let (Some(block_mm), None) = (self.intervals_block_mm, fold.taxel) else {
+            return Ok(None);
+        };
+        let lessons = Lessons {
+            recording: self.recording,
+            presses: pairs,
+            places: self.places,
+            tables,
+            contacts: self.contacts,
+            bench: fitted,
+            bench_settings: self.bench,
+            train: self.train,
+            block_mm,
+            scale,
+        };
+        calibrate(&lessons, &fold.split, variant)
+    }
+
     /// Adds the contact heights of files of which nothing teaches; gives the presses that are left to judge.
     fn touch_new_files(
         &self,

@@ -34,7 +34,12 @@ pub(super) fn tell_apart(
     let mut deepest_mm: BTreeMap<&str, f64> = BTreeMap::new();
     for &press in &fold.split.train {
         let deepest = deepest_mm.entry(&presses[press].indenter).or_insert(0.0);
-        *deepest = presses[press].features.depth_mm.iter().copied().fold(*deepest, f64::max);
+        *deepest = presses[press]
+            .features
+            .depth_mm
+            .iter()
+            .copied()
+            .fold(*deepest, f64::max);
     }
     let place = |press: usize| contacts[places.of_press[press]].place_mm;
     let is_beyond = |press: usize| {
@@ -56,13 +61,16 @@ pub(super) fn tell_apart(
         chosen.iter().flat_map(of_press).collect()
     };
     let taught_mm = |press: usize| deepest_mm.get(&presses[press].indenter[..]).copied();
-    let is_deeper = |press: usize, depth_mm: f64| taught_mm(press).is_some_and(|deepest_mm| depth_mm > deepest_mm);
+    let is_deeper =
+        |press: usize, depth_mm: f64| taught_mm(press).is_some_and(|deepest_mm| depth_mm > deepest_mm);
     let unlike = scores(test, &|press, depth_mm| match fold.by {
         HeldOut::Depth => is_deeper(press, depth_mm),
         HeldOut::Region => is_beyond(press),
         _ => true,
     });
-    let like = scores(&fold.split.validation, &|press, depth_mm| !is_deeper(press, depth_mm));
+    let like = scores(&fold.split.validation, &|press, depth_mm| {
+        !is_deeper(press, depth_mm)
+    });
     Some(ToldApart {
         area_percent: 100.0 * area_under_curve(&like, &unlike)?,
         n_unlike: unlike.len(),

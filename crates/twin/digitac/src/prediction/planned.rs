@@ -7,7 +7,10 @@ use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
-use crate::{BenchEstimate, Certainty, Contact, DigitacError, Features, PlaceSettings, Places, PressCertainty, Twin, TwinAtPlace, features};
+use crate::{
+    BenchEstimate, Certainty, Contact, DigitacError, Features, PlaceSettings, Places, PressCertainty, Twin,
+    TwinAtPlace, features,
+};
 
 /// What a twin would read along a press. All vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -137,23 +140,30 @@ pub fn simulated_recording(
 }
 
 /// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
-/// it was found.
+/// it was found. `certainty` says how sure the twin is.
 ///
 /// # Errors
 /// An indenter that the source does not know; a place that it cannot press.
 pub fn at_place(
-    twin: &Twin,
+    (twin, certainty): (&Twin, Option<&Certainty>),
     bench: &BenchEstimate,
     source: &dyn DepthTableSource,
     plan: &PressPlan,
 ) -> Result<TwinAtPlace, DigitacError> {
     let deepest = made(plan, &[(0.0, plan.depth_mm)], source, twin.taxels().len())?;
-    let (_, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
+    let (places, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
     let table = tables.first().ok_or(DigitacError::DepthTableCount {
         expected: 1,
         found: 0,
     })?;
-    TwinAtPlace::new(twin, table, bench, &plan.indenter)
+    let twin = TwinAtPlace::new(twin, table, bench, &plan.indenter)?;
+    Ok(match certainty {
+        Some(certainty) => {
+            let contact = Contact::of_places(&places, source)?.swap_remove(0);
+            twin.with_certainty(certainty, contact)
+        }
+        None => twin,
+    })
 }
 
 fn simulate(

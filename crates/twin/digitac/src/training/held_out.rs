@@ -121,7 +121,10 @@ impl Fold {
             HeldOut::Region => {
                 let around = |test| Split::around(recording, test, false, settings);
                 let [low, high] = ends(recording)?;
-                Ok(vec![fold("low end", around(low)?), fold("high end", around(high)?)])
+                Ok(vec![
+                    fold("low end", around(low)?),
+                    fold("high end", around(high)?),
+                ])
             }
             HeldOut::File => one_by_one(recording, by, settings, |press| &press.mounting),
             HeldOut::Indenter => one_by_one(recording, by, settings, |press| &press.indenter),
@@ -206,7 +209,10 @@ fn ends(recording: &Recording) -> Result<[BTreeSet<usize>; 2], DigitacError> {
         .collect::<Result<_, DigitacError>>()?;
     let limits = |axis: usize| {
         let along = || places.iter().map(|place| place[axis]);
-        let (low, high) = (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
+        let (low, high) = (
+            along().fold(f64::INFINITY, f64::min),
+            along().fold(f64::NEG_INFINITY, f64::max),
+        );
         (low, high - low)
     };
     let axis = usize::from(limits(1).1 > limits(0).1);
