@@ -129,15 +129,8 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
             candidate.twin = new_taxel::with_gain(&candidate.twin, taxel, &pairs, &teachers, left_out)?;
         }
     }
-    let certainty = certainty.map(|certainty| {
-        score_certainty(
-            (&twin, &certainty),
-            &pairs,
-            (places, bench.contacts),
-            &test,
-            &scale,
-        )
-    });
+    let by_place = (places, bench.contacts);
+    let sure = |certainty| score_certainty((&twin, certainty), &pairs, by_place, &test, &scale);
     let judged = trained
         .iter()
         .map(|candidate| evaluate(&candidate.twin, &pairs, &test, &scale, kernel.as_ref()));
