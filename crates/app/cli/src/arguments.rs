@@ -462,7 +462,7 @@ pub(crate) struct CrossValidate {
     /// Folder of a simulated run, such as `reproduce` leaves.
     #[arg(long, value_name = "DIR")]
     pub(crate) run: PathBuf,
-    /// What is held out together: press, place, file, indenter, depth (the deepest fifth), taxel.
+    /// What is held out together: press, place, file, indenter, depth (the deepest fifth), region (an outermost third), taxel.
     #[arg(long, value_name = "KINDS", value_delimiter = ',', default_value = "place")]
     pub(crate) held_out: Vec<twintac_run::HeldOut>,
     /// Number of seeds, from 1 on.
@@ -471,6 +471,9 @@ pub(crate) struct CrossValidate {
     /// Also leave out each step of the twin in turn, to see its gain.
     #[arg(long)]
     pub(crate) ablation: bool,
+    /// Also judge how sure the twins are: each is made again six times.
+    #[arg(long)]
+    pub(crate) intervals: bool,
     /// Print the figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,

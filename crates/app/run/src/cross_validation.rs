@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use digitac::{Bench, Errors, Fold, HeldOut, Judgement, Places, SplitSettings, Variant, judge};
+use digitac::{Bench, Contact, Errors, Fold, HeldOut, Judgement, Places, SplitSettings, Variant, judge};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthTable, DepthTableSource};
@@ -26,6 +26,8 @@ pub struct CrossValidationPlan {
     pub seeds: u64,
     /// Whether each step of the twin is also left out in turn, to see its gain; by place.
     pub ablation: bool,
+    /// Whether the intervals of the twins are judged as well, which takes several times as long; not where a part is left out.
+    pub intervals: bool,
 }
 
 /// What a twin is made without.
@@ -106,6 +108,21 @@ impl Spread {
     }
 }
 
+/// How sure twins are, over all seeds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CertaintySpread {
+    /// Part of the readings within their interval; it promises 90 %.
+    pub covered: Option<Spread>,
+    /// The same of frames in contact.
+    pub covered_in_contact: Option<Spread>,
+    /// Mean width of the intervals of frames in contact, over the largest reading of the file.
+    pub width_in_contact: Option<Spread>,
+    /// Part of the frames in contact that is flagged as unlike what taught.
+    pub flagged: Option<Spread>,
+    /// How well what was held out is told from what taught: the area under the curve of true over false alarms.
+    pub told_apart: Option<Spread>,
+}
+
 /// The judgements of one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfSeed {
@@ -128,6 +145,9 @@ pub struct CrossValidated {
     pub variants: BTreeMap<Variant, Spread>,
     /// A power of depth times a function of distance, fitted to the same presses.
     pub kernel: Option<Spread>,
+    /// How sure the twins were.
+    #[serde(default)]
+    pub certainty: CertaintySpread,
     /// Part of the frames that lie deeper than the simulation went, %; they are scored all the same.
     pub frames_not_simulated_percent: f64,
     /// Everything, seed by seed.
@@ -169,6 +189,7 @@ impl Run {
         let tables = self.tables_of_radii(&settings, &simulation.places, simulation.tables)?;
         let rows = rows(plan, &settings, &recording, &self.left_out())?;
         let ports_mm = ports_mm(&self.sensor.sensor);
+        let contacts = self.contacts(&simulation.places)?;
 
         let jobs: Vec<(&Row, &(u64, Fold))> = rows
             .iter()
@@ -182,6 +203,9 @@ impl Run {
                 recording: &recording,
                 places: &simulation.places,
                 tables: &tables,
+                contacts: &contacts,
+                intervals_block_mm: (plan.intervals && row.without.is_none())
+                    .then_some(settings.split.block_mm),
                 bench: &row.settings.bench,
                 pair: &row.settings.pair,
                 train: &train,
@@ -207,6 +231,11 @@ impl Run {
         write_json(&folder.join("result.json"), &found)?;
         write_file(&folder.join("errors.png"), &png(&found.plot().scene(), 2.0)?)?;
         Ok(found)
+    }
+
+    /// Where and with what the places are touched; `[n_places]`.
+    pub(crate) fn contacts(&self, places: &Places) -> Result<Vec<Contact>, RunError> {
+        Ok(Contact::of_places(places, &self.gel())?)
     }
 
     /// Tables of all places for each radius that the tip may have, or those that are there.
@@ -309,9 +338,29 @@ impl Row {
                 .filter_map(|variant| Some((variant, spread(&|j| j.variants.get(&variant).copied())?)))
                 .collect(),
             kernel: spread(&|j| j.kernel),
+            certainty: certainty(&seeds),
             frames_not_simulated_percent: 100.0 * n_beyond as f64 / (n_frames as f64).max(1.0),
             seeds,
         }
+    }
+}
+
+/// How sure the twins of a row were: means over the judgements of a seed, and their spread.
+fn certainty(seeds: &[OfSeed]) -> CertaintySpread {
+    let spread = |value: &dyn Fn(&Judgement) -> Option<f64>| {
+        let of_seed = |of_seed: &OfSeed| {
+            let values: Vec<f64> = of_seed.judgements.iter().filter_map(value).collect();
+            (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+        };
+        let values: Vec<f64> = seeds.iter().filter_map(of_seed).collect();
+        (!values.is_empty()).then(|| Spread::of(&values))
+    };
+    CertaintySpread {
+        covered: spread(&|j| Some(j.certainty?.covered_percent)),
+        covered_in_contact: spread(&|j| Some(j.certainty?.covered_in_contact_percent)),
+        width_in_contact: spread(&|j| Some(j.certainty?.mean_width_in_contact_percent)),
+        flagged: spread(&|j| Some(j.certainty?.flagged_percent)),
+        told_apart: spread(&|j| Some(j.told_apart?.area_percent)),
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 use rayon::prelude::*;
 use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, Lattice, SourceError};
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Underside};
 use twintac_simulate::{Gel, PressPlace};
 
 use crate::Progress;
@@ -79,6 +79,10 @@ impl<'a> DepthTableStore<'a> {
 impl DepthTableSource for DepthTableStore<'_> {
     fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
         Ok(self.gel.touch(self.gel.shape(indenter)?, above)?)
+    }
+
+    fn underside(&self, request: &DepthTableRequest) -> Result<Underside, SourceError> {
+        DepthTableSource::underside(self.gel, request)
     }
 
     fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {

@@ -74,7 +74,9 @@ pub use adaptation::{
     AdaptationCurve, AdaptationPlan, AdaptationPoint, AdaptedModel, CurvePlan, adapt_model, adaptation_curve,
 };
 pub use caller::Caller;
-pub use cross_validation::{CrossValidated, CrossValidation, CrossValidationPlan, OfSeed, Spread, Without};
+pub use cross_validation::{
+    CertaintySpread, CrossValidated, CrossValidation, CrossValidationPlan, OfSeed, Spread, Without,
+};
 pub use digitac::HeldOut;
 pub use error::RunError;
 pub use files::sha256_of_file;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use digitac::{Errors, Evaluation, Repeatability, Score};
+use digitac::{CertaintyScore, Errors, Evaluation, Repeatability, Score};
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
@@ -103,6 +103,9 @@ pub struct Metrics {
     pub repeatability: Option<Figures>,
     /// Every variant that was trained, on the same presses.
     pub variants: BTreeMap<String, Figures>,
+    /// How sure the twin is on the same presses, and whether it is right; `None` if too few presses taught to find out.
+    #[serde(default)]
+    pub certainty: Option<CertaintyScore>,
     /// Seed of the run.
     pub seed: u64,
 }

@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use digitac::{BenchEstimate, Model, Prediction, Variant};
+use digitac::{BenchEstimate, Contact, Model, Prediction, Variant};
+use glam::DQuat;
 use serde::Serialize;
 use twintac_plot::{Ink, PALETTE, Panel, Panels, Scene, Series};
 use twintac_protocol::{PressPath, PressPlan};
 use twintac_recording::Provenance;
 use twintac_sensor::IndenterFile;
-use twintac_shape::Shape;
+use twintac_shape::{Shape, Underside};
 use twintac_simulate::{Followed, FollowedFrame, Gel};
 
 use crate::depth_tables::DepthTableStore;
@@ -105,8 +106,38 @@ impl Predictor {
             .follow(&shape, &path, &mut || work.step(""))
             .at(|| file.display().to_string())?;
         drop(work);
-        let along = self.read_along(&path, &followed, &bench, stiffness);
+        let mut along = self.read_along(&path, &followed, &bench, stiffness);
+        if let Some(certainty) = &self.model.record.certainty {
+            let contacts = self.contacts(&shape, &path, &followed)?;
+            let contact = |frame: usize| &contacts[frame];
+            let (time_s, depth_mm) = (&along.time_s, &along.depth_mm);
+            along.certainty = Some(certainty.along(contact, time_s, depth_mm, &along.readings_kpa));
+        }
         Ok(self.predicted(vec![along], followed.failure))
+    }
+
+    /// Where and with what the gel is touched along a path; `[n_frames]`.
+    fn contacts(
+        &self,
+        shape: &Shape,
+        path: &PressPath,
+        followed: &Followed,
+    ) -> Result<Vec<Contact>, RunError> {
+        let mut before: Option<(DQuat, Underside)> = None;
+        let mut contacts = Vec::with_capacity(followed.frames.len());
+        for (frame, planned) in followed.frames.iter().zip(path.frames()) {
+            let rotation = planned.pose.rotation;
+            let underside = match before {
+                Some((same, underside)) if same == rotation => underside,
+                _ => self.gel.underside(shape, rotation)?,
+            };
+            contacts.push(Contact {
+                place_mm: frame.position_mm.truncate().to_array(),
+                underside: underside.clone(),
+            });
+            before = Some((rotation, underside));
+        }
+        Ok(contacts)
     }
 
     /// Steps the twin along what the gel did.
@@ -156,6 +187,7 @@ impl Predictor {
                 .map(|frame| 0.0 - stiffness * frame.force_n.z)
                 .collect(),
             simulated: vec![true; frames.len()],
+            certainty: None,
         }
     }
 
@@ -187,7 +219,8 @@ impl Predictor {
         let (added, known): (Vec<_>, Vec<_>) = planned.presses.iter().cloned().partition(is_added);
         let predict = |plans: &[PressPlan]| {
             let bench = self.bench_for(plans.first().map_or("", |plan| &plan.indenter));
-            digitac::predict(&self.model.twin, &bench, &store, plans, sensor.readout.rate_hz)
+            let twin = (&self.model.twin, self.model.record.certainty.as_ref());
+            digitac::predict(twin, &bench, &store, plans, sensor.readout.rate_hz)
         };
         let (mut added, mut known) = (predict(&added)?.into_iter(), predict(&known)?.into_iter());
         let presses: Vec<Prediction> = planned
@@ -247,7 +280,7 @@ fn on_bench(mut path: PressPath, contact_offset_mm: f64, stiffness: f64) -> Pres
 }
 
 impl Predicted {
-    /// Depth, force and readings over time; presses one after the other.
+    /// Depth, force, readings with their intervals, and how unlike contacts are to what taught, over time; presses one after the other.
     #[must_use]
     pub fn scene(&self) -> Scene {
         let mut start_s = 0.0;
@@ -278,32 +311,60 @@ impl Predicted {
             series,
             y_range: None,
         };
-        let taxels = self.taxels.iter().enumerate();
-        let readings = taxels.map(|(taxel, name)| Series {
-            dashed: taxel >= PALETTE.len(),
-            ..series(name, Ink::Series(taxel), &|press, frame| {
-                press.readings_kpa[frame][taxel]
-            })
-        });
+        let is_sure = self.presses.iter().all(|press| press.certainty.is_some());
+        let mut readings = Vec::new();
+        for (taxel, name) in self.taxels.iter().enumerate() {
+            readings.push(Series {
+                dashed: taxel >= PALETTE.len(),
+                ..series(name, Ink::Series(taxel), &|press, frame| {
+                    press.readings_kpa[frame][taxel]
+                })
+            });
+            for side in [-1.0, 1.0].into_iter().filter(|_| is_sure) {
+                let bound = |press: &Prediction, frame: usize| {
+                    let sure = press.certainty.as_ref();
+                    let half = sure.map_or(0.0, |sure| sure.half_width_kpa[frame][taxel]);
+                    press.readings_kpa[frame][taxel] + side * half
+                };
+                readings.push(Series {
+                    width_px: 0.5,
+                    dashed: true,
+                    ..series("", Ink::Series(taxel), &bound)
+                });
+            }
+        }
+        let unlikeness = |press: &Prediction, frame: usize| {
+            let sure = press.certainty.as_ref();
+            sure.map_or(0.0, |sure| sure.unlikeness[frame])
+        };
         let x_label = if self.presses.len() > 1 {
             "time, presses one after the other (s)"
         } else {
             "time (s)"
         };
+        let mut panels = vec![
+            panel(
+                "depth (mm)",
+                vec![series("", Ink::Text, &|press, frame| press.depth_mm[frame])],
+            ),
+            panel(
+                "force (N)",
+                vec![series("", Ink::Text, &|press, frame| press.force_n[frame])],
+            ),
+            panel("reading, 90 % (kPa)", readings),
+        ];
+        if is_sure {
+            panels.push(panel(
+                "unlike what taught",
+                vec![series("", Ink::Text, &unlikeness)],
+            ));
+        } else {
+            panels[2].y_label = "reading (kPa)".to_owned();
+        }
         Panels {
             title: format!("What {} would read, {}", self.sensor, self.provenance),
             x_label: x_label.to_owned(),
-            panels: vec![
-                panel(
-                    "depth (mm)",
-                    vec![series("", Ink::Text, &|press, frame| press.depth_mm[frame])],
-                ),
-                panel(
-                    "force (N)",
-                    vec![series("", Ink::Text, &|press, frame| press.force_n[frame])],
-                ),
-                panel("reading (kPa)", readings.collect()),
-            ],
+            panels,
             panel_height_px: 150.0,
             logarithmic: false,
         }

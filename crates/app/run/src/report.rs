@@ -32,6 +32,7 @@ impl Run {
             sensor: &self.sensor.sensor,
             provenance: metrics.provenance,
             evaluation: &held_out.evaluation,
+            certainty: metrics.certainty.as_ref(),
             repeatability: held_out.repeatability.as_ref(),
             left_out: &self.left_out(),
             presses: &presses,

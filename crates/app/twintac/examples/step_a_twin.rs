@@ -19,9 +19,13 @@ pub fn step(model: &Path) -> Result<Vec<f64>, Error> {
         let depth_mm = 0.5 - 0.5 * (0.02 * f64::from(frame)).cos();
         pressed.step(0.01, depth_mm, &mut readings_kpa); // what comes from a robot goes here
         println!(
-            "{depth_mm:.3} mm, {:.3} N, {readings_kpa:.2?} kPa",
-            pressed.force_n()
+            "{depth_mm:.3} mm, {:.3} N, {readings_kpa:.2?} ± {:.2?} kPa",
+            pressed.force_n(),
+            pressed.half_widths_kpa().unwrap_or_default()
         );
+        if let Some((unlikeness, true)) = pressed.unlikeness() {
+            println!("unlike what taught: {unlikeness:.1}");
+        }
     }
     Ok(readings_kpa)
 }

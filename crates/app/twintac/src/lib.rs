@@ -185,7 +185,7 @@ pub use sensor::Sensor;
 pub use twin::Twin;
 
 #[cfg(feature = "twin")]
-pub use digitac::{Prediction, TwinAtPlace, TwinState};
+pub use digitac::{Prediction, PressCertainty, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
 pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Touch};

@@ -51,7 +51,7 @@ impl Twin {
     }
 
     /// What the barometers would read along a press, as many frames a second as the sensor gives: takes a few seconds. Bench and gel are as
-    /// they were found at training.
+    /// they were found at training. [`Prediction::certainty`] says how sure the twin is.
     ///
     /// # Errors
     /// An indenter that the sensor does not have; a place that cannot be pressed.
@@ -59,7 +59,8 @@ impl Twin {
         let rate_hz = self.sensor.file().sensor.readout.rate_hz;
         let bench = &self.model.record.bench;
         let plans = std::slice::from_ref(&press.plan);
-        Ok(digitac::predict(&self.model.twin, bench, &self.gel, plans, rate_hz)?.swap_remove(0))
+        let twin = (&self.model.twin, self.model.record.certainty.as_ref());
+        Ok(digitac::predict(twin, bench, &self.gel, plans, rate_hz)?.swap_remove(0))
     }
 
     /// The twin at the place of a press and down to its depth, to be stepped with depths or poses as they come. Takes a second; a step then
@@ -69,12 +70,8 @@ impl Twin {
     /// As [`predict`](Self::predict).
     pub fn at(&self, press: &Press) -> Result<TwinAtPlace, Error> {
         let bench = &self.model.record.bench;
-        Ok(digitac::at_place(
-            &self.model.twin,
-            bench,
-            &self.gel,
-            &press.plan,
-        )?)
+        let twin = (&self.model.twin, self.model.record.certainty.as_ref());
+        Ok(digitac::at_place(twin, bench, &self.gel, &press.plan)?)
     }
 
     /// So many sensors with this twin's gains and memory, over a fast gel of the same sensor, to be stepped with what touches them. See

@@ -16,6 +16,7 @@ mod solid;
 mod stl;
 mod surface;
 mod surface_error;
+mod underside;
 mod union;
 
 pub use dome::Dome;
@@ -25,3 +26,4 @@ pub use signed_distance::{Distance, SignedDistance};
 pub use solid::Solid;
 pub use surface::{Surfaces, TriangleSurface};
 pub use surface_error::SurfaceError;
+pub use underside::Underside;

@@ -112,7 +112,7 @@ fn step(
 mod tests {
     use super::*;
     use crate::noise::noise;
-    use crate::synthetic::{Shape, all, press};
+    use crate::synthetic::{Shape, all, press, rests};
     use twintac_recording::Press;
 
     fn weight(force_n: f64) -> Shape {
@@ -129,7 +129,7 @@ mod tests {
 
     fn all_steps(presses: &[Press]) -> Vec<KnownStep> {
         let (all, names) = (all(presses), ["a".to_owned(), "b".to_owned()]);
-        let noise = noise(&all, &names, &CharacterizeOptions::default());
+        let noise = noise(&rests(presses), &names, &CharacterizeOptions::default());
         let steps = steps(&all, &names, &noise, &CharacterizeOptions::default());
         steps.found().unwrap().clone()
     }

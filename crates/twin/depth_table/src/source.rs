@@ -1,6 +1,6 @@
 //! Where tables over depth come from.
 
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Underside};
 
 use crate::DepthTable;
 
@@ -30,6 +30,12 @@ pub trait DepthTableSource {
     /// # Errors
     /// An indenter that the sensor does not have, and a place where it misses the gel.
     fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError>;
+
+    /// The underside of the indenter that a request presses with, turned as it presses.
+    ///
+    /// # Errors
+    /// An indenter that the sensor does not have.
+    fn underside(&self, request: &DepthTableRequest) -> Result<Underside, SourceError>;
 
     /// One table for each request, in the order of the requests.
     ///

@@ -15,6 +15,7 @@
 mod adaptation;
 mod alignment;
 mod bench_fit;
+mod certainty;
 mod cross_validation;
 mod error;
 mod evaluation;
@@ -37,7 +38,10 @@ pub use bench_fit::{
     BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate,
     SmoothFactor, features, fit_bench, refine_bench,
 };
-pub use cross_validation::{Bench, Judgement, judge};
+pub use certainty::{
+    Certainty, CertaintyScore, Contact, Lessons, PressCertainty, calibrate, score_certainty,
+};
+pub use cross_validation::{Bench, Judgement, ToldApart, judge};
 pub use error::DigitacError;
 pub use evaluation::{
     Baselines, Errors, Evaluation, Mean, PressEvaluation, Recalibration, Repeatability, Scale, Score,

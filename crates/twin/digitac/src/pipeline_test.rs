@@ -266,6 +266,7 @@ fn a_model_survives_its_folder_and_notices_damage() {
         files: vec!["file0".into()],
         taught_by: BTreeSet::new(),
         split: made.split.clone(),
+        certainty: None,
     };
     let model = Model::new(trained.twin, origin, trained.validation, None);
     let parent = tempfile::tempdir().unwrap();
@@ -468,7 +469,10 @@ fn what_is_held_out_is_judged_by_what_teaches() {
         })
         .collect();
     let ports_mm = crate::synthetic::TAXELS_X_MM.map(|x| [x, 0.0]);
+    let contacts = Contact::of_places(&places, &Formula).unwrap();
     let bench = Bench {
+        contacts: &contacts,
+        intervals_block_mm: None,
         recording: &recording,
         places: &places,
         tables: &tables,

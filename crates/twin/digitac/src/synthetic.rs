@@ -6,7 +6,7 @@ use twintac_depth_table::{
     DepthTable, DepthTableRequest, DepthTableSource, PressFrame, SolveQuality, SourceError,
 };
 use twintac_recording::{Control, Press, Provenance, Recording};
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Shape, Surfaces, Underside};
 
 use crate::seed;
 use crate::{Features, Gains};
@@ -42,6 +42,16 @@ impl DepthTableSource for Formula {
             position_mm: above.position_mm.with_z(TOP_MM),
             rotation: above.rotation,
         })
+    }
+
+    fn underside(&self, request: &DepthTableRequest) -> Result<Underside, SourceError> {
+        let radius_mm = request.tip_radius_mm.unwrap_or(DESCRIBED_RADIUS_MM);
+        let ball = Shape::Sphere { radius_mm };
+        let ball = ball.signed_distance_field(&Surfaces::default())?;
+        Ok(Underside::of(
+            ball.as_ref(),
+            request.gel_from_indenter_at_touch.rotation,
+        ))
     }
 
     fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {

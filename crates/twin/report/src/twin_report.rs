@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use digitac::{BenchEstimate, Epoch, Evaluation, PairedPress, Repeatability, Score, Variant};
+use digitac::{BenchEstimate, CertaintyScore, Epoch, Evaluation, PairedPress, Repeatability, Score, Variant};
 use twintac_depth_table::DepthTable;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
@@ -16,6 +16,8 @@ pub struct TwinReport<'a> {
     pub provenance: Provenance,
     /// The twin on presses that it never saw.
     pub evaluation: &'a Evaluation,
+    /// How sure the twin is on them, and whether it is right, if it knows.
+    pub certainty: Option<&'a CertaintyScore>,
     /// How well the presses themselves repeat, if some repeat others.
     pub repeatability: Option<&'a Repeatability>,
     /// Taxels left out of the headline, by index.

@@ -1,7 +1,8 @@
 //! A gel as a source of tables over depth.
 
+use glam::DQuat;
 use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, SourceError};
-use twintac_shape::{Pose, Shape};
+use twintac_shape::{Pose, Shape, Underside};
 
 use crate::{Gel, PressPlace, SimulateError};
 
@@ -25,6 +26,15 @@ impl Gel {
             depth_mm: request.max_depth_mm,
             enough_force_n: request.enough_force_n,
         })
+    }
+
+    /// The underside of a shape, turned as it presses.
+    ///
+    /// # Errors
+    /// A surface that the sensor's description does not have.
+    pub fn underside(&self, shape: &Shape, rotation: DQuat) -> Result<Underside, SimulateError> {
+        let shape = shape.signed_distance_field(&self.sensor().surfaces)?;
+        Ok(Underside::of(shape.as_ref(), rotation))
     }
 
     /// The shape of one of the sensor's indenters.
@@ -51,6 +61,11 @@ impl Gel {
 impl DepthTableSource for Gel {
     fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, SourceError> {
         Ok(Self::touch(self, self.shape(indenter)?, above)?)
+    }
+
+    fn underside(&self, request: &DepthTableRequest) -> Result<Underside, SourceError> {
+        let pressed = self.requested(request)?;
+        Ok(Self::underside(self, &pressed.shape, pressed.rotation)?)
     }
 
     fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {

@@ -1,7 +1,7 @@
 //! `twintac cross-validate`.
 
 use anyhow::Result;
-use twintac_run::{CrossValidation, CrossValidationPlan, Run, Spread};
+use twintac_run::{CertaintySpread, CrossValidation, CrossValidationPlan, Run, Spread};
 
 use crate::arguments::CrossValidate;
 use crate::caller::caller;
@@ -13,6 +13,7 @@ pub(crate) fn run(arguments: &CrossValidate) -> Result<()> {
         held_out: arguments.held_out.clone(),
         seeds: arguments.seeds,
         ablation: arguments.ablation,
+        intervals: arguments.intervals,
     };
     let found = run.cross_validate(&plan)?;
     if arguments.json {
@@ -44,6 +45,7 @@ fn table(found: &CrossValidation, seeds: u64) -> String {
             let variants = row.variants.iter();
             lines.extend(variants.map(|(variant, own)| format!("  {:<20}  {}", variant.name(), spread(own))));
         }
+        lines.extend(sureness(&row.certainty));
         if row.frames_not_simulated_percent > 0.0 {
             lines.push(format!(
                 "  {:.1} % of these frames lie deeper than the simulation went",
@@ -52,4 +54,31 @@ fn table(found: &CrossValidation, seeds: u64) -> String {
         }
     }
     lines.join("\n")
+}
+
+/// What the 90 % intervals cover, and how well another kind of contact is told.
+fn sureness(found: &CertaintySpread) -> Vec<String> {
+    let spread = |spread: &Spread| format!("{:.1} ± {:.1} %", spread.mean_percent, spread.deviation_percent);
+    let mut lines = Vec::new();
+    if let (Some(covered), Some(in_contact), Some(width), Some(flagged)) = (
+        &found.covered,
+        &found.covered_in_contact,
+        &found.width_in_contact,
+        &found.flagged,
+    ) {
+        lines.push(format!(
+            "  90 % intervals cover {} of the readings, {} in contact; there they are {} wide, and {} of the frames are flagged",
+            spread(covered),
+            spread(in_contact),
+            spread(width),
+            spread(flagged)
+        ));
+    }
+    if let Some(told_apart) = &found.told_apart {
+        lines.push(format!(
+            "  told from what taught: area under the curve {}",
+            spread(told_apart)
+        ));
+    }
+    lines
 }

@@ -34,12 +34,20 @@ pub(crate) fn run(arguments: &Predict) -> Result<()> {
     Ok(())
 }
 
-/// Comma-separated columns with their units.
+/// Comma-separated columns with their units. A twin that knows how sure it is has the bounds of the 90 % intervals after the readings, and whether the contact is
+/// unlike what taught.
 fn table(predicted: &Predicted) -> Result<String> {
     let mut out = String::new();
     write!(out, "provenance,press,indenter,time_s,x_mm,y_mm,depth_mm,force_n")?;
     for taxel in &predicted.taxels {
         write!(out, ",{taxel}_kpa")?;
+    }
+    let is_sure = predicted.presses.iter().all(|press| press.certainty.is_some());
+    if is_sure {
+        for taxel in &predicted.taxels {
+            write!(out, ",{taxel}_low_kpa,{taxel}_high_kpa")?;
+        }
+        write!(out, ",unlikeness,is_unlike")?;
     }
     writeln!(out)?;
     for press in &predicted.presses {
@@ -57,6 +65,17 @@ fn table(predicted: &Predicted) -> Result<String> {
             )?;
             for reading_kpa in readings_kpa {
                 write!(out, ",{reading_kpa:.5}")?;
+            }
+            if let (Some(sure), true) = (&press.certainty, is_sure) {
+                for (reading_kpa, half_kpa) in readings_kpa.iter().zip(&sure.half_width_kpa[frame]) {
+                    write!(
+                        out,
+                        ",{:.5},{:.5}",
+                        reading_kpa - half_kpa,
+                        reading_kpa + half_kpa
+                    )?;
+                }
+                write!(out, ",{:.3},{}", sure.unlikeness[frame], sure.is_unlike[frame])?;
             }
             writeln!(out)?;
         }

@@ -100,6 +100,7 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, progress: &dyn Progress) -> Result
             validation: Vec::new(),
             test: rest.clone(),
         },
+        certainty: None,
     };
     let folder = plan.out.join("model");
     let definition = taught.twin.definition.clone();

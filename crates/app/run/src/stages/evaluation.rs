@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use digitac::{Baselines, Evaluation, Model, Repeatability, Scale, evaluate, repeatability};
+use digitac::{
+    Baselines, CertaintyScore, Evaluation, Model, PairedPress, Repeatability, Scale, evaluate, repeatability,
+    score_certainty,
+};
 use serde::{Deserialize, Serialize};
 
 use super::training::VariantRecord;
@@ -55,7 +58,9 @@ impl Run {
                 )
             });
             let repeatability = repeatability(&presses, &scale);
-            let metrics = self.figures(&model, &evaluation, every_taxel, repeatability.as_ref())?;
+            let certainty = self.certainty(&model, &presses, &scale)?;
+            let mut metrics = self.figures(&model, &evaluation, every_taxel, repeatability.as_ref())?;
+            metrics.certainty = certainty;
             write_json(
                 &folder.join("evaluation.json"),
                 &HeldOut {
@@ -66,6 +71,23 @@ impl Run {
             write_json(&folder.join("metrics.json"), &metrics)
         })?;
         self.metrics()
+    }
+
+    /// Whether the twin's intervals hold on the presses that it never saw.
+    fn certainty(
+        &self,
+        model: &Model,
+        presses: &[PairedPress],
+        scale: &Scale,
+    ) -> Result<Option<CertaintyScore>, RunError> {
+        let Some(certainty) = &model.record.certainty else {
+            return Ok(None);
+        };
+        let simulation = self.simulation(&self.recording()?)?;
+        let contacts = self.contacts(&simulation.places)?;
+        let (twin, places) = ((&model.twin, certainty), (&simulation.places, &contacts[..]));
+        let test = &model.record.split.test;
+        Ok(Some(score_certainty(twin, presses, places, test, scale)))
     }
 
     /// The figures of the run: what `metrics.json` holds.
@@ -100,6 +122,7 @@ impl Run {
                 .iter()
                 .map(|v| (v.variant.to_string(), Figures::from(&v.test.overall)))
                 .collect(),
+            certainty: None,
             seed: self.record.seed,
         })
     }

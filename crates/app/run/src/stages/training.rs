@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use digitac::{
-    Epoch, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split, TrainSettings, Trained, Variant,
+    BenchSettings, Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale,
+    Score, Split, TrainSettings, Trained, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
@@ -56,7 +57,9 @@ impl Run {
                 &folder.join("variants.json"),
                 &training.variants(&trained, chosen),
             )?;
-            training.keep(chosen, split.clone(), &folder.join("held-out"))?;
+            let lessons = training.lessons();
+            let certainty = calibrate(&lessons, split, chosen.twin.variant())?;
+            training.keep(chosen, split.clone(), certainty.clone(), &folder.join("held-out"))?;
 
             let mut everything = split.clone();
             everything.train.append(&mut everything.test);
@@ -67,7 +70,9 @@ impl Run {
             };
             let complete = training.train(&everything, &again, &work)?;
             let complete = complete.first().ok_or_else(nothing_trained)?;
-            training.keep(complete, everything, &folder.join("complete"))
+            let teachers = [&everything.train[..], &everything.validation].concat();
+            let certainty = certainty.map(|certainty| certainty.taught_by(&lessons, &teachers));
+            training.keep(complete, everything, certainty, &folder.join("complete"))
         })?;
         self.publish_model()
     }
@@ -87,7 +92,7 @@ impl Run {
             };
             let trained = training.train(&everything, &settings, &work)?;
             let paper = trained.first().ok_or_else(nothing_trained)?;
-            training.keep(paper, everything, folder)
+            training.keep(paper, everything, None, folder)
         })
     }
 
@@ -117,7 +122,10 @@ struct Training<'a> {
     recording: Recording,
     simulation: Simulation,
     presses: Vec<PairedPress>,
+    contacts: Vec<Contact>,
     settings: TrainSettings,
+    bench: BenchSettings,
+    block_mm: f64,
     scale: Scale,
 }
 
@@ -126,16 +134,36 @@ impl<'a> Training<'a> {
         let recording = run.recording()?;
         let simulation = run.simulation(&recording)?;
         let presses = run.pairs()?;
-        let settings = run.resolved(&recording, &simulation.places).train;
+        let settings = run.resolved(&recording, &simulation.places);
+        let contacts = run.contacts(&simulation.places)?;
         let scale = Scale::of(&presses, run.left_out());
         Ok(Self {
             run,
             recording,
             simulation,
             presses,
-            settings,
+            contacts,
+            settings: settings.train,
+            bench: settings.bench,
+            block_mm: settings.split.block_mm,
             scale,
         })
+    }
+
+    /// What the twin is made again of, to find how sure it is.
+    fn lessons(&self) -> Lessons<'_> {
+        Lessons {
+            recording: &self.recording,
+            presses: &self.presses,
+            places: &self.simulation.places,
+            tables: &self.simulation.tables,
+            contacts: &self.contacts,
+            bench: &self.simulation.bench,
+            bench_settings: &self.bench,
+            train: &self.settings,
+            block_mm: self.block_mm,
+            scale: &self.scale,
+        }
     }
 
     /// Epochs of all variants, and of the chosen one once more.
@@ -177,7 +205,13 @@ impl<'a> Training<'a> {
     }
 
     /// Leaves a twin, which `split` says what it was taught with, in a folder.
-    fn keep(&self, trained: &Trained, split: Split, folder: &Path) -> Result<(), RunError> {
+    fn keep(
+        &self,
+        trained: &Trained,
+        split: Split,
+        certainty: Option<Certainty>,
+        folder: &Path,
+    ) -> Result<(), RunError> {
         let judged = (!split.test.is_empty()).then(|| {
             let held_out = &self.simulation.split;
             digitac::evaluate(&trained.twin, &self.presses, &held_out.test, &self.scale, None)
@@ -200,6 +234,7 @@ impl<'a> Training<'a> {
                 .map(|&press| press_checksum(&self.recording.presses[press]))
                 .collect(),
             split,
+            certainty,
         };
         let model = Model::new(
             trained.twin.clone(),

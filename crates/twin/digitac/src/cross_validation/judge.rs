@@ -7,10 +7,12 @@ use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
 
 use super::new_taxel;
+use super::unlike::{ToldApart, tell_apart};
 use crate::bench_fit::{fit_radius, radius_weights};
 use crate::{
-    Baselines, BenchEstimate, BenchSettings, DigitacError, Errors, Fold, PairSettings, Places, Scale, Score,
-    TrainSettings, Twin, Variant, choose, evaluate, pair, recalibrate, refine_bench, train,
+    Baselines, BenchEstimate, BenchSettings, Certainty, CertaintyScore, Contact, DigitacError, Errors, Fold,
+    Lessons, PairSettings, PairedPress, Places, Scale, Score, TrainSettings, Twin, Variant, calibrate,
+    choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
 };
 
 /// A recording, the gel at its places, and how twins of it are made.
@@ -21,6 +23,10 @@ pub struct Bench<'a> {
     pub places: &'a Places,
     /// Tables of all places, for each tip radius of the settings, or as described if there are none; `[n_radii][n_places]`.
     pub tables: &'a [Vec<DepthTable>],
+    /// Contacts at the places; `[n_places]`.
+    pub contacts: &'a [Contact],
+    /// Presses whose places fall into the same square of this side belong together, mm; `None` to judge no intervals, which take several times as long.
+    pub intervals_block_mm: Option<f64>,
     /// How the bench is fitted.
     pub bench: &'a BenchSettings,
     /// How frames are paired.
@@ -48,6 +54,12 @@ pub struct Judgement {
     pub kernel: Option<Errors>,
     /// The tip radius that the teaching presses gave, mm, if it was fitted.
     pub tip_radius_mm: Option<f64>,
+    /// The intervals of the twin's readings, if they were judged.
+    #[serde(default)]
+    pub certainty: Option<CertaintyScore>,
+    /// How well what was held out is told from what taught, if it is of another kind.
+    #[serde(default)]
+    pub told_apart: Option<ToldApart>,
     /// Frames deeper than the simulation went, which are scored all the same.
     pub n_frames_not_simulated: usize,
     /// All frames that were scored.
@@ -60,9 +72,7 @@ pub struct Judgement {
 /// # Errors
 /// Those of the fits; too few presses.
 pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> {
-    let Bench {
-        recording, places, ..
-    } = *bench;
+    let (recording, places) = (bench.recording, bench.places);
     let left_out = &bench.bench.left_out;
     let split = &fold.split;
     let teachers = [&split.train[..], &split.validation].concat();
@@ -108,15 +118,19 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         expected: "a variant to train".into(),
         found: "none".into(),
     })?;
-    let variant = chosen.twin.variant();
+    let twin = chosen.twin.clone();
+    let variant = twin.variant();
 
-    let test = bench.touch_new_files(fold, &teachers, &tables, &chosen.twin, &mut fitted)?;
+    let certainty = bench.certainty((fold, variant), &pairs, &tables, &fitted, &scale)?;
+    let test = bench.touch_new_files(fold, &teachers, &tables, &twin, &mut fitted)?;
     let pairs = pair(recording, places, &tables, &fitted, bench.pair)?;
     if let Some(taxel) = fold.taxel {
         for candidate in &mut trained {
             candidate.twin = new_taxel::with_gain(&candidate.twin, taxel, &pairs, &teachers, left_out)?;
         }
     }
+    let by_place = (places, bench.contacts);
+    let sure = |certainty| score_certainty((&twin, certainty), &pairs, by_place, &test, &scale);
     let judged = trained
         .iter()
         .map(|candidate| evaluate(&candidate.twin, &pairs, &test, &scale, kernel.as_ref()));
@@ -132,6 +146,8 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         variants: BTreeMap::new(),
         kernel: None,
         tip_radius_mm: found.tip_radius_mm.map(|radius| radius.value),
+        certainty: certainty.as_ref().map(sure),
+        told_apart: tell_apart(fold, &test, &pairs, places, bench.contacts),
         n_frames_not_simulated: 0,
         n_frames: 0,
     };
@@ -149,6 +165,33 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
 }
 
 impl Bench<'_> {
+    /// How sure the twin of a division is, if intervals are to be judged.
+    fn certainty(
+        &self,
+        (fold, variant): (&Fold, Variant),
+        pairs: &[PairedPress],
+        tables: &[DepthTable],
+        fitted: &BenchEstimate,
+        scale: &Scale,
+    ) -> Result<Option<Certainty>, DigitacError> {
+        let (Some(block_mm), None) = (self.intervals_block_mm, fold.taxel) else {
+            return Ok(None);
+        };
+        let lessons = Lessons {
+            recording: self.recording,
+            presses: pairs,
+            places: self.places,
+            tables,
+            contacts: self.contacts,
+            bench: fitted,
+            bench_settings: self.bench,
+            train: self.train,
+            block_mm,
+            scale,
+        };
+        calibrate(&lessons, &fold.split, variant)
+    }
+
     /// Adds the contact heights of files of which nothing teaches; gives the presses that are left to judge.
     fn touch_new_files(
         &self,

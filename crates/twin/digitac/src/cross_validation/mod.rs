@@ -2,5 +2,7 @@
 
 mod judge;
 mod new_taxel;
+mod unlike;
 
 pub use judge::{Bench, Judgement, judge};
+pub use unlike::ToldApart;

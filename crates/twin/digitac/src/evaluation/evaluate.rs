@@ -129,7 +129,7 @@ pub fn evaluate(
 }
 
 /// What a twin says of some presses of a recording, kPa; `[n_chosen][n_frames][n_taxels]`.
-fn predict_some(twin: &Twin, recorded: &[PairedPress], chosen: &[usize]) -> Vec<Vec<Vec<f64>>> {
+pub(crate) fn predict_some(twin: &Twin, recorded: &[PairedPress], chosen: &[usize]) -> Vec<Vec<Vec<f64>>> {
     let all: Vec<&Features> = recorded.iter().map(|press| &press.features).collect();
     let mut predictions = twin.predict(&all);
     chosen

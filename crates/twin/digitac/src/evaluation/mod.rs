@@ -8,8 +8,8 @@ mod recalibrate;
 mod repeatability;
 
 pub(crate) use baseline::StaticPolynomial;
-pub(crate) use evaluate::score_some;
 pub use evaluate::{Baselines, Evaluation, PressEvaluation, evaluate};
+pub(crate) use evaluate::{predict_some, score_some};
 pub(crate) use kernel::Kernel;
 pub(crate) use metric::score;
 pub use metric::{Errors, Mean, Scale, Score};

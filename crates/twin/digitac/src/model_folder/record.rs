@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
 use crate::network::Normalization;
-use crate::{BenchEstimate, Evaluation, Gains, Score, Split, TrainSettings, Twin, Variant};
+use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainSettings, Twin, Variant};
 
 /// A twin and its record.
 #[derive(Clone, Debug)]
@@ -47,6 +47,9 @@ pub struct ModelRecord {
     pub validation: Score,
     /// Errors on test presses at training; of an adapted twin, on those that it was not adapted with.
     pub test: Option<Score>,
+    /// How sure it is of its readings; `None` of models that were made before this was found, and of adapted ones.
+    #[serde(default)]
+    pub certainty: Option<Certainty>,
     /// The initial values that the weights are stored relative to; needed to read them.
     pub(crate) start: Start,
 }
@@ -79,6 +82,8 @@ pub struct Origin {
     pub taught_by: BTreeSet<String>,
     /// Which presses were used for training, validation and test.
     pub split: Split,
+    /// How sure the twin is of its readings, if it is known.
+    pub certainty: Option<Certainty>,
 }
 
 impl Model {
@@ -99,6 +104,7 @@ impl Model {
             taught_by: origin.taught_by,
             split: origin.split,
             validation,
+            certainty: origin.certainty,
             test: test.map(|evaluation| evaluation.twin.clone()),
             start: Start {
                 gains: physics.gains.clone(),

@@ -3,7 +3,7 @@
 use twintac_depth_table::{DepthCurves, DepthTable};
 use twintac_shape::Pose;
 
-use crate::{BenchEstimate, DigitacError, PortCorrection, Twin, TwinState, Variant};
+use crate::{BenchEstimate, Certainty, Contact, DigitacError, PortCorrection, Twin, TwinState, Variant};
 
 /// A twin in use whose sensor is pressed at one place: what its gel shows at a depth is read from the place's table. Steps allocate nothing.
 #[derive(Clone, Debug)]
@@ -16,6 +16,42 @@ pub struct TwinAtPlace {
     /// What the gel shows; `[n_taxels]`.
     seen: Vec<f64>,
     force_n: f64,
+    sureness: Option<Sureness>,
+}
+
+/// How sure the twin is of the last frame.
+#[derive(Clone, Debug)]
+struct Sureness {
+    certainty: Certainty,
+    contact: Contact,
+    unlikeness: f64,
+    /// The last readings, kPa; `[n_taxels]`; empty before the first frame.
+    before_kpa: Vec<f64>,
+    /// Their changes, kPa/s; `[n_taxels]`.
+    rates_kpa_per_s: Vec<f64>,
+    /// `[n_taxels]`
+    half_widths_kpa: Vec<f64>,
+    has_begun: bool,
+}
+
+impl Sureness {
+    fn step(&mut self, since_previous_s: f64, depth_mm: f64, readings_kpa: &[f64]) {
+        let changes = readings_kpa.iter().zip(&self.before_kpa);
+        for (rate, (now, before)) in self.rates_kpa_per_s.iter_mut().zip(changes) {
+            *rate = if self.has_begun {
+                (now - before) / since_previous_s.max(1e-6)
+            } else {
+                0.0
+            };
+        }
+        self.has_begun = true;
+        self.before_kpa.copy_from_slice(readings_kpa);
+        self.unlikeness = self.certainty.unlikeness(&self.contact, depth_mm);
+        let contact = (self.unlikeness, depth_mm);
+        let rates = &self.rates_kpa_per_s;
+        self.certainty
+            .half_widths_kpa(contact, readings_kpa, rates, &mut self.half_widths_kpa);
+    }
 }
 
 impl TwinAtPlace {
@@ -44,7 +80,26 @@ impl TwinAtPlace {
             contact_offset_mm: bench.contact_offset_mm(mounting),
             seen: vec![0.0; n_taxels],
             force_n: 0.0,
+            sureness: None,
         })
+    }
+
+    /// The same with a twin that says how sure it is, of a contact at this place.
+    #[must_use]
+    pub(crate) fn with_certainty(self, certainty: &Certainty, contact: Contact) -> Self {
+        let zeros = vec![0.0; self.seen.len()];
+        Self {
+            sureness: Some(Sureness {
+                certainty: certainty.clone(),
+                contact,
+                unlikeness: 0.0,
+                before_kpa: zeros.clone(),
+                rates_kpa_per_s: zeros.clone(),
+                half_widths_kpa: zeros,
+                has_begun: false,
+            }),
+            ..self
+        }
     }
 
     /// One more frame: from a depth below first touch, mm, negative above the gel, to what the barometers would read, kPa; `[n_taxels]`.
@@ -71,6 +126,27 @@ impl TwinAtPlace {
             self.correction.apply(depth_mm, slopes, &mut self.seen);
         }
         self.state.step(since_previous_s, &self.seen, readings_kpa);
+        if let Some(sureness) = &mut self.sureness {
+            sureness.step(since_previous_s, depth_mm, readings_kpa);
+        }
+    }
+
+    /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
+    #[must_use]
+    pub fn half_widths_kpa(&self) -> Option<&[f64]> {
+        let sureness = self.sureness.as_ref()?;
+        Some(&sureness.half_widths_kpa)
+    }
+
+    /// How unlike the contact of the last frame is to what taught the twin, and whether it is too unlike for readings and intervals to be trusted; `None` of a twin that
+    /// does not know.
+    #[must_use]
+    pub fn unlikeness(&self) -> Option<(f64, bool)> {
+        let sureness = self.sureness.as_ref()?;
+        Some((
+            sureness.unlikeness,
+            sureness.unlikeness > sureness.certainty.threshold,
+        ))
     }
 
     /// One more frame, from the indenter's pose in the gel's frame. Its height counts alone: place and turn are the table's.

@@ -7,7 +7,10 @@ use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
-use crate::{BenchEstimate, DigitacError, Features, PlaceSettings, Places, Twin, TwinAtPlace, features};
+use crate::{
+    BenchEstimate, Certainty, Contact, DigitacError, Features, PlaceSettings, Places, PressCertainty, Twin,
+    TwinAtPlace, features,
+};
 
 /// What a twin would read along a press. All vectors have the same length, `n_frames`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,21 +31,24 @@ pub struct Prediction {
     pub readings_kpa: Vec<Vec<f64>>,
     /// Whether the frame was simulated: not deeper than the gel could be pressed, whose last pressures stand for what is deeper.
     pub simulated: Vec<bool>,
+    /// How sure the twin is; `None` of a twin that does not know.
+    pub certainty: Option<PressCertainty>,
 }
 
 /// Steps a twin along planned presses, each from rest, with so many frames a second. The gel at their places comes from `source`; the bench
-/// is as it was found.
+/// is as it was found. `certainty` says how sure the twin is.
 ///
 /// # Errors
 /// An indenter that the source does not know; a place that it cannot press.
 pub fn predict(
-    twin: &Twin,
+    (twin, certainty): (&Twin, Option<&Certainty>),
     bench: &BenchEstimate,
     source: &dyn DepthTableSource,
     plans: &[PressPlan],
     rate_hz: f64,
 ) -> Result<Vec<Prediction>, DigitacError> {
-    along(twin, bench, source, plans, &unread(twin, source, plans, rate_hz)?)
+    let unread = unread(twin, source, plans, rate_hz)?;
+    along((twin, certainty), bench, source, plans, &unread)
 }
 
 /// The planned presses as ones that were made, without readings.
@@ -59,7 +65,7 @@ fn unread(
 
 /// Steps a twin along the presses of a recording, which are those of `plans`.
 fn along(
-    twin: &Twin,
+    (twin, certainty): (&Twin, Option<&Certainty>),
     bench: &BenchEstimate,
     source: &dyn DepthTableSource,
     plans: &[PressPlan],
@@ -68,9 +74,13 @@ fn along(
     let n_taxels = twin.taxels().len();
     let (places, tables) = simulate(recording, bench, source)?;
     let along = features(recording, &places, &tables, bench)?;
+    let contacts = match certainty {
+        Some(_) => Contact::of_places(&places, source)?,
+        None => Vec::new(),
+    };
     let mut state = twin.state();
     state.tare_untouched();
-    let predict = |(plan, along): (&PressPlan, Features)| {
+    let predict = |(press, (plan, along)): (usize, (&PressPlan, Features))| {
         state.rest(0);
         let mut before_s = 0.0;
         let seen = twin.physics().seen(&along).iter().zip(&along.time_s);
@@ -80,8 +90,12 @@ fn along(
             before_s = *time_s;
             readings_kpa
         });
+        let readings_kpa: Vec<Vec<f64>> = readings_kpa.collect();
+        let contact = |_| &contacts[places.of_press[press]];
         Prediction {
-            readings_kpa: readings_kpa.collect(),
+            certainty: certainty
+                .map(|certainty| certainty.along(contact, &along.time_s, &along.depth_mm, &readings_kpa)),
+            readings_kpa,
             name: plan.name.clone(),
             indenter: plan.indenter.clone(),
             place_mm: vec![[plan.x_mm, plan.y_mm]; along.n_frames()],
@@ -91,7 +105,7 @@ fn along(
             simulated: along.simulated,
         }
     };
-    Ok(plans.iter().zip(along).map(predict).collect())
+    Ok(plans.iter().zip(along).enumerate().map(predict).collect())
 }
 
 /// The same as a recording, for whatever learns from recordings: readings are the twin's, and what was not simulated counts as unusable.
@@ -107,7 +121,7 @@ pub fn simulated_recording(
 ) -> Result<Recording, DigitacError> {
     let n_taxels = twin.taxels().len();
     let unread = unread(twin, source, plans, rate_hz)?;
-    let predictions = along(twin, bench, source, plans, &unread)?;
+    let predictions = along((twin, None), bench, source, plans, &unread)?;
     let press = |(unread, predicted): (Press, Prediction)| {
         let usable = predicted
             .simulated
@@ -126,23 +140,30 @@ pub fn simulated_recording(
 }
 
 /// A twin that nothing touches yet, at the place of a planned press and down to its depth. The gel there comes from `source`; the bench is as
-/// it was found.
+/// it was found. `certainty` says how sure the twin is.
 ///
 /// # Errors
 /// An indenter that the source does not know; a place that it cannot press.
 pub fn at_place(
-    twin: &Twin,
+    (twin, certainty): (&Twin, Option<&Certainty>),
     bench: &BenchEstimate,
     source: &dyn DepthTableSource,
     plan: &PressPlan,
 ) -> Result<TwinAtPlace, DigitacError> {
     let deepest = made(plan, &[(0.0, plan.depth_mm)], source, twin.taxels().len())?;
-    let (_, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
+    let (places, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
     let table = tables.first().ok_or(DigitacError::DepthTableCount {
         expected: 1,
         found: 0,
     })?;
-    TwinAtPlace::new(twin, table, bench, &plan.indenter)
+    let twin = TwinAtPlace::new(twin, table, bench, &plan.indenter)?;
+    Ok(match certainty {
+        Some(certainty) => {
+            let contact = Contact::of_places(&places, source)?.swap_remove(0);
+            twin.with_certainty(certainty, contact)
+        }
+        None => twin,
+    })
 }
 
 fn simulate(

@@ -27,18 +27,21 @@ pub enum HeldOut {
     Indenter,
     /// The deepest fifth of the presses of each indenter.
     Depth,
+    /// The outermost third along the longer side of what was pressed, one end after the other.
+    Region,
     /// All readings of a taxel, one taxel after the other; its gain comes from one press.
     Taxel,
 }
 
 impl HeldOut {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Press,
         Self::Place,
         Self::File,
         Self::Indenter,
         Self::Depth,
+        Self::Region,
         Self::Taxel,
     ];
 
@@ -51,6 +54,7 @@ impl HeldOut {
             Self::File => "file",
             Self::Indenter => "indenter",
             Self::Depth => "depth",
+            Self::Region => "region",
             Self::Taxel => "taxel",
         }
     }
@@ -77,7 +81,9 @@ impl std::str::FromStr for HeldOut {
 /// One division of presses, with what it holds out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fold {
-    /// Which file, indenter or taxel; empty if presses were drawn.
+    /// What is held out together.
+    pub by: HeldOut,
+    /// Which file, indenter, end or taxel; empty if presses were drawn.
     pub held_out: String,
     /// The division.
     pub split: Split,
@@ -97,6 +103,7 @@ impl Fold {
         left_out: &BTreeSet<usize>,
     ) -> Result<Vec<Self>, DigitacError> {
         let fold = |held_out: &str, split: Split| Self {
+            by,
             held_out: held_out.to_owned(),
             split,
             taxel: None,
@@ -110,6 +117,14 @@ impl Fold {
             HeldOut::Depth => {
                 let test = deepest(recording)?;
                 Ok(vec![fold("", Split::around(recording, test, false, settings)?)])
+            }
+            HeldOut::Region => {
+                let around = |test| Split::around(recording, test, false, settings);
+                let [low, high] = ends(recording)?;
+                Ok(vec![
+                    fold("low end", around(low)?),
+                    fold("high end", around(high)?),
+                ])
             }
             HeldOut::File => one_by_one(recording, by, settings, |press| &press.mounting),
             HeldOut::Indenter => one_by_one(recording, by, settings, |press| &press.indenter),
@@ -146,6 +161,7 @@ fn one_by_one(
     }
     let fold = |(name, test): (&str, BTreeSet<usize>)| {
         Ok(Fold {
+            by,
             held_out: name.to_owned(),
             split: Split::around(recording, test, false, settings)?,
             taxel: None,
@@ -182,6 +198,31 @@ fn deepest(recording: &Recording) -> Result<BTreeSet<usize>, DigitacError> {
         );
     }
     Ok(deepest)
+}
+
+/// The presses of the outermost third at either end, along the axis on which places are spread the most.
+fn ends(recording: &Recording) -> Result<[BTreeSet<usize>; 2], DigitacError> {
+    let places: Vec<[f64; 2]> = recording
+        .presses
+        .iter()
+        .map(|press| Ok(deepest_pose(press)?.position_mm.truncate().to_array()))
+        .collect::<Result<_, DigitacError>>()?;
+    let limits = |axis: usize| {
+        let along = || places.iter().map(|place| place[axis]);
+        let (low, high) = (
+            along().fold(f64::INFINITY, f64::min),
+            along().fold(f64::NEG_INFINITY, f64::max),
+        );
+        (low, high - low)
+    };
+    let axis = usize::from(limits(1).1 > limits(0).1);
+    let (low, range) = limits(axis);
+    let share = |press: &usize| (places[*press][axis] - low) / range.max(f64::MIN_POSITIVE);
+    let all = 0..places.len();
+    Ok([
+        all.clone().filter(|press| share(press) < 1.0 / 3.0).collect(),
+        all.filter(|press| share(press) > 2.0 / 3.0).collect(),
+    ])
 }
 
 #[cfg(test)]

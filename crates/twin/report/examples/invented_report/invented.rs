@@ -41,6 +41,7 @@ impl Results {
             sensor: &self.sensor,
             provenance: self.provenance,
             evaluation: &self.evaluation,
+            certainty: None,
             repeatability: None,
             left_out: &self.left_out,
             presses: &self.presses,

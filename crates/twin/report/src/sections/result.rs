@@ -34,12 +34,19 @@ fn cards(report: &TwinReport<'_>) -> Vec<Card> {
     let (own, source) = (&report.evaluation.twin.overall, report.provenance);
     let presses = report.evaluation.presses.len().to_string();
     let paper = percent(PAPER_ERROR_PERCENT);
-    vec![
+    let mut cards = vec![
         card(percent(own.nearest_in_contact.percent), NEAREST, source),
         card(percent(own.all.percent), ALL, source),
         card(presses, "held-out presses", source),
         card(paper, "the paper, its own sensor", Provenance::Real),
-    ]
+    ];
+    if let Some(sure) = report.certainty {
+        let covered = percent(sure.covered_percent);
+        cards.insert(2, card(covered, "readings within their 90 % interval", source));
+        let width = percent(sure.mean_width_in_contact_percent);
+        cards.insert(3, card(width, "mean width of these intervals in contact", source));
+    }
+    cards
 }
 
 /// The twin, and what its errors are compared with, by the same measure and on the same presses.

@@ -60,6 +60,12 @@ fn comparison(report: &TwinReport<'_>) -> String {
         );
     }
     text += ".";
+    if let Some(sure) = report.certainty {
+        text += &format!(
+            " Of the readings in contact, {} lie within the twin's 90 % intervals.",
+            percent(sure.covered_in_contact_percent)
+        );
+    }
     if let Some(repeatability) = report.repeatability {
         text += &format!(
             " Two presses of the same place, depth and speed differ by {}.",

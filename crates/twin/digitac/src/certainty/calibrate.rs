@@ -1,0 +1,290 @@
+//! The twin made again without some of what taught it, to see how far off it then is.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+
+use super::certain::rates_kpa_per_s;
+use super::spread::{Known, Spread};
+use super::taught::{Taught, quantile};
+use super::{Certainty, Contact};
+use crate::bench_fit::{features, refine_bench};
+use crate::evaluation::predict_some;
+use crate::{
+    BenchEstimate, BenchSettings, DigitacError, PairedPress, Places, Scale, Split, TrainSettings, Variant,
+    train,
+};
+
+/// Part of the readings that is to lie within the intervals.
+const LEVEL: f64 = 0.9;
+/// How many times the twin is made again for the intervals.
+const N_FOLDS: usize = 4;
+/// Fewer inner presses than these tell nothing about errors.
+const FEWEST_PRESSES: usize = 8;
+/// Part of the frames of left-out presses that is not flagged.
+const NOT_FLAGGED: f64 = 0.99;
+/// Part of the presses that is left out as the deepest and as the outermost.
+const UNLIKE_PART: usize = 5;
+/// Limits of how much intervals widen for each unit of unlikeness.
+const GROWTH: [f64; 2] = [0.25, 10.0];
+
+/// What a twin is made of, to make it again.
+pub struct Lessons<'a> {
+    /// The presses, as recorded.
+    pub recording: &'a Recording,
+    /// The same beside the gel, with the bench as it was found.
+    pub presses: &'a [PairedPress],
+    /// Their places.
+    pub places: &'a Places,
+    /// Tables of the places; `[n_places]`.
+    pub tables: &'a [DepthTable],
+    /// Contacts at the places; `[n_places]`.
+    pub contacts: &'a [Contact],
+    /// What was found about the bench.
+    pub bench: &'a BenchEstimate,
+    /// How it is fitted.
+    pub bench_settings: &'a BenchSettings,
+    /// How twins are trained.
+    pub train: &'a TrainSettings,
+    /// Presses whose places fall into the same square of this side belong together, mm.
+    pub block_mm: f64,
+    /// Largest readings, and taxels that are left out.
+    pub scale: &'a Scale,
+}
+
+/// A frame of a press that did not teach the twin which predicted it.
+struct Frame {
+    unlikeness: f64,
+    depth_mm: f64,
+    /// What was known of each usable reading, and by how much it is off, kPa.
+    readings: Vec<(Known, f64)>,
+}
+
+/// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without a quarter of what taught, four times; and without
+/// the deepest and the outermost fifth. `None` if too few presses teach.
+///
+/// A perceptron on top of the physics is left out of these twins: it corrects little, and takes most of a training's time.
+///
+/// # Errors
+/// Those of the fits.
+pub fn calibrate(
+    lessons: &Lessons<'_>,
+    split: &Split,
+    variant: Variant,
+) -> Result<Option<Certainty>, DigitacError> {
+    let variant = variant.without_perceptron();
+    let teachers: BTreeSet<usize> = split.train.iter().chain(&split.validation).copied().collect();
+    let folds = lessons.folds(&teachers);
+    let n_presses: usize = folds.iter().map(BTreeSet::len).sum();
+    if n_presses < FEWEST_PRESSES {
+        return Ok(None);
+    }
+    let mut frames = Vec::new();
+    for fold in &folds {
+        frames.extend(lessons.without(fold, split, variant)?);
+    }
+    let errors: Vec<(Known, f64)> = frames
+        .iter()
+        .flat_map(|frame| frame.readings.iter().copied())
+        .collect();
+    let spread = Spread::fit(&errors);
+    let factor = |in_contact: bool| {
+        let of_state = frames.iter().filter(|frame| (frame.depth_mm > 0.0) == in_contact);
+        let mut ratios: Vec<f64> = of_state
+            .flat_map(|frame| &frame.readings)
+            .map(|(known, error)| error.abs() / spread.kpa(known))
+            .collect();
+        quantile(&mut ratios, LEVEL)
+    };
+    let (in_air, in_contact) = (factor(false), factor(true));
+    let Some(either) = in_contact.or(in_air) else {
+        return Ok(None);
+    };
+    let of_contact = frames.iter().filter(|frame| frame.depth_mm > 0.0);
+    let mut scores: Vec<f64> = of_contact.map(|frame| frame.unlikeness).collect();
+    let teachers: Vec<usize> = teachers.into_iter().collect();
+    let mut certainty = Certainty {
+        level_percent: 100.0 * LEVEL,
+        threshold: quantile(&mut scores, NOT_FLAGGED).unwrap_or(1.0).max(1.0),
+        learned_from: [n_presses, errors.len()],
+        taught: Taught::by(lessons.presses, lessons.places, lessons.contacts, &teachers),
+        spread,
+        factors: [in_air.unwrap_or(either), either],
+        growth: GROWTH[0],
+    };
+    let mut growths = Vec::new();
+    for unlike in lessons.unlike(&teachers)? {
+        let frames = lessons.without(&unlike, split, variant)?;
+        let unlike = frames
+            .iter()
+            .filter(|frame| frame.unlikeness > certainty.threshold);
+        growths.extend(unlike.flat_map(|frame| {
+            let usual = certainty.factor(frame.depth_mm);
+            let needed = frame.readings.iter();
+            needed.map(move |(known, error)| {
+                (error.abs() / (usual * spread.kpa(known)) - 1.0) / (frame.unlikeness - 1.0)
+            })
+        }));
+    }
+    let growth = quantile(&mut growths, LEVEL).unwrap_or(1.0);
+    certainty.growth = growth.clamp(GROWTH[0], GROWTH[1]);
+    Ok(Some(certainty))
+}
+
+impl Lessons<'_> {
+    fn place_mm(&self, press: usize) -> [f64; 2] {
+        self.contacts[self.places.of_press[press]].place_mm
+    }
+
+    /// Teachers divided by place, such that places of a division lie between others. The outermost of each indenter are in none.
+    fn folds(&self, teachers: &BTreeSet<usize>) -> Vec<BTreeSet<usize>> {
+        let mut limits: BTreeMap<&str, [[f64; 2]; 2]> = BTreeMap::new();
+        for &press in teachers {
+            let at = self.place_mm(press);
+            let of_indenter = limits.entry(&self.presses[press].indenter).or_insert([at; 2]);
+            for axis in 0..2 {
+                of_indenter[0][axis] = of_indenter[0][axis].min(at[axis]);
+                of_indenter[1][axis] = of_indenter[1][axis].max(at[axis]);
+            }
+        }
+        let mut groups: BTreeMap<(&str, i64, i64), Vec<usize>> = BTreeMap::new();
+        for &press in teachers {
+            let (indenter, at) = (&self.presses[press].indenter[..], self.place_mm(press));
+            let [low, high] = limits[indenter];
+            let is_outer =
+                |axis: usize| low[axis] < high[axis] && (at[axis] == low[axis] || at[axis] == high[axis]);
+            if !(is_outer(0) || is_outer(1)) {
+                let [x, y] = at.map(|mm| (mm / self.block_mm).round() as i64);
+                groups.entry((indenter, y, x)).or_default().push(press);
+            }
+        }
+        let mut folds = vec![BTreeSet::new(); N_FOLDS];
+        for (number, group) in groups.into_values().enumerate() {
+            folds[number % N_FOLDS].extend(group);
+        }
+        folds.retain(|fold| !fold.is_empty());
+        folds
+    }
+
+    /// The deepest teachers, and the outermost along the axis on which they are spread the most.
+    fn unlike(&self, teachers: &[usize]) -> Result<[BTreeSet<usize>; 2], DigitacError> {
+        let n = teachers.len().div_ceil(UNLIKE_PART);
+        let most = |value: &dyn Fn(usize) -> f64| {
+            let mut sorted = teachers.to_vec();
+            sorted.sort_by(|a, b| value(*b).total_cmp(&value(*a)));
+            sorted.into_iter().take(n).collect()
+        };
+        let depth_mm = |press: usize| {
+            let depths = self.presses[press].features.depth_mm.iter();
+            depths.copied().fold(0.0, f64::max)
+        };
+        let range = |axis: usize| {
+            let along = || teachers.iter().map(|&press| self.place_mm(press)[axis]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
+        let axis = usize::from(range(1) > range(0));
+        Ok([most(&depth_mm), most(&|press| self.place_mm(press)[axis])])
+    }
+
+    /// Frames of presses, predicted by a twin of what else teaches.
+    fn without(
+        &self,
+        left: &BTreeSet<usize>,
+        split: &Split,
+        variant: Variant,
+    ) -> Result<Vec<Frame>, DigitacError> {
+        let stays = |presses: &[usize]| -> Vec<usize> {
+            presses
+                .iter()
+                .copied()
+                .filter(|press| !left.contains(press))
+                .collect()
+        };
+        let (train_with, mut validation) = (stays(&split.train), stays(&split.validation));
+        if train_with.is_empty() {
+            return Ok(Vec::new());
+        }
+        let teachers = [&train_with[..], &validation].concat();
+        if validation.is_empty() {
+            validation.clone_from(&train_with);
+        }
+        let left: Vec<usize> = left.iter().copied().collect();
+        let presses = self.remade(&teachers)?;
+        let division = Split {
+            train: train_with,
+            validation,
+            test: left.clone(),
+        };
+        let settings = TrainSettings {
+            variants: vec![variant],
+            ..self.train.clone()
+        };
+        let taxels = &self.recording.taxels;
+        let trained = train(&presses, taxels, &division, self.scale, &settings, &mut |_| ())?;
+        let Some(trained) = trained.first() else {
+            return Ok(Vec::new());
+        };
+        let predicted = predict_some(&trained.twin, &presses, &left);
+        let taught = Taught::by(&presses, self.places, self.contacts, &teachers);
+        let mut frames = Vec::new();
+        for (&press, predicted) in left.iter().zip(&predicted) {
+            let contact = &self.contacts[self.places.of_press[press]];
+            frames.extend(self.frames(&presses[press], predicted, contact, &taught));
+        }
+        Ok(frames)
+    }
+
+    /// The presses beside the gel, with a bench that is fitted to some of them.
+    fn remade(&self, teachers: &[usize]) -> Result<Vec<PairedPress>, DigitacError> {
+        let settings = BenchSettings {
+            n_blocks: 0,
+            ..self.bench_settings.clone()
+        };
+        let (recording, places, tables) = (self.recording, self.places, self.tables);
+        let mut bench = refine_bench(recording, places, tables, teachers, self.bench, &settings)?;
+        for (mounting, height) in &self.bench.contact_offset_mm {
+            bench.contact_offset_mm.entry(mounting.clone()).or_insert(*height);
+        }
+        let features = features(recording, places, tables, &bench)?;
+        let pairs = self.presses.iter().zip(features);
+        Ok(pairs
+            .map(|(press, features)| PairedPress {
+                features,
+                ..press.clone()
+            })
+            .collect())
+    }
+
+    fn frames(
+        &self,
+        press: &PairedPress,
+        predicted_kpa: &[Vec<f64>],
+        contact: &Contact,
+        taught: &Taught,
+    ) -> Vec<Frame> {
+        let frame = |frame: usize| {
+            let row = &predicted_kpa[frame];
+            let rates = rates_kpa_per_s(&press.features.time_s, predicted_kpa, frame);
+            let depth_mm = press.features.depth_mm[frame];
+            let unlikeness = taught.unlikeness(contact.place_mm, &contact.underside, depth_mm);
+            let largest_kpa = row.iter().fold(0.0_f64, |most, kpa| most.max(kpa.abs()));
+            let usable = |taxel: &usize| press.valid[frame][*taxel] && !self.scale.left_out.contains(taxel);
+            let reading = |taxel: usize| {
+                let known = Known {
+                    reading_kpa: row[taxel],
+                    rate_kpa_per_s: rates[taxel],
+                    largest_kpa,
+                    unlikeness: unlikeness.min(1.0),
+                };
+                (known, press.readings_kpa[frame][taxel] - row[taxel])
+            };
+            Frame {
+                unlikeness,
+                depth_mm,
+                readings: (0..row.len()).filter(usable).map(reading).collect(),
+            }
+        };
+        (0..predicted_kpa.len()).map(frame).collect()
+    }
+}

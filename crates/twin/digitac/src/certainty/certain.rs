@@ -1,0 +1,114 @@
+//! How sure a twin is of its readings.
+
+use serde::{Deserialize, Serialize};
+
+use super::spread::{Known, Spread};
+use super::taught::Taught;
+use super::{Contact, Lessons};
+
+/// How sure a twin is of its readings, learned from presses that it was made again without.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certainty {
+    /// Part of the readings that lies within the intervals, %.
+    pub level_percent: f64,
+    /// Contacts more unlike than this to what taught are flagged.
+    pub threshold: f64,
+    /// Presses and readings behind the intervals.
+    pub learned_from: [usize; 2],
+    pub(super) taught: Taught,
+    pub(super) spread: Spread,
+    /// Half an interval over the spread, in the air and in contact.
+    pub(super) factors: [f64; 2],
+    /// By how much intervals widen for each unit of unlikeness above one.
+    pub(super) growth: f64,
+}
+
+/// How sure a twin is along a press. All vectors have the same length, `n_frames`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PressCertainty {
+    /// Half the width of the interval around each reading, kPa; `[n_frames][n_taxels]`.
+    pub half_width_kpa: Vec<Vec<f64>>,
+    /// How unlike the contact is to what taught the twin: below about one it lies between what taught.
+    pub unlikeness: Vec<f64>,
+    /// Whether the contact is too unlike for readings and intervals to be trusted.
+    pub is_unlike: Vec<bool>,
+}
+
+impl Certainty {
+    /// How unlike a contact at a depth is to what taught the twin: below about one it lies between what taught, in place, depth and the indenter's shape. 0 above the
+    /// gel. Allocates nothing.
+    #[must_use]
+    pub fn unlikeness(&self, contact: &Contact, depth_mm: f64) -> f64 {
+        self.taught
+            .unlikeness(contact.place_mm, &contact.underside, depth_mm)
+    }
+
+    /// Half the widths of the intervals around the readings of a frame, kPa; `[n_taxels]`. `rates_kpa_per_s` are the readings' changes since the frame before.
+    /// Allocates nothing.
+    pub fn half_widths_kpa(
+        &self,
+        (unlikeness, depth_mm): (f64, f64),
+        readings_kpa: &[f64],
+        rates_kpa_per_s: &[f64],
+        half_widths_kpa: &mut [f64],
+    ) {
+        let largest_kpa = readings_kpa.iter().fold(0.0_f64, |most, kpa| most.max(kpa.abs()));
+        let factor = self.factor(depth_mm) * self.widening(unlikeness);
+        let rows = readings_kpa.iter().zip(rates_kpa_per_s);
+        for (half_width, (&reading_kpa, &rate_kpa_per_s)) in half_widths_kpa.iter_mut().zip(rows) {
+            let known = Known {
+                reading_kpa,
+                rate_kpa_per_s,
+                largest_kpa,
+                unlikeness: unlikeness.min(1.0),
+            };
+            *half_width = factor * self.spread.kpa(&known);
+        }
+    }
+
+    /// How sure the twin is along a press. `contact` gives the contact of a frame.
+    pub fn along<'c>(
+        &self,
+        contact: impl Fn(usize) -> &'c Contact,
+        time_s: &[f64],
+        depth_mm: &[f64],
+        readings_kpa: &[Vec<f64>],
+    ) -> PressCertainty {
+        let mut found = PressCertainty::default();
+        for (frame, row) in readings_kpa.iter().enumerate() {
+            let rates = rates_kpa_per_s(time_s, readings_kpa, frame);
+            let unlikeness = self.unlikeness(contact(frame), depth_mm[frame]);
+            let mut half_widths_kpa = vec![0.0; row.len()];
+            self.half_widths_kpa((unlikeness, depth_mm[frame]), row, &rates, &mut half_widths_kpa);
+            found.half_width_kpa.push(half_widths_kpa);
+            found.unlikeness.push(unlikeness);
+            found.is_unlike.push(unlikeness > self.threshold);
+        }
+        found
+    }
+
+    /// The same for a twin that was then made of more presses: its intervals are those of the twin before, and these presses count as taught.
+    #[must_use]
+    pub fn taught_by(&self, lessons: &Lessons<'_>, teachers: &[usize]) -> Self {
+        Self {
+            taught: Taught::by(lessons.presses, lessons.places, lessons.contacts, teachers),
+            ..self.clone()
+        }
+    }
+
+    pub(super) fn factor(&self, depth_mm: f64) -> f64 {
+        self.factors[usize::from(depth_mm > 0.0)]
+    }
+
+    fn widening(&self, unlikeness: f64) -> f64 {
+        1.0 + self.growth * (unlikeness - 1.0).max(0.0)
+    }
+}
+
+/// How fast readings change at a frame, from the frame before, kPa/s.
+pub(super) fn rates_kpa_per_s(time_s: &[f64], readings_kpa: &[Vec<f64>], frame: usize) -> Vec<f64> {
+    let before = frame.saturating_sub(1);
+    let since_s = (time_s[frame] - time_s[before]).max(1e-6);
+    let pairs = readings_kpa[frame].iter().zip(&readings_kpa[before]);
+    pairs.map(|(now, then)| (now - then) / since_s).collect()
+}

@@ -1,0 +1,145 @@
+//! What taught a twin, and how unlike it another contact is.
+
+use serde::{Deserialize, Serialize};
+use twintac_depth_table::DepthTableSource;
+use twintac_shape::Underside;
+
+use crate::{DigitacError, PairedPress, Places};
+
+/// Places nearer than this are one, mm.
+const SAME_PLACE_MM: f64 = 0.1;
+/// Part of the taught places whose nearest other place is within one spacing.
+const SPACING_PART: f64 = 0.9;
+/// Undersides that dent a gel so much alike, at a millimetre, are one.
+const SAME_UNDERSIDE: f64 = 0.01;
+/// How much deeper than taught counts as one, over the deepest that taught. A reading grows with about the depth to the power of 1.5: this is a change of 2 %,
+/// about what a good twin errs by.
+const DEPTH_PART: f64 = 0.015;
+/// What unlikeness of undersides counts as one.
+const SHAPE_PART: f64 = 0.1;
+/// Over how many spacings a press tells about depth and shape.
+const REACH: f64 = 3.0;
+
+/// Where and with what a gel is touched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Place of the indenter's origin in the gel's plane, mm.
+    pub place_mm: [f64; 2],
+    /// The indenter's underside, turned as it presses.
+    pub underside: Underside,
+}
+
+impl Contact {
+    /// The contacts of a recording's places; `[n_places]`.
+    ///
+    /// # Errors
+    /// An indenter that the source does not know.
+    pub fn of_places(places: &Places, source: &dyn DepthTableSource) -> Result<Vec<Self>, DigitacError> {
+        let contact = |request| {
+            let underside = source.underside(request).map_err(DigitacError::Simulation)?;
+            let at = request.gel_from_indenter_at_touch.position_mm;
+            Ok(Self {
+                place_mm: [at.x, at.y],
+                underside,
+            })
+        };
+        places.requests.iter().map(contact).collect()
+    }
+}
+
+/// The presses that taught a twin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Taught {
+    /// What was pressed with, and how deep where.
+    undersides: Vec<(Underside, Vec<Deepest>)>,
+    /// How far places are from each other, mm.
+    spacing_mm: f64,
+    /// How much deeper than taught counts as one, mm.
+    depth_step_mm: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Deepest {
+    place_mm: [f64; 2],
+    depth_mm: f64,
+}
+
+impl Taught {
+    /// Gathers teachers; `contacts` are those of the places, `[n_places]`.
+    pub(crate) fn by(
+        presses: &[PairedPress],
+        places: &Places,
+        contacts: &[Contact],
+        teachers: &[usize],
+    ) -> Self {
+        let mut undersides: Vec<(Underside, Vec<Deepest>)> = Vec::new();
+        for &press in teachers {
+            let contact = &contacts[places.of_press[press]];
+            let depths = presses[press].features.depth_mm.iter().copied();
+            let deepest = Deepest {
+                place_mm: contact.place_mm,
+                depth_mm: depths.fold(0.0, f64::max),
+            };
+            let is_same = |known: &Underside| {
+                known == &contact.underside || known.unlikeness(&contact.underside, 1.0) < SAME_UNDERSIDE
+            };
+            match undersides.iter_mut().find(|(known, _)| is_same(known)) {
+                Some((_, own)) => own.push(deepest),
+                None => undersides.push((contact.underside.clone(), vec![deepest])),
+            }
+        }
+        let all = || undersides.iter().flat_map(|(_, own)| own);
+        let deepest_mm = all().map(|press| press.depth_mm).fold(0.0, f64::max);
+        let nearest_other = |press: &Deepest| {
+            let distances = all().map(|other| distance_mm(press.place_mm, other.place_mm));
+            let nearest = distances
+                .filter(|mm| *mm > SAME_PLACE_MM)
+                .fold(f64::INFINITY, f64::min);
+            nearest.is_finite().then_some(nearest)
+        };
+        let mut spacings: Vec<f64> = all().filter_map(nearest_other).collect();
+        Self {
+            spacing_mm: quantile(&mut spacings, SPACING_PART).unwrap_or(1.0),
+            depth_step_mm: DEPTH_PART * deepest_mm,
+            undersides,
+        }
+    }
+
+    /// How unlike a contact at a depth is to what taught. Below about one it lies between what taught; 0 above the gel.
+    ///
+    /// The larger of two: how far the nearest place that was pressed is, in spacings; and the least, over all presses, of how much less deep a press went, how unlike
+    /// its underside is and, three times as forgiving, how far it is, put together as sides of a box.
+    pub(crate) fn unlikeness(&self, place_mm: [f64; 2], underside: &Underside, depth_mm: f64) -> f64 {
+        if depth_mm <= 0.0 {
+            return 0.0;
+        }
+        let (mut nearest, mut least) = (f64::INFINITY, f64::INFINITY);
+        for (known, presses) in &self.undersides {
+            let shape = known.unlikeness(underside, depth_mm) / SHAPE_PART;
+            for press in presses {
+                let spacings = distance_mm(press.place_mm, place_mm) / self.spacing_mm;
+                let deeper = (depth_mm - press.depth_mm).max(0.0) / self.depth_step_mm.max(f64::MIN_POSITIVE);
+                nearest = nearest.min(spacings);
+                least = least.min((spacings / REACH).powi(2) + deeper.powi(2) + shape.powi(2));
+            }
+        }
+        nearest.max(least.sqrt())
+    }
+
+    /// How far taught places are from each other, mm.
+    pub(crate) fn spacing_mm(&self) -> f64 {
+        self.spacing_mm
+    }
+}
+
+fn distance_mm(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The number that a part of some numbers does not exceed; `None` of none. Sorts them.
+pub(super) fn quantile(numbers: &mut [f64], part: f64) -> Option<f64> {
+    numbers.sort_unstable_by(f64::total_cmp);
+    let last = numbers.len().checked_sub(1)?;
+    let at = (part * numbers.len() as f64).ceil() as usize;
+    Some(numbers[at.saturating_sub(1).min(last)])
+}

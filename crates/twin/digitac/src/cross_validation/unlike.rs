@@ -1,0 +1,79 @@
+//! Whether contacts of a kind that taught nothing are told from those of the kinds that taught.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::certainty::{Taught, area_under_curve};
+use crate::{Contact, Fold, HeldOut, PairedPress, Places};
+
+/// How well contacts of another kind are told from those of the kinds that taught, by how unlike they are to what taught.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToldApart {
+    /// The area under the curve of true over false alarms, %: how probable it is that a frame of the other kind is the more unlike one.
+    pub area_percent: f64,
+    /// Frames of the other kind: in contact, and deeper than all that taught with this indenter, or farther than one spacing from the region that taught, or with an indenter
+    /// that did not teach.
+    pub n_unlike: usize,
+    /// Frames of the kinds that taught: those of the validation presses in contact, which count as not taught here, where they are not deeper than what taught.
+    pub n_like: usize,
+}
+
+/// Compares what a division holds out with its validation presses. `None` for divisions whose presses are of the kinds that taught.
+pub(super) fn tell_apart(
+    fold: &Fold,
+    test: &[usize],
+    presses: &[PairedPress],
+    places: &Places,
+    contacts: &[Contact],
+) -> Option<ToldApart> {
+    if !matches!(fold.by, HeldOut::Depth | HeldOut::Indenter | HeldOut::Region) {
+        return None;
+    }
+    let taught = Taught::by(presses, places, contacts, &fold.split.train);
+    let mut deepest_mm: BTreeMap<&str, f64> = BTreeMap::new();
+    for &press in &fold.split.train {
+        let deepest = deepest_mm.entry(&presses[press].indenter).or_insert(0.0);
+        *deepest = presses[press]
+            .features
+            .depth_mm
+            .iter()
+            .copied()
+            .fold(*deepest, f64::max);
+    }
+    let place = |press: usize| contacts[places.of_press[press]].place_mm;
+    let is_beyond = |press: usize| {
+        (0..2).any(|axis| {
+            let along = || fold.split.train.iter().map(|&press| place(press)[axis]);
+            let low = along().fold(f64::INFINITY, f64::min) - taught.spacing_mm();
+            let high = along().fold(f64::NEG_INFINITY, f64::max) + taught.spacing_mm();
+            !(low..=high).contains(&place(press)[axis])
+        })
+    };
+    let scores = |chosen: &[usize], counts: &dyn Fn(usize, f64) -> bool| -> Vec<f64> {
+        let of_press = |&press: &usize| {
+            let contact = &contacts[places.of_press[press]];
+            let depths = presses[press].features.depth_mm.iter().copied();
+            let counted = depths.filter(move |depth_mm| *depth_mm > 0.0 && counts(press, *depth_mm));
+            let score = |depth_mm| taught.unlikeness(contact.place_mm, &contact.underside, depth_mm);
+            counted.map(score).collect::<Vec<f64>>()
+        };
+        chosen.iter().flat_map(of_press).collect()
+    };
+    let taught_mm = |press: usize| deepest_mm.get(&presses[press].indenter[..]).copied();
+    let is_deeper =
+        |press: usize, depth_mm: f64| taught_mm(press).is_some_and(|deepest_mm| depth_mm > deepest_mm);
+    let unlike = scores(test, &|press, depth_mm| match fold.by {
+        HeldOut::Depth => is_deeper(press, depth_mm),
+        HeldOut::Region => is_beyond(press),
+        _ => true,
+    });
+    let like = scores(&fold.split.validation, &|press, depth_mm| {
+        !is_deeper(press, depth_mm)
+    });
+    Some(ToldApart {
+        area_percent: 100.0 * area_under_curve(&like, &unlike)?,
+        n_unlike: unlike.len(),
+        n_like: like.len(),
+    })
+}
