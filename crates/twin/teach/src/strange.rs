@@ -54,7 +54,7 @@ impl Strange {
         let shape = self.shape(scale(sensor), random);
         let deepest_mm = deepest_mm(sensor);
         let (depth_mm, from_mm) = match self {
-            Self::Deeper => (1.3 * deepest_mm, deepest_mm),
+            Self::Deeper => (1.15 * deepest_mm, deepest_mm),
             _ => (random.random_range(0.35..1.0) * deepest_mm, 0.0),
         };
         let drawn = upright(sensor, &shape, place_mm, random.random_range(0.0..TAU), depth_mm);
