@@ -44,7 +44,7 @@ struct Header {
     novelty_unit: f32,
 }
 
-/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 3000 --exams 70 --slides 24`.
+/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 960 --exams 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
 impl FastGel {
