@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rayon::prelude::*;
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
 
@@ -19,7 +20,7 @@ use crate::{
 /// Part of the readings that is to lie within the intervals.
 const LEVEL: f64 = 0.9;
 /// How many times the twin is made again for the intervals.
-const N_FOLDS: usize = 4;
+const N_FOLDS: usize = 8;
 /// Fewer inner presses than these tell nothing about errors.
 const FEWEST_PRESSES: usize = 8;
 /// Part of the frames of left-out presses that is not flagged.
@@ -54,6 +55,7 @@ pub struct Lessons<'a> {
 }
 
 /// A frame of a press that did not teach the twin which predicted it.
+#[derive(Clone)]
 struct Frame {
     unlikeness: f64,
     depth_mm: f64,
@@ -61,8 +63,8 @@ struct Frame {
     readings: Vec<(Known, f64)>,
 }
 
-/// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without a quarter of what taught, four times; and without
-/// the deepest and the outermost fifth. `None` if too few presses teach.
+/// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without an eighth of what taught, eight times; and
+/// without the deepest and the outermost fifth. `None` if too few presses teach.
 ///
 /// A perceptron on top of the physics is left out of these twins: it corrects little, and takes most of a training's time.
 ///
@@ -80,10 +82,8 @@ pub fn calibrate(
     if n_presses < FEWEST_PRESSES {
         return Ok(None);
     }
-    let mut frames = Vec::new();
-    for fold in &folds {
-        frames.extend(lessons.without(fold, split, variant)?);
-    }
+    let of_folds = folds.par_iter().map(|fold| lessons.without(fold, split, variant));
+    let frames = of_folds.collect::<Result<Vec<_>, _>>()?.concat();
     let errors: Vec<(Known, f64)> = frames
         .iter()
         .flat_map(|frame| frame.readings.iter().copied())
