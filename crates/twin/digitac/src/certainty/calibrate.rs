@@ -20,7 +20,7 @@ use crate::{
 /// Part of the readings that is to lie within the intervals.
 const LEVEL: f64 = 0.9;
 /// How many times the twin is made again for the intervals.
-const N_FOLDS: usize = 8;
+const N_FOLDS: usize = 4;
 /// Fewer inner presses than these tell nothing about errors.
 const FEWEST_PRESSES: usize = 8;
 /// Part of the frames of left-out presses that is not flagged.
@@ -63,7 +63,7 @@ struct Frame {
     readings: Vec<(Known, f64)>,
 }
 
-/// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without an eighth of what taught, eight times; and
+/// Finds how sure a twin of a variant is, whose division of presses is given. Bench and twin are made again without a quarter of what taught, four times; and
 /// without the deepest and the outermost fifth. `None` if too few presses teach.
 ///
 /// A perceptron on top of the physics is left out of these twins: it corrects little, and takes most of a training's time.
