@@ -2,24 +2,24 @@
 
 mod imperfection;
 mod plot;
+mod presses;
 mod strange;
 pub(crate) mod tables;
 
 use std::path::Path;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use twintac_fast::{FastGel, Judgement, Lesson, TrainSettings, lesson_places_mm};
+use twintac_fast::{FastGel, Judgement, TrainSettings, lesson_places_mm};
 use twintac_plot::png;
 use twintac_recording::Provenance;
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_shape::Surfaces;
 use twintac_teach::{DRAW_VERSION, TeachError, Teacher, exam_surfaces};
 
-use crate::error::At;
 use crate::files::{read_json, sha256, write_file, write_json};
 use crate::progress::Work;
 use crate::{Progress, RunError};
+use presses::presses;
 use strange::strange_presses;
 
 pub use imperfection::{FoundImperfection, ImperfectionSources, find_imperfection, sensor_of_model};
@@ -209,33 +209,4 @@ fn check_folder(sensor: &Sensor, folder: &Path, seed: u64, own_indenters: bool) 
         return Ok(());
     }
     write_json(&path, &of)
-}
-
-/// Presses from their files, or solved now.
-fn presses(
-    name: &str,
-    n: u64,
-    folder: &Path,
-    progress: &dyn Progress,
-    solve: &(dyn Fn(u64) -> Result<Lesson, twintac_teach::TeachError> + Sync),
-) -> Result<Vec<Lesson>, RunError> {
-    let work = Work::start(progress, name, n as usize);
-    let presses = (0..n as usize).into_par_iter().with_max_len(1).map(|number| {
-        let path = folder.join(name).join(format!("{number:06}.json"));
-        let press = match read_json(&path) {
-            Ok(press) => press,
-            Err(_) => {
-                let press = solve(number as u64).at(|| format!("{name}, press {number}"))?;
-                let bytes = serde_json::to_vec(&press).map_err(|source| RunError::Json {
-                    what: path.display().to_string(),
-                    source,
-                })?;
-                write_file(&path, &bytes)?;
-                press
-            }
-        };
-        work.step("");
-        Ok(press)
-    });
-    presses.collect()
 }

@@ -8,7 +8,7 @@ use twintac_fast::{Body, FastGel, FastReader, GroupErrors, Lesson};
 use twintac_shape::{ShapeError, Surfaces};
 use twintac_teach::{Strange, Teacher};
 
-use super::presses;
+use super::presses::presses;
 use crate::{Progress, RunError};
 
 /// How well contacts unlike all that was taught are told from presses like lessons.

@@ -1,7 +1,6 @@
 //! What the read-out does, as rows of the data sheet.
 
-use super::sheet::row;
-use super::words::{if_found, number, or_not};
+use super::words::{if_found, number, or_not, row};
 use crate::{Characterization, Fate};
 
 /// Name, value and condition of each figure.

@@ -4,7 +4,7 @@ use twintac_plot::page::{Block, Cell, Page, Section};
 use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 
-use super::words::{NOT_GIVEN, if_found, number, or_not, span};
+use super::words::{NOT_GIVEN, if_found, number, or_not, row, span};
 use super::{parts, plots, read_out};
 use crate::Characterization;
 
@@ -58,13 +58,6 @@ impl Characterization {
         rows.extend(read_out::rows(self));
         rows
     }
-}
-
-/// Name, value and condition of a figure; one that is not given has no condition.
-pub(super) fn row(name: &str, value: String, condition: String) -> [String; 3] {
-    let is_missing = value.starts_with(NOT_GIVEN);
-    let condition = if is_missing { String::new() } else { condition };
-    [name.to_owned(), value, condition]
 }
 
 /// What the description says of the sensor.

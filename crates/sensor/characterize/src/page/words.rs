@@ -44,6 +44,13 @@ pub(super) fn if_found<T>(finding: &Finding<T>, words: impl FnOnce(&T) -> String
     finding.found().map_or(String::new(), words)
 }
 
+/// Name, value and condition of a figure; one that is not given has no condition.
+pub(super) fn row(name: &str, value: String, condition: String) -> [String; 3] {
+    let is_missing = value.starts_with(NOT_GIVEN);
+    let condition = if is_missing { String::new() } else { condition };
+    [name.to_owned(), value, condition]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -132,6 +132,17 @@ pub fn calibrate(
     Ok(Some(certainty))
 }
 
+impl Certainty {
+    /// The same for a twin that was then made of more presses: its intervals are those of the twin before, and these presses count as taught.
+    #[must_use]
+    pub fn taught_by(&self, lessons: &Lessons<'_>, teachers: &[usize]) -> Self {
+        Self {
+            taught: Taught::by(lessons.presses, lessons.places, lessons.contacts, teachers),
+            ..self.clone()
+        }
+    }
+}
+
 impl Lessons<'_> {
     fn place_mm(&self, press: usize) -> [f64; 2] {
         self.contacts[self.places.of_press[press]].place_mm

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Contact;
 use super::spread::{Known, Spread};
 use super::taught::Taught;
-use super::{Contact, Lessons};
 
 /// How sure a twin is of its readings, learned from presses that it was made again without.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,15 +85,6 @@ impl Certainty {
             found.is_unlike.push(unlikeness > self.threshold);
         }
         found
-    }
-
-    /// The same for a twin that was then made of more presses: its intervals are those of the twin before, and these presses count as taught.
-    #[must_use]
-    pub fn taught_by(&self, lessons: &Lessons<'_>, teachers: &[usize]) -> Self {
-        Self {
-            taught: Taught::by(lessons.presses, lessons.places, lessons.contacts, teachers),
-            ..self.clone()
-        }
     }
 
     pub(super) fn factor(&self, depth_mm: f64) -> f64 {
