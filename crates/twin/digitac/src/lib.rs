@@ -39,7 +39,7 @@ pub use bench_fit::{
     SmoothFactor, features, fit_bench, refine_bench,
 };
 pub use certainty::{
-    Certainty, CertaintyScore, Contact, Lessons, PressCertainty, calibrate, score_certainty,
+    Certainty, CertaintyScore, Contact, Lessons, PressCertainty, area_under_curve, calibrate, score_certainty,
 };
 pub use cross_validation::{Bench, Judgement, ToldApart, judge};
 pub use error::DigitacError;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use digitac::area_under_curve;
 use serde::{Deserialize, Serialize};
 use twintac_fast::{Body, FastGel, FastReader, GroupErrors, Lesson};
 use twintac_shape::{ShapeError, Surfaces};
@@ -60,14 +61,14 @@ impl Told {
         strange: &[(Strange, Vec<Lesson>)],
     ) -> Result<Self, ShapeError> {
         let mut reader = gel.reader();
-        let mut known = novelties(&mut reader, familiar)?;
-        known.sort_by(f32::total_cmp);
+        let known = novelties(&mut reader, familiar)?;
+        let auroc_percent = |strange: &[f64]| 100.0 * area_under_curve(&known, strange).unwrap_or(0.0);
         let (mut kinds, mut all) = (BTreeMap::new(), Vec::new());
         for (kind, presses) in strange {
             let novelties = novelties(&mut reader, presses)?;
             let told = ToldKind {
                 flagged_percent: flagged(&novelties),
-                auroc_percent: auroc(&known, &novelties),
+                auroc_percent: auroc_percent(&novelties),
                 errors: gel.judge(presses, &Surfaces::new())?.overall,
             };
             kinds.insert(kind.name().to_owned(), told);
@@ -76,34 +77,24 @@ impl Told {
         Ok(Self {
             familiar_flagged_percent: flagged(&known),
             kinds,
-            auroc_percent: auroc(&known, &all),
+            auroc_percent: auroc_percent(&all),
         })
     }
 }
 
 /// Of the moments at which shapes touch.
-fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f32>, ShapeError> {
+fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, ShapeError> {
     let mut all = Vec::new();
     for press in presses {
         let body = Body::new(&press.shape, &Surfaces::new())?;
         let frames = press.frames.iter();
         let novelties = frames.map(|frame| reader.novelty(&[(&body, frame.gel_from_indenter)]));
-        all.extend(novelties.filter(|novelty| *novelty > 0.0));
+        all.extend(novelties.filter(|novelty| *novelty > 0.0).map(f64::from));
     }
     Ok(all)
 }
 
-fn flagged(novelties: &[f32]) -> f64 {
+fn flagged(novelties: &[f64]) -> f64 {
     let n = novelties.iter().filter(|novelty| **novelty > 1.0).count();
     100.0 * n as f64 / novelties.len().max(1) as f64
-}
-
-/// `known` in increasing order.
-fn auroc(known: &[f32], strange: &[f32]) -> f64 {
-    let below = |novelty: &f32| {
-        let less = known.partition_point(|known| known < novelty);
-        let not_more = known.partition_point(|known| known <= novelty);
-        0.5 * (less + not_more) as f64 / known.len().max(1) as f64
-    };
-    100.0 * strange.iter().map(below).sum::<f64>() / strange.len().max(1) as f64
 }

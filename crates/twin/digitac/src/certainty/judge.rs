@@ -100,7 +100,8 @@ pub fn score_certainty(
 
 /// The area under the curve of true over false alarms: how probable it is that a number of `positive` is larger than one of `negative`; ties count half. `None` if
 /// one of them is empty.
-pub(crate) fn area_under_curve(negative: &[f64], positive: &[f64]) -> Option<f64> {
+#[must_use]
+pub fn area_under_curve(negative: &[f64], positive: &[f64]) -> Option<f64> {
     if negative.is_empty() || positive.is_empty() {
         return None;
     }

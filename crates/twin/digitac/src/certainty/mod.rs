@@ -14,7 +14,6 @@ mod tests;
 
 pub use calibrate::{Lessons, calibrate};
 pub use certain::{Certainty, PressCertainty};
-pub(crate) use judge::area_under_curve;
-pub use judge::{CertaintyScore, score_certainty};
+pub use judge::{CertaintyScore, area_under_curve, score_certainty};
 pub use taught::Contact;
 pub(crate) use taught::Taught;
