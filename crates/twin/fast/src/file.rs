@@ -40,7 +40,8 @@ struct Header {
     layout: Layout,
     ports_mm: Vec<glam::DVec2>,
     center_mm: glam::DVec3,
-    /// The distance from what was taught that counts as a novelty of 1.
+    /// The distance from what was taught that counts as a novelty of 1. Older versions have none.
+    #[serde(default)]
     novelty_unit: f32,
 }
 
@@ -109,7 +110,10 @@ impl FastGel {
         let header = entries.ok_or_else(|| FastFileError::new(format!("its header has no `{ENTRY}`")))?;
         let header: Header = serde_json::from_str(header).map_err(FastFileError::new)?;
         if header.version != VERSION {
-            let problem = format!("version {} where {VERSION} is expected", header.version);
+            let problem = format!(
+                "its version is {} where {VERSION} is expected; train it again with `twintac fast train`",
+                header.version
+            );
             return Err(FastFileError::new(problem));
         }
         let is_whole = |grid: &SurfaceGrid| grid.n.iter().product::<usize>() == grid.len();

@@ -80,6 +80,22 @@ fn a_file_reads_the_same_bits() {
 }
 
 #[test]
+fn a_file_of_another_version_says_what_to_do() {
+    let mut bytes = gel(3).0.to_bytes().unwrap();
+    let number = br#"\"version\":3"#;
+    let at = bytes
+        .windows(number.len())
+        .position(|window| window == number)
+        .unwrap();
+    bytes[at + number.len() - 1] = b'2';
+    let error = FastGel::from_bytes(&bytes).unwrap_err().to_string();
+    assert!(
+        error.contains("version is 2") && error.contains("fast train"),
+        "{error}"
+    );
+}
+
+#[test]
 fn bytes_that_are_no_fast_gel_are_an_error() {
     let (gel, _) = gel(1);
     let bytes = gel.to_bytes().unwrap();
@@ -198,4 +214,17 @@ fn ports_may_be_anywhere_on_the_floor() {
         "{}",
         places[largest]
     );
+}
+
+#[test]
+fn a_contact_unlike_what_was_taught_is_new() {
+    let (gel, _) = gel(3);
+    let mut reader = gel.reader();
+    let thin = Body::new(&Shape::Sphere { radius_mm: 1.0 }, &Surfaces::new()).unwrap();
+    let at = |z_mm: f64| Pose::from_position(DVec3::new(0.0, 0.0, z_mm));
+    // Lessons press a ball 1, 2 and 3 mm deep, a multiple of the grid's spacing aside.
+    assert!(reader.novelty(&[(&ball(), at(7.5))]) < 1.0);
+    assert!(reader.novelty(&[(&thin, at(7.5))]) > 1.0);
+    assert!(reader.novelty(&[(&ball(), at(3.5))]) > 1.0);
+    assert_eq!(reader.novelty(&[(&ball(), at(9.5))]), 0.0);
 }
