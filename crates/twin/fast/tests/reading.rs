@@ -222,7 +222,7 @@ fn a_contact_unlike_what_was_taught_is_new() {
     let mut reader = gel.reader();
     let thin = Body::new(&Shape::Sphere { radius_mm: 1.0 }, &Surfaces::new()).unwrap();
     let at = |z_mm: f64| Pose::from_position(DVec3::new(0.0, 0.0, z_mm));
-    // Lessons press a ball 1, 2 and 3 mm deep, a multiple of the grid's spacing aside.
+    // A lesson presses a ball 1, 2 and 3 mm deep there.
     assert!(reader.novelty(&[(&ball(), at(7.5))]) < 1.0);
     assert!(reader.novelty(&[(&thin, at(7.5))]) > 1.0);
     assert!(reader.novelty(&[(&ball(), at(3.5))]) > 1.0);

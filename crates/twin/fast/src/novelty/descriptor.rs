@@ -1,4 +1,4 @@
-//! A contact in a few numbers that do not depend on where on the gel it is, nor how it is turned about the vertical.
+//! A contact in a few numbers that do not depend on where on the gel it is, and little on how it is turned about the vertical.
 
 use crate::contact::N_CHANNELS;
 use crate::surface::SurfaceGrid;
