@@ -69,7 +69,7 @@ impl FastReader {
         self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
     }
 
-    /// How unlike what was taught a contact is: 0 where no point of the grid, 2 mm apart over PhysTac, lies inside a body; above 1 where it is farther from all that was taught than 99 of 100 contacts of the
+    /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where it is farther from all that was taught than 99 of 100 contacts of the
     /// same kinds, so that readings and force may be wrong. It looks at how deep, large, steep and scattered the contact is, not at where it is.
     ///
     /// # Panics

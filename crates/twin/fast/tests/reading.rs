@@ -226,5 +226,8 @@ fn a_contact_unlike_what_was_taught_is_new() {
     assert!(reader.novelty(&[(&ball(), at(7.5))]) < 1.0);
     assert!(reader.novelty(&[(&thin, at(7.5))]) > 1.0);
     assert!(reader.novelty(&[(&ball(), at(3.5))]) > 1.0);
-    assert_eq!(reader.novelty(&[(&ball(), at(9.5))]), 0.0);
+    assert_eq!(reader.novelty(&[(&ball(), at(12.0))]), 0.0);
+    // Between the points of the grid, none of which is inside it.
+    let between = Pose::from_position(DVec3::new(1.0, 1.0, 8.0));
+    assert!(reader.novelty(&[(&thin, between)]) > 1.0);
 }

@@ -82,7 +82,7 @@ impl Told {
     }
 }
 
-/// Of all moments; 0 where a shape presses between the points of the grid and is not seen.
+/// Of all moments.
 fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, ShapeError> {
     let mut all = Vec::new();
     for press in presses {

@@ -9,7 +9,8 @@ const N_OF_LEVEL: usize = 5;
 /// Numbers of a contact.
 pub(crate) const N_TRAITS: usize = N_CHANNELS * N_OF_LEVEL;
 
-/// How deep, how large, how steep and how scattered what touches is, at each height; `None` where nothing touches.
+/// How deep, how large, how steep and how scattered what touches is, at each height; `None` where nothing is near. A thin body may press with none of the
+/// grid's points inside it: what is near counts.
 ///
 /// `inputs` are those of a grid's points. `[n_points * N_CHANNELS]`
 pub(crate) fn traits(grid: &SurfaceGrid, inputs: &[f32]) -> Option<[f32; N_TRAITS]> {
@@ -18,8 +19,7 @@ pub(crate) fn traits(grid: &SurfaceGrid, inputs: &[f32]) -> Option<[f32; N_TRAIT
     for (level, traits) in traits.as_chunks_mut::<N_OF_LEVEL>().0.iter_mut().enumerate() {
         *traits = of_level(grid, points, level);
     }
-    // At the surface of what touches, the share is 1.
-    (traits[0] > 1.0).then_some(traits)
+    (traits[0] > 0.0).then_some(traits)
 }
 
 fn of_level(grid: &SurfaceGrid, points: &[[f32; N_CHANNELS]], level: usize) -> [f32; N_OF_LEVEL] {

@@ -62,7 +62,7 @@ impl Novelty {
         novelty
     }
 
-    /// 0 where nothing touches, above 1 where a contact is farther from all that were taught than 99 of 100 of the same kinds.
+    /// 0 where nothing is near, above 1 where a contact is farther from all that were taught than 99 of 100 of the same kinds.
     pub(crate) fn score(&self, grid: &SurfaceGrid, inputs: &[f32]) -> f32 {
         let Some(mut traits) = traits(grid, of_grid(grid, inputs)) else {
             return 0.0;
