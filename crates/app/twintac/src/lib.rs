@@ -40,7 +40,7 @@
 //! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
-//! | [`FastGel`], [`FastBatch`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call | `fast` |
+//! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
 //! | [`SensorBatch`], [`Imperfection`] | the same with a twin's gains and memory, and with what no two sensors have alike | `sensors` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
@@ -188,7 +188,7 @@ pub use twin::Twin;
 pub use digitac::{Prediction, PressCertainty, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
-pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Touch};
+pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Friction, Touch};
 #[cfg(feature = "fast")]
 pub use twintac_inverse::{
     Contact, FloorMap, Inverse, InverseSettings, KnownShape, ReadingTable, TableModel, Tracker,

@@ -4,8 +4,11 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Rows and columns of a product that are summed up side by side.
-const TILE: [usize; 2] = [4, 8];
+/// Rows of a product that are summed up side by side: with the widest of the columns below, as many sums as vector registers hold.
+const HEIGHT: usize = 6;
+
+/// Columns that are summed up side by side, as many as there are.
+const WIDTHS: [usize; 4] = [16, 4, 2, 1];
 
 /// Terms of a product that are summed up before they are added to the rest.
 const BLOCK: usize = 512;
@@ -119,26 +122,17 @@ impl WithSimd for Product<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) {
-        let [height, width] = TILE;
-        let (n_rows, n_columns) = (self.result.n_rows(), self.result.n_columns);
-        let n_terms = self.right.n_rows();
+        let (n_rows, n_terms) = (self.result.n_rows(), self.right.n_rows());
         for start in (0..n_terms).step_by(BLOCK) {
             let terms = start..n_terms.min(start + BLOCK);
             let mut row = 0;
+            while row + HEIGHT <= n_rows {
+                self.rows::<HEIGHT>(row, terms.clone());
+                row += HEIGHT;
+            }
             while row < n_rows {
-                let is_high = row + height <= n_rows;
-                let mut column = 0;
-                while column < n_columns {
-                    let is_wide = column + width <= n_columns;
-                    match (is_high, is_wide) {
-                        (true, true) => self.tile::<{ TILE[0] }, { TILE[1] }>(row, column, terms.clone()),
-                        (true, false) => self.tile::<{ TILE[0] }, 1>(row, column, terms.clone()),
-                        (false, true) => self.tile::<1, { TILE[1] }>(row, column, terms.clone()),
-                        (false, false) => self.tile::<1, 1>(row, column, terms.clone()),
-                    }
-                    column += if is_wide { width } else { 1 };
-                }
-                row += if is_high { height } else { 1 };
+                self.rows::<1>(row, terms.clone());
+                row += 1;
             }
         }
     }
@@ -146,7 +140,28 @@ impl WithSimd for Product<'_> {
 
 impl Product<'_> {
     #[inline(always)]
-    fn tile<const H: usize, const W: usize>(&mut self, row: usize, column: usize, terms: Range<usize>) {
+    fn rows<const H: usize>(&mut self, row: usize, terms: Range<usize>) {
+        let n_columns = self.result.n_columns;
+        let mut column = 0;
+        while column < n_columns {
+            let terms = terms.clone();
+            column += match n_columns - column {
+                left if left >= WIDTHS[0] => self.tile::<H, { WIDTHS[0] }>(row, column, terms),
+                left if left >= WIDTHS[1] => self.tile::<H, { WIDTHS[1] }>(row, column, terms),
+                left if left >= WIDTHS[2] => self.tile::<H, { WIDTHS[2] }>(row, column, terms),
+                _ => self.tile::<H, { WIDTHS[3] }>(row, column, terms),
+            };
+        }
+    }
+
+    /// Returns its columns.
+    #[inline(always)]
+    fn tile<const H: usize, const W: usize>(
+        &mut self,
+        row: usize,
+        column: usize,
+        terms: Range<usize>,
+    ) -> usize {
         let [row_stride, term_stride] = self.strides;
         let n_columns = self.right.n_columns;
         let mut sums = [[0.0_f32; W]; H];
@@ -168,6 +183,7 @@ impl Product<'_> {
                 .zip(sums)
                 .for_each(|(result, sum)| *result += sum);
         }
+        W
     }
 }
 

@@ -112,6 +112,8 @@ impl ContactGrid {
         };
         match &body.form {
             Form::Ball(ball) => self.add_placed(&placed, inputs, ball),
+            Form::Box(rounded) => self.add_placed(&placed, inputs, rounded),
+            Form::Cylinder(rounded) => self.add_placed(&placed, inputs, rounded),
             Form::Sampled(samples) => self.add_placed(&placed, inputs, samples),
         }
     }

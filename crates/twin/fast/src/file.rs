@@ -19,7 +19,7 @@ use crate::surface::SurfaceGrid;
 const ENTRY: &str = "twintac-fast";
 
 /// Version of the file's layout.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Bytes that are no fast gel: what is wrong with them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -45,7 +45,7 @@ struct Header {
     novelty_unit: f32,
 }
 
-/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 960 --exams 70 --slides 24`.
+/// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
 impl FastGel {

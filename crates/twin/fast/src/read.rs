@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use twintac_shape::Pose;
 
-use crate::contact::ContactPoints;
+use crate::contact::{ContactPoints, N_CHANNELS};
 use crate::engine::{Engine, Scratch};
+use crate::friction::contact_area_mm2;
 use crate::novelty::Novelty;
 use crate::surface::SurfaceGrid;
 use crate::{Body, FastGel, Touch};
@@ -70,7 +71,7 @@ impl FastReader {
     }
 
     /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where it is farther from all that was taught than 99 of 100 contacts of the
-    /// same kinds, so that readings and force may be wrong. It looks at how deep, large, steep and scattered the contact is, not at where it is.
+    /// same kinds, so that readings and force may be wrong. It looks at how deep, steep, large, tilted and uneven the contact is, not at where it is.
     ///
     /// # Panics
     /// A pose that is not finite.
@@ -78,6 +79,16 @@ impl FastReader {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
         self.novelty.score(&self.grid, inputs)
+    }
+
+    /// Area of the gel that carries bodies, mm²; an estimate from points 2 mm apart, for [`Friction`](crate::Friction).
+    ///
+    /// # Panics
+    /// A pose that is not finite.
+    pub fn contact_area_mm2(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
+        let inputs = &mut self.inputs[..self.points.n_inputs()];
+        self.points.fill(bodies.iter().copied(), inputs);
+        contact_area_mm2(&self.grid, &inputs[..N_CHANNELS * self.grid.len()])
     }
 
     /// [`Self::read`] of many sensors, one after the other on the calling thread. A sensor's numbers do not depend on the others.

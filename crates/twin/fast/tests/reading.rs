@@ -82,7 +82,7 @@ fn a_file_reads_the_same_bits() {
 #[test]
 fn a_file_of_another_version_says_what_to_do() {
     let mut bytes = gel(3).0.to_bytes().unwrap();
-    let number = br#"\"version\":3"#;
+    let number = br#"\"version\":4"#;
     let at = bytes
         .windows(number.len())
         .position(|window| window == number)

@@ -58,7 +58,7 @@ impl Default for FastSettings {
             n_lessons: 2000,
             n_exams: 100,
             n_slides: 40,
-            n_strange: 12,
+            n_strange: 24,
             own_indenters: false,
             train: TrainSettings::default(),
         }

@@ -1,62 +1,138 @@
 //! A contact in a few numbers that do not depend on where on the gel it is, and little on how it is turned about the vertical.
 
+use glam::{Vec2, Vec3};
+
 use crate::contact::N_CHANNELS;
 use crate::surface::SurfaceGrid;
 
 /// Numbers for each height at which distances are taken.
-const N_OF_LEVEL: usize = 5;
+const N_OF_LEVEL: usize = 6;
 
 /// Numbers of a contact.
 pub(crate) const N_TRAITS: usize = N_CHANNELS * N_OF_LEVEL;
 
-/// How deep, how large, how steep and how scattered what touches is, at each height; `None` where nothing is near. A thin body may press with none of the
+/// What a point near a body weighs where points inside count, so that a body with none inside has a plane too.
+const NEAR_WEIGHT: f32 = 1e-3;
+
+/// Added to the determinant of second moments, points of the grid to the fourth: a contact of few points has hardly a tilt.
+const LEAST_DETERMINANT: f32 = 0.02;
+
+/// How deep, steep, large, tilted and uneven what touches is, at each height; `None` where nothing is near. A thin body may press with none of the
 /// grid's points inside it: what is near counts.
 ///
 /// `inputs` are those of a grid's points. `[n_points * N_CHANNELS]`
 pub(crate) fn traits(grid: &SurfaceGrid, inputs: &[f32]) -> Option<[f32; N_TRAITS]> {
     let points = inputs.as_chunks::<N_CHANNELS>().0;
     let mut traits = [0.0; N_TRAITS];
-    for (level, traits) in traits.as_chunks_mut::<N_OF_LEVEL>().0.iter_mut().enumerate() {
-        *traits = of_level(grid, points, level);
+    for (number, traits) in traits.as_chunks_mut::<N_OF_LEVEL>().0.iter_mut().enumerate() {
+        *traits = Level { grid, points, number }.traits();
     }
     (traits[0] > 0.0).then_some(traits)
 }
 
-fn of_level(grid: &SurfaceGrid, points: &[[f32; N_CHANNELS]], level: usize) -> [f32; N_OF_LEVEL] {
-    let [n_x, n_y] = grid.n;
-    let share = |i: usize, j: usize| points[j * n_x + i][level];
-    let (mut deepest, mut near, mut inside, mut steps) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
-    let (mut sum, mut squares) = ([0.0_f32; 2], 0.0_f32);
-    for j in 0..n_y {
-        for i in 0..n_x {
-            let here = share(i, j);
-            if here <= 0.0 {
-                continue;
-            }
-            let [x, y] = [i as f32, j as f32];
-            deepest = deepest.max(here);
-            near += here;
-            inside += (here - 1.0).max(0.0);
-            sum = [sum[0] + here * x, sum[1] + here * y];
-            squares += here * (x * x + y * y);
+/// What is near at one height.
+struct Level<'a> {
+    grid: &'a SurfaceGrid,
+    points: &'a [[f32; N_CHANNELS]],
+    number: usize,
+}
+
+/// The plane that comes nearest to the shares of the points, by weights.
+struct Plane {
+    /// Sum of the weights.
+    weight: f32,
+    /// Standard deviation of the points from their middle, points of the grid.
+    spread: f32,
+    /// Its steepness, a point.
+    slope: f32,
+    /// Standard deviation of the shares from it.
+    rest: f32,
+}
+
+impl Level<'_> {
+    fn share(&self, [i, j]: [usize; 2]) -> f32 {
+        self.points[j * self.grid.n[0] + i][self.number]
+    }
+
+    /// Columns, rows and shares of the points that something is near.
+    fn near(&self) -> impl Iterator<Item = ([usize; 2], f32)> {
+        let [n_x, n_y] = self.grid.n;
+        let all = (0..n_y).flat_map(move |j| (0..n_x).map(move |i| [i, j]));
+        all.map(|at| (at, self.share(at)))
+            .filter(|(_, share)| *share > 0.0)
+    }
+
+    fn traits(&self) -> [f32; N_OF_LEVEL] {
+        let deepest = self.near().map(|(_, share)| share).fold(0.0, f32::max);
+        if deepest <= 0.0 {
+            return [0.0; N_OF_LEVEL];
+        }
+        let around = self.plane(|share| share);
+        let inside = self.plane(|share| (share - 1.0).max(0.0) + NEAR_WEIGHT);
+        // Roots, so that small tilts count.
+        [
+            deepest,
+            self.steps() / around.weight,
+            around.spread,
+            around.slope.sqrt(),
+            inside.slope.sqrt(),
+            inside.rest.sqrt(),
+        ]
+    }
+
+    /// Sum of the differences between neighbours.
+    fn steps(&self) -> f32 {
+        let [n_x, n_y] = self.grid.n;
+        let mut steps = 0.0;
+        for ([i, j], share) in self.near() {
             let beside = [
-                (i + 1 < n_x).then(|| share(i + 1, j)),
-                (j + 1 < n_y).then(|| share(i, j + 1)),
+                (i + 1 < n_x).then_some([i + 1, j]),
+                (j + 1 < n_y).then_some([i, j + 1]),
             ];
-            steps += beside
-                .into_iter()
-                .flatten()
-                .map(|beside| (beside - here).abs())
-                .sum::<f32>();
+            for beside in beside.into_iter().flatten() {
+                steps += (self.share(beside) - share).abs();
+            }
+        }
+        steps
+    }
+
+    fn plane(&self, weight: impl Fn(f32) -> f32) -> Plane {
+        let places = || {
+            self.near().map(|([i, j], share)| {
+                let place = Vec3::new(i as f32, j as f32, share);
+                (place, weight(share))
+            })
+        };
+        let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+        for (place, weight) in places() {
+            sum += weight * place;
+            total += weight;
+        }
+        let middle = sum / total;
+        // Second moments about the middle: of the places, and of places with shares.
+        let (mut squares, mut products) = (Vec3::ZERO, Vec3::ZERO);
+        for (place, weight) in places() {
+            let Vec3 { x, y, z } = place - middle;
+            squares += weight * Vec3::new(x * x, y * y, z * z);
+            products += weight * Vec3::new(x * y, x * z, y * z);
+        }
+        let (squares, products) = (squares / total, products / total);
+        let determinant = squares.x * squares.y - products.x * products.x + LEAST_DETERMINANT;
+        let slope = Vec2::new(
+            squares.y * products.y - products.x * products.z,
+            squares.x * products.z - products.x * products.y,
+        ) / determinant;
+        let rest = places().map(|(place, weight)| {
+            let from = place - middle;
+            weight * (from.z - slope.dot(from.truncate())).powi(2)
+        });
+        Plane {
+            weight: total,
+            spread: (squares.x + squares.y).sqrt(),
+            slope: slope.length(),
+            rest: (rest.sum::<f32>() / total).sqrt(),
         }
     }
-    if near <= 0.0 {
-        return [0.0; N_OF_LEVEL];
-    }
-    let [x, y] = sum.map(|sum| sum / near);
-    let spread = (squares / near - x * x - y * y).max(0.0);
-    // Roots, so that a trait grows with a length of the contact.
-    [deepest, near.sqrt(), inside.sqrt(), steps / near, spread.sqrt()]
 }
 
 #[cfg(test)]

@@ -4,13 +4,10 @@ use twintac_learn::Matrix;
 
 use super::descriptor::{N_TRAITS, traits};
 use crate::surface::SurfaceGrid;
-use crate::training::Frames;
+use crate::training::{Frames, TaughtFrame};
 
-/// Contacts that stand for all that were taught.
-const N_KEPT: usize = 4096;
-
-/// One lesson of so many is not kept, but says how far contacts of the same kinds are from those that are.
-const ONE_APART_OF: usize = 8;
+/// One lesson of so many says how far its contacts are from those of all other lessons.
+const ONE_ASKED_OF: usize = 8;
 
 /// The part of those contacts whose novelty is at most 1.
 const FAMILIAR: f64 = 0.99;
@@ -18,7 +15,7 @@ const FAMILIAR: f64 = 0.99;
 /// What was taught, as far as it tells what is new.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Novelty {
-    /// Traits of contacts, each over its deviation among all that were taught. `[n_kept][N_TRAITS]`
+    /// Traits of all contacts that were taught, each over its deviation among those that press. `[n_kept][N_TRAITS]`
     pub(crate) kept: Matrix,
     /// One over the deviation of each trait. `[N_TRAITS]`
     pub(crate) scale: Vec<f32>,
@@ -29,37 +26,41 @@ pub(crate) struct Novelty {
 impl Novelty {
     /// Of the frames of lessons.
     pub(crate) fn of(frames: &Frames, grid: &SurfaceGrid) -> Self {
-        let contacts: Vec<(usize, [f32; N_TRAITS])> = frames
+        let contacts: Vec<(&TaughtFrame, [f32; N_TRAITS])> = frames
             .frames
             .iter()
-            .filter_map(|frame| Some((frame.lesson, traits(grid, of_grid(grid, &frame.inputs))?)))
+            .filter_map(|frame| Some((frame, traits(grid, of_grid(grid, &frame.inputs))?)))
             .collect();
+        // What only hovers is known too, but would make pressed contacts look alike.
+        let pressed = || contacts.iter().filter(|(frame, _)| frame.wrench[2] != 0.0);
         let scale: Vec<f32> = (0..N_TRAITS)
-            .map(|number| 1.0 / deviation(contacts.iter().map(|(_, traits)| traits[number])))
+            .map(|number| 1.0 / deviation(pressed().map(|(_, traits)| traits[number])))
             .collect();
-        let scaled = |traits: &[f32; N_TRAITS]| std::array::from_fn(|number| traits[number] * scale[number]);
-        let is_apart = |lesson: usize| lesson.is_multiple_of(ONE_APART_OF);
-        let of = |apart: bool| {
-            let own = contacts.iter().filter(|(lesson, _)| is_apart(*lesson) == apart);
-            own.map(|(_, traits)| scaled(traits)).collect::<Vec<_>>()
-        };
-        let kept = spread_out(&of(false));
-        let mut novelty = Self {
+        let scaled = contacts
+            .iter()
+            .map(|(_, traits)| std::array::from_fn(|number| traits[number] * scale[number]));
+        let kept: Vec<[f32; N_TRAITS]> = scaled.collect();
+        let mut distances: Vec<f32> = contacts
+            .iter()
+            .zip(&kept)
+            .filter(|((frame, _), _)| frame.lesson.is_multiple_of(ONE_ASKED_OF) && frame.wrench[2] != 0.0)
+            .map(|((asked, _), traits)| {
+                let others = contacts.iter().zip(&kept);
+                let others = others.filter(|((other, _), _)| other.lesson != asked.lesson);
+                nearest(others.map(|(_, kept)| kept), traits)
+            })
+            .collect();
+        distances.sort_by(f32::total_cmp);
+        let last_familiar = (FAMILIAR * distances.len() as f64) as usize;
+        let unit = distances.get(last_familiar).or(distances.last());
+        Self {
+            unit: unit.map_or(1.0, |unit| unit.max(f32::MIN_POSITIVE)),
             kept: Matrix {
                 values: kept.into_flattened(),
                 n_columns: N_TRAITS,
             },
-            scale: scale.clone(),
-            unit: 1.0,
-        };
-        let mut apart: Vec<f32> = of(true).iter().map(|traits| novelty.nearest(traits)).collect();
-        apart.sort_by(f32::total_cmp);
-        let last_familiar = (FAMILIAR * apart.len() as f64) as usize;
-        novelty.unit = apart
-            .get(last_familiar)
-            .or(apart.last())
-            .map_or(1.0, |unit| unit.max(f32::MIN_POSITIVE));
-        novelty
+            scale,
+        }
     }
 
     /// 0 where nothing is near, above 1 where a contact is farther from all that were taught than 99 of 100 of the same kinds.
@@ -70,36 +71,21 @@ impl Novelty {
         for (value, scale) in traits.iter_mut().zip(&self.scale) {
             *value *= scale;
         }
-        self.nearest(&traits) / self.unit
+        nearest(self.kept.values.as_chunks::<N_TRAITS>().0, &traits) / self.unit
     }
+}
 
-    fn nearest(&self, traits: &[f32; N_TRAITS]) -> f32 {
-        let kept = self.kept.values.as_chunks::<N_TRAITS>().0;
-        let nearest = kept.iter().map(|kept| distance_squared(kept, traits));
-        nearest.fold(f32::INFINITY, f32::min).sqrt()
-    }
+/// The distance to the nearest of some contacts.
+fn nearest<'a>(contacts: impl IntoIterator<Item = &'a [f32; N_TRAITS]>, traits: &[f32; N_TRAITS]) -> f32 {
+    let squares = contacts
+        .into_iter()
+        .map(|contact| distance_squared(contact, traits));
+    squares.fold(f32::INFINITY, f32::min).sqrt()
 }
 
 /// The inputs of the first grid.
 fn of_grid<'a>(grid: &SurfaceGrid, inputs: &'a [f32]) -> &'a [f32] {
     &inputs[..grid.len() * crate::contact::N_CHANNELS]
-}
-
-/// At most [`N_KEPT`] contacts: each next one is the farthest from those before it (Gonzalez, 1985).
-fn spread_out(contacts: &[[f32; N_TRAITS]]) -> Vec<[f32; N_TRAITS]> {
-    let mut kept: Vec<[f32; N_TRAITS]> = contacts.first().copied().into_iter().collect();
-    let mut nearest = vec![f32::INFINITY; contacts.len()];
-    while let Some(last) = kept.last().copied().filter(|_| kept.len() < N_KEPT) {
-        for (nearest, contact) in nearest.iter_mut().zip(contacts) {
-            *nearest = nearest.min(distance_squared(contact, &last));
-        }
-        let farthest = (0..contacts.len()).max_by(|a, b| nearest[*a].total_cmp(&nearest[*b]));
-        match farthest.filter(|farthest| nearest[*farthest] > 0.0) {
-            Some(farthest) => kept.push(contacts[farthest]),
-            None => break,
-        }
-    }
-    kept
 }
 
 fn distance_squared(a: &[f32; N_TRAITS], b: &[f32; N_TRAITS]) -> f32 {

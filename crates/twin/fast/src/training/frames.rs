@@ -52,9 +52,9 @@ pub(crate) struct TaughtPlace {
 }
 
 impl Frames {
-    /// A frame at random.
-    pub(crate) fn any(&self, random: &mut RandomStream) -> &TaughtFrame {
-        &self.frames[random.random_range(0..self.frames.len())]
+    /// The number of a frame at random.
+    pub(crate) fn any(&self, random: &mut RandomStream) -> usize {
+        random.random_range(0..self.frames.len())
     }
 
     pub(crate) fn of(

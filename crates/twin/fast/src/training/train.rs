@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_learn::{AdamW, AdamWSettings, Matrix};
 use twintac_random::{RandomStream, digest_stream};
@@ -24,6 +25,9 @@ const QUIET: f32 = 0.2;
 
 /// Lever arm by which torques count as forces, mm.
 const ARM_MM: f32 = 8.0;
+
+/// Picks that a thread goes through together: few enough that their matrices stay in its cache.
+const N_TOGETHER: usize = 64;
 
 /// How the networks are trained.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,14 +54,14 @@ pub struct TrainSettings {
 impl Default for TrainSettings {
     fn default() -> Self {
         Self {
-            n_steps: 40_000,
+            n_steps: 80_000,
             n_frames: 128,
             n_places: 8,
             learning_rate: 5e-3,
             weight_decay: 1e-3,
             n_features: 6,
             pressure_hidden: vec![64, 32, 32],
-            wrench_hidden: vec![64, 32, 32],
+            wrench_hidden: vec![32, 32, 32],
         }
     }
 }
@@ -112,20 +116,30 @@ pub(crate) fn train(course: Course<'_>, progress: &mut dyn FnMut(TrainProgress))
         let next = (step + REPORT_STEPS).min(settings.n_steps);
         let (pressure_error, wrench_error) = rayon::join(
             || {
-                pressure.steps(step..next, settings, |random| {
-                    let batch = PressureBatch::draw(frames, layout, sizes, random);
-                    (batch.inputs, move |output: &Matrix| {
-                        pressure_loss(output, &batch.pressure, &batch.largest_kpa)
-                    })
-                })
+                pressure.steps(
+                    step..next,
+                    settings,
+                    |random| PressureBatch::picks(frames, sizes, random),
+                    |picks| {
+                        let batch = PressureBatch::of(frames, layout, picks);
+                        (batch.inputs, move |output: &Matrix| {
+                            pressure_loss(output, &batch.pressure, &batch.largest_kpa)
+                        })
+                    },
+                )
             },
             || {
-                wrench.steps(step..next, settings, |random| {
-                    let batch = WrenchBatch::draw(frames, layout, settings.n_frames, is_symmetric, random);
-                    (batch.inputs, move |output: &Matrix| {
-                        wrench_loss(output, &batch.wrench, &batch.largest_n)
-                    })
-                })
+                wrench.steps(
+                    step..next,
+                    settings,
+                    |random| WrenchBatch::picks(frames, settings.n_frames, is_symmetric, random),
+                    |picks| {
+                        let batch = WrenchBatch::of(frames, layout, picks);
+                        (batch.inputs, move |output: &Matrix| {
+                            wrench_loss(output, &batch.wrench, &batch.largest_n)
+                        })
+                    },
+                )
             },
         );
         step = next;
@@ -174,22 +188,39 @@ impl Training {
         }
     }
 
-    /// Takes steps on inputs that are drawn together with their loss. Returns the mean error.
-    fn steps<L: FnOnce(&Matrix) -> (f32, Matrix)>(
+    /// Takes steps on what is picked at random. `batch` makes inputs of some of it, and their loss: sums of errors, and slopes of outputs. Threads share the picks;
+    /// their slopes are added up in the order of the picks. Returns the mean error.
+    fn steps<P: Sync, L: FnOnce(&Matrix) -> (f32, Matrix)>(
         &mut self,
         steps: Range<usize>,
         settings: &TrainSettings,
-        draw: impl Fn(&mut RandomStream) -> (Matrix, L),
+        picks: impl Fn(&mut RandomStream) -> Vec<P>,
+        batch: impl Fn(&[P]) -> (Matrix, L) + Sync,
     ) -> f32 {
         let mut sum = 0.0;
         let n_steps = steps.len();
         for step in steps {
-            let (inputs, loss) = draw(&mut self.random);
-            let (output, kept) = self.network.forward(&inputs, self.n_points);
-            let (error, slope) = loss(&output);
-            sum += error;
-            let mut slopes = self.network.zeros();
-            self.network.backward(&kept, slope, self.n_points, &mut slopes);
+            let picks = picks(&mut self.random);
+            let (network, n_points) = (&self.network, self.n_points);
+            let parts = picks.par_chunks(N_TOGETHER).map(|picks| {
+                let (inputs, loss) = batch(picks);
+                let (output, kept) = network.forward(&inputs, n_points);
+                let (error, slope) = loss(&output);
+                let mut slopes = network.zeros();
+                network.backward(&kept, slope, n_points, &mut slopes);
+                (error, slopes)
+            });
+            let share = 1.0 / picks.len() as f32;
+            let mut slopes = network.zeros();
+            for (error, part) in parts.collect::<Vec<_>>() {
+                sum += share * error;
+                for (slopes, part) in slopes.arrays_mut().zip(part.arrays()) {
+                    slopes
+                        .iter_mut()
+                        .zip(part)
+                        .for_each(|(slope, part)| *slope += share * part);
+                }
+            }
             let rate = settings.learning_rate * schedule(step as f64 / settings.n_steps as f64);
             self.optimizer
                 .step(rate, self.network.arrays_mut(), slopes.arrays());
@@ -210,26 +241,25 @@ fn size(error: f32) -> (f32, f32) {
     (size, error / size)
 }
 
-/// Mean error over the press's largest pressure, and the slope of the outputs.
+/// Sum of errors over the press's largest pressure, and the slope of the outputs.
 fn pressure_loss(output: &Matrix, pressure: &[f32], largest_kpa: &[f32]) -> (f32, Matrix) {
     let mut slope = Matrix::zeros(output.n_rows(), 1);
     let mut sum = 0.0;
-    let share = 1.0 / pressure.len() as f32;
     for (row, (pressure, largest_kpa)) in pressure.iter().zip(largest_kpa).enumerate() {
         let scale = PRESSURE_KPA / largest_kpa;
         let error = output.values[row] * scale - pressure;
         let (size, direction) = size(error);
         sum += size;
-        slope.values[row] = share * direction * scale * (QUIET + pressure.max(0.0));
+        slope.values[row] = direction * scale * (QUIET + pressure.max(0.0));
     }
-    (sum * share, slope)
+    (sum, slope)
 }
 
-/// Mean error over the press's largest force, and the slope of the outputs.
+/// Sum over frames of the mean error over the press's largest force, and the slope of the outputs.
 fn wrench_loss(output: &Matrix, wrench: &[[f32; 6]], largest_n: &[f32]) -> (f32, Matrix) {
     let mut slope = Matrix::zeros(output.n_rows(), 6);
     let mut sum = 0.0;
-    let share = 1.0 / output.values.len() as f32;
+    let share = 1.0 / output.n_columns as f32;
     for (row, (wrench, largest_n)) in wrench.iter().zip(largest_n).enumerate() {
         for component in 0..6 {
             let arm = if component < 3 { 1.0 } else { ARM_MM };

@@ -1,0 +1,254 @@
+//! Friction of a body on the gel: the gel's top is sheared with the body, until it slips.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+use twintac_sensor::Sensor;
+use twintac_shape::Pose;
+
+use crate::contact::N_CHANNELS;
+use crate::surface::SurfaceGrid;
+
+/// Points that are inside a body by more than this part of the deepest carry it: under a ball that is the area that the finite elements touch.
+const CARRYING: f32 = 0.38;
+
+/// Width of the change from points that do not to points that do, as part of the deepest.
+const CHANGE: f32 = 0.24;
+
+/// Radius of the smallest contact, mm: a smaller one lies between the points of the grid.
+const LEAST_RADIUS_MM: f64 = 0.5;
+
+/// Lever arm of friction that turns a contact about its middle, as part of its radius: 3π/16 for the pressure under a ball, 2/3 for an even one.
+const ARM_OF_RADIUS: f64 = 0.6;
+
+/// Friction of one body on one gel, from one moment to the next. Readings do not feel it: what the fast gel was taught had none.
+///
+/// Sticking, the gel resists as an elastic layer on a rigid base does under a rigid disc of the contact's area: with `8 G a / (2 - ν) (1 + a / 2 h)` along the surface
+/// and `16/3 G a³` about the vertical (Gazetas, 1991, "Formulas and charts for impedances of surface and embedded foundations"), from where the body came on
+/// (Cundall and Strack, 1979). Force and torque together slip at Coulomb's limit (an ellipsoid as limit surface: Howe and Cutkosky, 1996). Beside PhysTac's finite
+/// elements with friction, pushed aside in the gel's middle, the force is right to 16 % under its ball, cube and cylinder, and 30 % too low under its ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Friction {
+    coefficient: f64,
+    shear_modulus_kpa: f64,
+    poissons_ratio: f64,
+    height_mm: f64,
+    /// The top of the gel's middle, mm.
+    center_mm: DVec3,
+    held: Option<Held>,
+}
+
+/// What a contact holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Held {
+    gel_from_body: Pose,
+    force_n: DVec2,
+    torque_n_mm: f64,
+}
+
+impl Friction {
+    /// Friction on a sensor's gel with Coulomb's coefficient; nothing is held yet.
+    #[must_use]
+    pub fn on(sensor: &Sensor, coefficient: f64) -> Self {
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        Self {
+            coefficient,
+            shear_modulus_kpa: sensor.gel.material.shear_modulus_kpa(),
+            poissons_ratio: sensor.gel.material.poissons_ratio(),
+            height_mm: high.z - low.z,
+            center_mm: (0.5 * (low + high)).with_z(high.z),
+            held: None,
+        }
+    }
+
+    /// One more moment: adds friction to the wrench that the fast gel reads under the body alone.
+    ///
+    /// - `gel_from_body`: where the body is now.
+    /// - `area_mm2`: of its contact, from [`FastReader::contact_area_mm2`](crate::FastReader::contact_area_mm2).
+    /// - `wrench`: is changed; force on the gel, N, and torque about the top of the gel's middle, N mm.
+    pub fn step(&mut self, gel_from_body: &Pose, area_mm2: f32, wrench: &mut [f32; 6]) {
+        let [fx, fy, fz, tx, ty, _] = wrench.map(f64::from);
+        let normal_n = DVec3::new(fx, fy, fz).length();
+        if fz >= 0.0 {
+            self.held = None;
+            return;
+        }
+        // Where the force acts on the surface, from the middle.
+        let place_mm = DVec2::new(-ty, tx) / fz;
+        let before = self.held.unwrap_or(Held {
+            gel_from_body: *gel_from_body,
+            force_n: DVec2::ZERO,
+            torque_n_mm: 0.0,
+        });
+        let (moved_mm, turned_rad) = self.moved(&before.gel_from_body, gel_from_body, place_mm);
+        let radius_mm = (f64::from(area_mm2) / PI).sqrt().max(LEAST_RADIUS_MM);
+        // kPa mm = N/m
+        let modulus_n_per_mm2 = 1e-3 * self.shear_modulus_kpa;
+        let along_n_per_mm = 8.0 * modulus_n_per_mm2 * radius_mm / (2.0 - self.poissons_ratio)
+            * (1.0 + 0.5 * radius_mm / self.height_mm);
+        let about_n_mm = 16.0 / 3.0 * modulus_n_per_mm2 * radius_mm.powi(3);
+        let mut held = Held {
+            gel_from_body: *gel_from_body,
+            force_n: before.force_n + along_n_per_mm * moved_mm,
+            torque_n_mm: before.torque_n_mm + about_n_mm * turned_rad,
+        };
+        let limit_n = self.coefficient * normal_n;
+        let limit_n_mm = limit_n * ARM_OF_RADIUS * radius_mm;
+        let share = held
+            .force_n
+            .length()
+            .hypot(held.torque_n_mm * limit_n / limit_n_mm);
+        if share > limit_n {
+            held.force_n *= limit_n / share;
+            held.torque_n_mm *= limit_n / share;
+        }
+        wrench[0] += held.force_n.x as f32;
+        wrench[1] += held.force_n.y as f32;
+        wrench[5] += (place_mm.perp_dot(held.force_n) + held.torque_n_mm) as f32;
+        self.held = Some(held);
+    }
+
+    /// Lets go of what touches: the next moment begins without friction.
+    pub fn release(&mut self) {
+        self.held = None;
+    }
+
+    /// How far the body's point at a place of the surface has moved along it, mm, and how far it has turned about the vertical, radians.
+    fn moved(&self, before: &Pose, now: &Pose, place_mm: DVec2) -> (DVec2, f64) {
+        let place_mm = self.center_mm + place_mm.extend(0.0);
+        let came_from_mm = before.inverse_transform_point(place_mm);
+        let moved_mm = now.transform_point(came_from_mm) - place_mm;
+        let turned = now.rotation * before.rotation.inverse();
+        (moved_mm.truncate(), turned.to_scaled_axis().z)
+    }
+}
+
+/// Area that carries a body, mm².
+///
+/// `inputs` are those of the grid's points. `[n_points * N_CHANNELS]`
+pub(crate) fn contact_area_mm2(grid: &SurfaceGrid, inputs: &[f32]) -> f32 {
+    let inside = || {
+        inputs
+            .as_chunks::<N_CHANNELS>()
+            .0
+            .iter()
+            .map(|point| point[0] - 1.0)
+    };
+    let deepest = inside().fold(0.0, f32::max);
+    if deepest <= 0.0 {
+        return 0.0;
+    }
+    let carries = |inside: f32| ((inside / deepest - CARRYING) / CHANGE + 0.5).clamp(0.0, 1.0);
+    let spacing_mm = grid.spacing_mm as f32;
+    spacing_mm * spacing_mm * inside().map(carries).sum::<f32>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Body, FastGel};
+    use twintac_sensor::SensorFile;
+    use twintac_shape::{Shape, Surfaces};
+
+    /// Force of friction, N, of one of PhysTac's indenters in the gel's middle after so many steps of 0.1 mm aside.
+    fn dragged(indenter: &str, depth_mm: f64, coefficient: f64, n_steps: u32) -> f64 {
+        let sensor = SensorFile::phystac().unwrap().sensor;
+        let shape = &sensor.indenter(indenter).unwrap().shape;
+        let body = Body::new(shape, &Surfaces::new()).unwrap();
+        let mut reader = FastGel::phystac().unwrap().reader();
+        let mut friction = Friction::on(&sensor, coefficient);
+        let (mut readings_kpa, mut without, mut with) = ([0.0; 8], [0.0; 6], [0.0; 6]);
+        for step in 0..=n_steps {
+            let pose = Pose::from_position(DVec3::new(0.1 * f64::from(step), 0.0, 8.5 - depth_mm));
+            reader.read(&[(&body, pose)], &mut readings_kpa, &mut without);
+            with = without;
+            let area_mm2 = reader.contact_area_mm2(&[(&body, pose)]);
+            friction.step(&pose, area_mm2, &mut with);
+        }
+        f64::from(with[0] - without[0])
+    }
+
+    #[test]
+    fn what_sticks_shears_the_gel_nearly_as_the_finite_elements_do() {
+        // `twintac simulate --path` with `solver.friction = 2`, 0.4 mm aside. A ring is stiffer than the disc of its area.
+        for (indenter, depth_mm, solved_n) in [
+            ("sphere-25", 1.0, 0.150),
+            ("sphere-25", 2.0, 0.224),
+            ("cube", 1.0, 0.214),
+            ("cube", 2.0, 0.234),
+            ("cylinder", 1.0, 0.186),
+            ("cylinder", 2.0, 0.201),
+            ("ring", 1.0, 0.256),
+            ("ring", 2.0, 0.275),
+        ] {
+            let found_n = dragged(indenter, depth_mm, 2.0, 4);
+            assert!(
+                (found_n / solved_n - 1.0).abs() < if indenter == "ring" { 0.3 } else { 0.17 },
+                "{indenter}, {depth_mm} mm deep: {found_n} N, {solved_n} N"
+            );
+        }
+    }
+
+    #[test]
+    fn what_slips_is_held_by_coulombs_friction() {
+        // The same with `solver.friction = 0.5`, 2 mm aside.
+        for (indenter, solved_n) in [("sphere-25", 0.250), ("cylinder", 0.595)] {
+            let found_n = dragged(indenter, 1.0, 0.5, 20);
+            assert!(
+                (found_n / solved_n - 1.0).abs() < 0.22,
+                "{indenter}: {found_n} N, {solved_n} N"
+            );
+        }
+    }
+
+    #[test]
+    fn torque_and_force_share_what_friction_can_hold() {
+        let sensor = SensorFile::phystac().unwrap().sensor;
+        let turned = |angle: f64, aside_mm: f64| {
+            let mut friction = Friction::on(&sensor, 0.5);
+            let start = Pose::IDENTITY;
+            let end = Pose {
+                position_mm: DVec3::new(aside_mm, 0.0, 0.0),
+                rotation: glam::DQuat::from_rotation_z(angle),
+            };
+            let mut wrench = [0.0, 0.0, -2.0, 0.0, 0.0, 0.0];
+            friction.step(&start, 50.0, &mut wrench.clone());
+            friction.step(&end, 50.0, &mut wrench);
+            [wrench[0], wrench[5]]
+        };
+        let ([force_n, _], [_, torque_n_mm]) = (turned(0.0, 5.0), turned(2.0, 0.0));
+        assert!((force_n - 1.0).abs() < 1e-4 && torque_n_mm > 1.0);
+        let both = turned(2.0, 5.0);
+        let share = (both[0] / force_n).hypot(both[1] / torque_n_mm);
+        assert!(both[0] < force_n && both[1] < torque_n_mm && (share - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_leaves_the_gel_is_held_no_longer() {
+        let sensor = SensorFile::phystac().unwrap().sensor;
+        let mut friction = Friction::on(&sensor, 0.5);
+        let aside = Pose::from_position(DVec3::X);
+        let pressed = [0.0, 0.0, -2.0, 0.0, 0.0, 0.0];
+        friction.step(&Pose::IDENTITY, 50.0, &mut pressed.clone());
+        friction.step(&Pose::IDENTITY, 0.0, &mut [0.0; 6]);
+        let mut wrench = pressed;
+        friction.step(&aside, 50.0, &mut wrench);
+        assert_eq!(wrench, pressed);
+    }
+
+    #[test]
+    fn a_flat_end_carries_on_nearly_all_of_its_area() {
+        let cylinder = Shape::Cylinder {
+            radius_mm: 5.0,
+            height_mm: 10.0,
+            edge_radius_mm: 0.5,
+        };
+        let body = Body::new(&cylinder, &Surfaces::new()).unwrap();
+        let mut reader = FastGel::phystac().unwrap().reader();
+        let pose = Pose::from_position(DVec3::new(1.0, 0.5, 7.0));
+        let area_mm2 = reader.contact_area_mm2(&[(&body, pose)]);
+        assert!((50.0..80.0).contains(&area_mm2), "{area_mm2} of 78.5 mm²");
+        let above = Pose::from_position(DVec3::new(1.0, 0.5, 9.0));
+        assert_eq!(reader.contact_area_mm2(&[(&body, above)]), 0.0);
+    }
+}
