@@ -4,7 +4,7 @@ use pulp::Simd;
 use twintac_learn::Linear;
 
 use super::product::Weights;
-use super::simd::LANES;
+use super::simd::lanes;
 
 /// Rows that go through a layer together.
 const ROWS: usize = 2;
@@ -23,7 +23,7 @@ pub(super) struct Dense {
 
 impl Dense {
     pub(super) fn of(layer: &Linear) -> Self {
-        let n_outputs = layer.bias.len().next_multiple_of(LANES);
+        let n_outputs = layer.bias.len().next_multiple_of(lanes());
         Self {
             weights: Weights::of(&padded_rows(layer, n_outputs), n_outputs),
             bias: padded(&layer.bias, n_outputs).collect(),
@@ -51,7 +51,7 @@ impl Dense {
             output.copy_from_slice(&self.bias);
         }
         let mut row = 0;
-        if self.weights.is_narrow() {
+        if self.weights.is_narrow::<S>() {
             while row + NARROW_ROWS <= n_rows {
                 self.add::<S, NARROW_ROWS>(simd, row, n_units, inputs, outputs);
                 row += NARROW_ROWS;

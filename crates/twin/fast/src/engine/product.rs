@@ -2,10 +2,10 @@
 
 use pulp::Simd;
 
-use super::simd::{LANES, vectors};
+use super::simd::{lanes, vectors};
 
-/// Vectors of a row of sums that stay in the processor's registers.
-const COLUMNS: usize = 4;
+/// Vectors of a row of sums that stay in the processor's registers: the first that divides a row.
+const WIDTHS: [usize; 3] = [4, 2, 1];
 
 /// Weights of rows that are added up, filled up with zeros.
 #[derive(Clone, Debug)]
@@ -18,14 +18,11 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Of rows. `[n_factors][n_outputs]`, whole numbers of [`LANES`]
+    /// Of rows. `[n_factors][n_outputs]`, whole vectors
     pub(super) fn of(rows: &[f32], n_outputs: usize) -> Self {
-        let n_wide = COLUMNS * LANES;
-        let n_block = if n_outputs.is_multiple_of(n_wide) {
-            n_wide
-        } else {
-            LANES
-        };
+        let n_vectors = n_outputs / lanes();
+        let n_columns = WIDTHS.into_iter().find(|width| n_vectors.is_multiple_of(*width));
+        let n_block = n_columns.unwrap_or(1) * lanes();
         let blocks = (0..n_outputs).step_by(n_block);
         let numbers = blocks.flat_map(|first| {
             rows.chunks_exact(n_outputs)
@@ -39,8 +36,8 @@ impl Weights {
     }
 
     /// Whether all outputs are one vector.
-    pub(super) fn is_narrow(&self) -> bool {
-        self.numbers.len() == self.n_factors * LANES
+    pub(super) fn is_narrow<S: Simd>(&self) -> bool {
+        self.numbers.len() == self.n_factors * S::F32_LANES
     }
 
     /// Adds the weights, each row multiplied by a factor, to some rows of sums, in the order of the factors: a row has the same bits whatever other rows
@@ -61,10 +58,10 @@ impl Weights {
         while !numbers.is_empty() {
             let (block, others) = numbers.split_at(self.n_factors * self.n_block);
             numbers = others;
-            if self.n_block == LANES {
-                add_block::<S, ROWS, 1>(simd, block, factors, starts, sums);
-            } else {
-                add_block::<S, ROWS, COLUMNS>(simd, block, factors, starts, sums);
+            match self.n_block / S::F32_LANES {
+                4 => add_block::<S, ROWS, 4>(simd, block, factors, starts, sums),
+                2 => add_block::<S, ROWS, 2>(simd, block, factors, starts, sums),
+                _ => add_block::<S, ROWS, 1>(simd, block, factors, starts, sums),
             }
             for start in &mut starts {
                 *start += self.n_block;
@@ -73,7 +70,7 @@ impl Weights {
     }
 }
 
-/// A block of `N` times [`LANES`] outputs.
+/// A block of `N` vectors of outputs.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)] // simple loops stay in registers
 fn add_block<S: Simd, const ROWS: usize, const N: usize>(
@@ -83,27 +80,21 @@ fn add_block<S: Simd, const ROWS: usize, const N: usize>(
     starts: [usize; ROWS],
     sums: &mut [f32],
 ) {
-    // Shorter vectors take several turns.
-    let n_turns = LANES / S::F32_LANES;
-    let weights = vectors::<S>(block).as_chunks::<N>().0;
-    for turn in 0..n_turns {
-        let mut own = [[simd.splat_f32s(0.0); N]; ROWS];
+    let n_own = N * S::F32_LANES;
+    let mut own = [[simd.splat_f32s(0.0); N]; ROWS];
+    for row in 0..ROWS {
+        own[row].copy_from_slice(&S::as_simd_f32s(&sums[starts[row]..starts[row] + n_own]).0[..N]);
+    }
+    for (number, weights) in vectors::<S>(block).as_chunks::<N>().0.iter().enumerate() {
         for row in 0..ROWS {
-            let start = starts[row] + turn * N * S::F32_LANES;
-            own[row].copy_from_slice(&S::as_simd_f32s(&sums[start..start + N * S::F32_LANES]).0[..N]);
-        }
-        for (number, weights) in weights.chunks_exact(n_turns).enumerate() {
-            for row in 0..ROWS {
-                let factor = simd.splat_f32s(factors[row][number]);
-                for column in 0..N {
-                    own[row][column] = simd.mul_add_f32s(factor, weights[turn][column], own[row][column]);
-                }
+            let factor = simd.splat_f32s(factors[row][number]);
+            for column in 0..N {
+                own[row][column] = simd.mul_add_f32s(factor, weights[column], own[row][column]);
             }
         }
-        for row in 0..ROWS {
-            let start = starts[row] + turn * N * S::F32_LANES;
-            let sums = S::as_mut_simd_f32s(&mut sums[start..start + N * S::F32_LANES]).0;
-            sums[..N].copy_from_slice(&own[row]);
-        }
+    }
+    for row in 0..ROWS {
+        let sums = S::as_mut_simd_f32s(&mut sums[starts[row]..starts[row] + n_own]).0;
+        sums[..N].copy_from_slice(&own[row]);
     }
 }

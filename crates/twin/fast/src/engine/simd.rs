@@ -2,8 +2,21 @@
 
 use pulp::{Simd, WithSimd};
 
-/// Rows are filled up with zeros to whole numbers of so many: no vector that is used is longer.
-pub(crate) const LANES: usize = 8;
+/// Numbers in a vector of this processor. Rows are filled up with zeros to whole vectors.
+pub(crate) fn lanes() -> usize {
+    dispatch(Lanes)
+}
+
+struct Lanes;
+
+impl WithSimd for Lanes {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        S::F32_LANES
+    }
+}
 
 /// Runs what is compiled for each instruction set, with the best one that there is. All give the same bits.
 pub(crate) fn dispatch<W: WithSimd>(work: W) -> W::Output {
@@ -16,9 +29,9 @@ pub(crate) fn dispatch<W: WithSimd>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
 
-/// Numbers as vectors. They are whole numbers of [`LANES`].
+/// Numbers as vectors, of which they are a whole number.
 #[inline(always)]
 pub(crate) fn vectors<S: Simd>(numbers: &[f32]) -> &[S::f32s] {
-    debug_assert!(numbers.len().is_multiple_of(LANES) && S::F32_LANES <= LANES);
+    debug_assert!(numbers.len().is_multiple_of(S::F32_LANES));
     S::as_simd_f32s(numbers).0
 }

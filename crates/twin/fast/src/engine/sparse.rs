@@ -5,7 +5,7 @@ use pulp::Simd;
 use super::dense::{Dense, padded, padded_rows};
 use super::places::Places;
 use super::product::Weights;
-use super::simd::LANES;
+use super::simd::lanes;
 use crate::contact::N_CHANNELS;
 use crate::network::{LocalNetwork, silu};
 
@@ -51,19 +51,22 @@ pub(super) struct Scratch {
     /// What uses each place. For each place as many as could.
     pairs: Vec<Pair>,
     n_pairs: Vec<u32>,
-    /// What goes into a layer, and out of it. `[n_sensors * n_ports][n_units]`
+    /// What goes into a layer, and out of it: a row for each port in whose patch something is. `[n_sensors * n_ports][n_units]`
     hidden: [Vec<f32>; 2],
-    /// Whether something is in a port's patch. `[n_sensors * n_ports]`
-    is_touched: Vec<bool>,
+    /// The row of each port, or [`NO_ROW`]. `[n_sensors * n_ports]`
+    rows: Vec<u32>,
 }
 
 /// A point that something is near, in the patch of a port.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pair {
     near: u32,
-    /// Number of the port, over all sensors.
+    /// The port's row.
     row: u32,
 }
+
+/// Of a port with nothing in its patch.
+const NO_ROW: u32 = u32::MAX;
 
 impl Sparse {
     /// The network of so many ports. `around` says where they are, and what does not change; it may add rows of places, of which each has so many numbers.
@@ -75,7 +78,7 @@ impl Sparse {
         let first = &network.rest.layers[0];
         let nothing = network.nothing();
         let n_features = nothing.len();
-        let n_hidden = first.bias.len().next_multiple_of(LANES);
+        let n_hidden = first.bias.len().next_multiple_of(lanes());
         let point = Dense::of(&network.point);
         let mut rows = padded_rows(first, n_hidden);
         // Behind those of the places come the rows of what describes a place.
@@ -108,7 +111,7 @@ impl Sparse {
             pairs: vec![Pair::default(); n_sensors * self.places.n_uses()],
             n_pairs: vec![0; self.places.n()],
             hidden: [(); 2].map(|()| vec![0.0; n_units]),
-            is_touched: vec![false; n_rows],
+            rows: vec![NO_ROW; n_rows],
         }
     }
 
@@ -121,25 +124,14 @@ impl Sparse {
         scratch: &mut Scratch,
         mut found: impl FnMut(usize, Option<&[f32]>),
     ) {
-        let n_rows = near.ends.len() * self.n_ports;
         self.features(simd, near, &mut scratch.features);
-        self.pair(near, scratch);
+        let n_rows = self.pair(near, scratch);
         self.first(simd, near.ends.len(), scratch);
-        // Ports far from what touches are left out of the layers after that.
-        let mut n_touched = 0;
-        for row in 0..n_rows {
-            if scratch.is_touched[row] {
-                if row != n_touched {
-                    let own = row * self.n_hidden..(row + 1) * self.n_hidden;
-                    scratch.hidden[0].copy_within(own, n_touched * self.n_hidden);
-                }
-                n_touched += 1;
-            }
-        }
-        let (outputs, n_outputs) = self.finish(simd, n_touched, &mut scratch.hidden);
-        let mut outputs = outputs.chunks_exact(n_outputs);
-        for (row, is_touched) in scratch.is_touched[..n_rows].iter().enumerate() {
-            found(row, if *is_touched { outputs.next() } else { None });
+        let (outputs, n_outputs) = self.finish(simd, n_rows, &mut scratch.hidden);
+        let n_ports = near.ends.len() * self.n_ports;
+        for (port, row) in scratch.rows[..n_ports].iter().enumerate() {
+            let outputs = (*row != NO_ROW).then(|| &outputs[*row as usize * n_outputs..][..n_outputs]);
+            found(port, outputs);
         }
     }
 
@@ -157,45 +149,48 @@ impl Sparse {
         }
     }
 
-    /// Sorts what has to be multiplied by its places: the rows of a place are fetched once for all sensors.
+    /// Sorts what has to be multiplied by its places: the rows of a place are fetched once for all sensors. Returns how many ports have something in their patches;
+    /// each of them gets a row, in which there is what does not change.
     #[inline(always)]
-    fn pair(&self, near: &Near, scratch: &mut Scratch) {
+    fn pair(&self, near: &Near, scratch: &mut Scratch) -> usize {
         let Scratch {
             pairs,
             n_pairs,
-            is_touched,
+            rows,
+            hidden: [sums, _],
             ..
         } = scratch;
         let n_sensors = near.ends.len();
         n_pairs.fill(0);
-        is_touched.fill(false);
-        let mut first = 0;
+        rows.fill(NO_ROW);
+        let (mut first, mut n_rows) = (0, 0);
         for (sensor, end) in near.ends.iter().enumerate() {
             for number in first..*end {
                 for used in self.places.of_point(near.points[number]) {
-                    let row = sensor * self.n_ports + used.port as usize;
+                    let port = used.port as usize;
+                    let row = &mut rows[sensor * self.n_ports + port];
+                    if *row == NO_ROW {
+                        *row = n_rows as u32;
+                        sums[n_rows * self.n_hidden..][..self.n_hidden]
+                            .copy_from_slice(&self.bias[port * self.n_hidden..][..self.n_hidden]);
+                        n_rows += 1;
+                    }
                     let n_pairs = &mut n_pairs[used.place as usize];
                     pairs[n_sensors * used.before as usize + *n_pairs as usize] = Pair {
                         near: number as u32,
-                        row: row as u32,
+                        row: *row,
                     };
                     *n_pairs += 1;
-                    is_touched[row] = true;
                 }
             }
             first = *end;
         }
+        n_rows
     }
 
     /// The layer after the points, place by place.
     #[inline(always)]
     fn first<S: Simd>(&self, simd: S, n_sensors: usize, scratch: &mut Scratch) {
-        for hidden in scratch.hidden[0]
-            .chunks_exact_mut(self.bias.len().max(1))
-            .take(n_sensors)
-        {
-            hidden.copy_from_slice(&self.bias);
-        }
         let (features, sums) = (&scratch.features, &mut scratch.hidden[0]);
         let n_padded = self.point.n_outputs();
         for (place, (rows, n_pairs)) in self.rows.iter().zip(&scratch.n_pairs).enumerate() {
