@@ -6,6 +6,8 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::errors::ParquetError;
 use parquet::schema::types::{Type, TypePtr};
 
+use super::Column;
+
 /// Version of the layout described here; readers refuse others.
 pub(super) const VERSION: &str = "1";
 /// Keys of the file's metadata.
@@ -41,27 +43,16 @@ pub(super) const COUNTS: &str = "_counts";
 pub(super) const TEMPERATURE_C: &str = "_temperature_c";
 pub(super) const FAULT: &str = "_fault";
 
-/// The columns of a recording, in the order of the file. `mounting` is what the column [`MOUNTING`] is called.
-pub(super) fn schema(taxels: &[String], mounting: &str) -> Result<TypePtr, ParquetError> {
-    let mut columns = vec![required(PRESS_INDEX, Physical::INT32)?];
-    for name in TEXTS {
-        let name = if name == MOUNTING { mounting } else { name };
-        columns.push(required(name, Physical::BYTE_ARRAY)?);
-    }
-    for name in [TIME].into_iter().chain(POSE) {
-        columns.push(required(name, Physical::DOUBLE)?);
-    }
-    columns.push(optional(FORCE, Physical::DOUBLE)?);
-    for (suffix, physical) in [
-        (KPA, Physical::DOUBLE),
-        (RAW, Physical::DOUBLE),
-        (VALID, Physical::BOOLEAN),
-    ] {
-        for taxel in taxels {
-            columns.push(required(&format!("{taxel}{suffix}"), physical)?);
-        }
-    }
-    group("recording", columns)
+/// The types of a recording's columns.
+pub(super) fn schema(columns: &[(String, Column)]) -> Result<TypePtr, ParquetError> {
+    let typed = columns.iter().map(|(name, column)| match column {
+        Column::Index(_) => required(name, Physical::INT32),
+        Column::Text(_) => required(name, Physical::BYTE_ARRAY),
+        Column::Number(_) => required(name, Physical::DOUBLE),
+        Column::Known(_) => optional(name, Physical::DOUBLE),
+        Column::Flag(_) => required(name, Physical::BOOLEAN),
+    });
+    group("recording", typed.collect::<Result<_, _>>()?)
 }
 
 /// The columns of a table of frames, in the order of the file.
