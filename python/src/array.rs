@@ -11,10 +11,9 @@ pub(crate) type Numbers<'py, D> = PyArrayLike<'py, f64, D, AllowTypeChange>;
 
 /// An array's numbers in the order of its indices, copied if they are not in memory like this.
 pub(crate) fn in_order<'a, D: Dimension>(numbers: &'a Numbers<'_, D>) -> Cow<'a, [f64]> {
-    numbers.as_slice().map_or_else(
-        |_| Cow::Owned(numbers.as_array().iter().copied().collect()),
-        Cow::Borrowed,
-    )
+    let numbers = numbers.as_array();
+    let in_memory = numbers.to_slice().map(Cow::Borrowed);
+    in_memory.unwrap_or_else(|| Cow::Owned(numbers.iter().copied().collect()))
 }
 
 /// Numbers as `[n_rows, n_columns]`.

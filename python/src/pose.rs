@@ -18,7 +18,10 @@ pub(crate) struct Pose {
 #[pymethods]
 impl Pose {
     #[new]
-    #[pyo3(signature = (position_mm, quaternion=(0.0, 0.0, 0.0, 1.0)))]
+    #[pyo3(
+        signature = (position_mm, quaternion=(0.0, 0.0, 0.0, 1.0)),
+        text_signature = "(position_mm, quaternion=(0.0, 0.0, 0.0, 1.0))"
+    )]
     fn new(py: Python<'_>, position_mm: (f64, f64, f64), quaternion: (f64, f64, f64, f64)) -> PyResult<Self> {
         let (x_mm, y_mm, z_mm) = position_mm;
         let (x, y, z, w) = quaternion;

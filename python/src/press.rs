@@ -25,7 +25,10 @@ pub(crate) struct Press {
 #[pymethods]
 impl Press {
     #[new]
-    #[pyo3(signature = (indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0))]
+    #[pyo3(
+        signature = (indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0),
+        text_signature = "(indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0)"
+    )]
     fn new(
         py: Python<'_>,
         indenter: String,

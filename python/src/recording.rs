@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use twintac::{Column, Recorded, import_files, read_recordings};
+use twintac::{Column, Recorded, import_files};
 
 use crate::error::{OrRaise, unusable};
 use crate::long_call::long_call;
@@ -43,11 +43,10 @@ pub(crate) struct Recording {
 
 #[pymethods]
 impl Recording {
-    /// Reads Parquet files of one sensor, as runs and `save` write them.
+    /// Reads a Parquet file, as runs and `save` write it.
     #[staticmethod]
-    #[pyo3(signature = (*paths))]
-    fn load(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Self> {
-        let recording = long_call(py, move || read_recordings(&paths))?.or_raise(py)?;
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let recording = long_call(py, move || twintac::Recording::read_parquet(&path))?.or_raise(py)?;
         Ok(Self { recording })
     }
 

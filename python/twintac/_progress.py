@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, Literal, TypeAlias
 
 Progress: TypeAlias = Callable[[str, int, int, str], object] | Literal[False] | None
@@ -27,10 +28,9 @@ class _Line:
 
 def _bar() -> "_Bar | None":
     try:
-        from tqdm.auto import tqdm
+        return _Bar(import_module("tqdm.auto").tqdm)
     except ImportError:
         return None
-    return _Bar(tqdm)
 
 
 class _Bar:

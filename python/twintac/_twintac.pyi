@@ -1,5 +1,6 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any, ClassVar, Literal, TypeAlias, final
 
 import numpy as np
@@ -8,6 +9,32 @@ import pandas
 import polars
 
 from twintac._progress import Progress
+
+__all__ = [
+    "Body",
+    "Contact",
+    "FastBatch",
+    "FastGel",
+    "FastReader",
+    "Gel",
+    "Imperfection",
+    "Inverse",
+    "Pose",
+    "Prediction",
+    "Press",
+    "Pressed",
+    "PressureMap",
+    "Recording",
+    "Run",
+    "Sensor",
+    "SensorBatch",
+    "Shape",
+    "Tracker",
+    "Twin",
+    "TwinAtPlace",
+    "TwinState",
+    "command",
+]
 
 _Path: TypeAlias = str | PathLike[str]
 _Provenance: TypeAlias = Literal["real", "emulated", "simulated"]
@@ -91,7 +118,7 @@ class PressureMap:
 @final
 class Recording:
     @staticmethod
-    def load(*paths: _Path) -> Recording: ...
+    def load(path: _Path) -> Recording: ...
     @staticmethod
     def import_csv(description: _Path, *paths: _Path) -> Recording: ...
     @property
@@ -187,11 +214,11 @@ class Run:
     def finish(self, *, progress: Progress = None) -> dict[str, Any]: ...
     def recording(self) -> Recording: ...
     @property
-    def folder(self) -> PathLike[str]: ...
+    def folder(self) -> Path: ...
     @property
-    def model_folder(self) -> PathLike[str]: ...
+    def model_folder(self) -> Path: ...
     @property
-    def report_path(self) -> PathLike[str]: ...
+    def report_path(self) -> Path: ...
 
 @final
 class Pose:

@@ -76,7 +76,12 @@ pub fn links_lead_somewhere(root: &Path) -> Result<()> {
 
 fn documents(root: &Path) -> Result<Vec<PathBuf>> {
     let mut documents = Vec::new();
-    let mut pending = vec![root.to_owned(), root.join("docs"), root.join("crates"), root.join("python")];
+    let mut pending = vec![
+        root.to_owned(),
+        root.join("docs"),
+        root.join("crates"),
+        root.join("python"),
+    ];
     while let Some(folder) = pending.pop() {
         for entry in fs::read_dir(&folder).with_context(|| format!("reading {}", folder.display()))? {
             let path = entry?.path();
