@@ -18,11 +18,11 @@ def run_example(name: str, folder: Path) -> str:
     return ran.stdout
 
 
-def run_command(*arguments: object, folder: Path | None = None) -> "subprocess.CompletedProcess[str]":
+def run_command(*arguments: object) -> "subprocess.CompletedProcess[str]":
     """Runs the command that the package installs."""
     command = Path(sys.executable).with_name("twintac")
     words = [str(command), *map(str, arguments)]
-    return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+    return subprocess.run(words, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="session")

@@ -6,8 +6,6 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::errors::ParquetError;
 use parquet::schema::types::{Type, TypePtr};
 
-use super::Column;
-
 /// Version of the layout described here; readers refuse others.
 pub(super) const VERSION: &str = "1";
 /// Keys of the file's metadata.
@@ -43,18 +41,6 @@ pub(super) const COUNTS: &str = "_counts";
 pub(super) const TEMPERATURE_C: &str = "_temperature_c";
 pub(super) const FAULT: &str = "_fault";
 
-/// The types of a recording's columns.
-pub(super) fn schema(columns: &[(String, Column)]) -> Result<TypePtr, ParquetError> {
-    let typed = columns.iter().map(|(name, column)| match column {
-        Column::Index(_) => required(name, Physical::INT32),
-        Column::Text(_) => required(name, Physical::BYTE_ARRAY),
-        Column::Number(_) => required(name, Physical::DOUBLE),
-        Column::Known(_) => optional(name, Physical::DOUBLE),
-        Column::Flag(_) => required(name, Physical::BOOLEAN),
-    });
-    group("recording", typed.collect::<Result<_, _>>()?)
-}
-
 /// The columns of a table of frames, in the order of the file.
 pub(super) fn frame_schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
     let mut columns = vec![
@@ -75,16 +61,16 @@ pub(super) fn frame_schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
     group("frames", columns)
 }
 
-fn group(name: &str, columns: Vec<TypePtr>) -> Result<TypePtr, ParquetError> {
+pub(super) fn group(name: &str, columns: Vec<TypePtr>) -> Result<TypePtr, ParquetError> {
     let group = Type::group_type_builder(name).with_fields(columns);
     group.build().map(Arc::new)
 }
 
-fn required(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
+pub(super) fn required(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
     column(name, physical, Repetition::REQUIRED)
 }
 
-fn optional(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
+pub(super) fn optional(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
     column(name, physical, Repetition::OPTIONAL)
 }
 

@@ -1,5 +1,9 @@
 //! A recording as a table.
 
+use parquet::basic::Type as Physical;
+use parquet::errors::ParquetError;
+use parquet::schema::types::TypePtr;
+
 use super::schema;
 use crate::{Press, Recording};
 
@@ -18,6 +22,18 @@ pub enum Column {
     Flag(Vec<bool>),
 }
 
+/// The types of columns, in their order.
+pub(super) fn types(columns: &[(String, Column)]) -> Result<TypePtr, ParquetError> {
+    let typed = columns.iter().map(|(name, column)| match column {
+        Column::Index(_) => schema::required(name, Physical::INT32),
+        Column::Text(_) => schema::required(name, Physical::BYTE_ARRAY),
+        Column::Number(_) => schema::required(name, Physical::DOUBLE),
+        Column::Known(_) => schema::optional(name, Physical::DOUBLE),
+        Column::Flag(_) => schema::required(name, Physical::BOOLEAN),
+    });
+    schema::group("recording", typed.collect::<Result<_, _>>()?)
+}
+
 impl Recording {
     /// The recording as a table with one row per frame: names of columns and what they have, as [`write_parquet`](Self::write_parquet) writes
     /// them.
@@ -28,13 +44,11 @@ impl Recording {
         let index = index.flat_map(|(index, press)| std::iter::repeat_n(index, frames(press)));
         let text = |text: &dyn Fn(&Press) -> String| Column::Text(self.presses.iter().map(text).collect());
         let number = |number: &dyn Fn(&Press, usize) -> f64| {
-            let of_press = |press: &Press| (0..frames(press)).map(|frame| number(press, frame)).collect();
-            Column::Number(
-                self.presses
-                    .iter()
-                    .flat_map(|press| -> Vec<f64> { of_press(press) })
-                    .collect(),
-            )
+            let mut numbers = Vec::new();
+            for press in &self.presses {
+                numbers.extend((0..frames(press)).map(|frame| number(press, frame)));
+            }
+            Column::Number(numbers)
         };
         let force = self.presses.iter().flat_map(|press| match &press.force_n {
             Some(force_n) => force_n.iter().copied().map(Some).collect(),

@@ -12,7 +12,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::ColumnPath;
 
-use super::{Column, schema, seal};
+use super::{Column, schema, seal, table};
 use crate::{Recording, RecordingError};
 
 impl Recording {
@@ -55,7 +55,7 @@ impl Recording {
                 mounting.clone_into(name);
             }
         }
-        let mut writer = SerializedFileWriter::new(Vec::new(), schema::schema(&columns)?, properties)?;
+        let mut writer = SerializedFileWriter::new(Vec::new(), table::types(&columns)?, properties)?;
         let mut group = writer.next_row_group()?;
         for (_, column) in &columns {
             self.put(&mut group, column)?;
