@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping};
+use pyo3::types::PyDict;
 use twintac::{PressFrame, RunSettings};
 
 use crate::array::rows;
@@ -25,12 +25,10 @@ impl Gel {
     /// `settings` are those of the simulation that differ from the usual ones for single presses: `{"edges_per_height": 4.0}`.
     #[new]
     #[pyo3(signature = (sensor, settings=None))]
-    fn new(py: Python<'_>, sensor: &Sensor, settings: Option<Bound<'_, PyMapping>>) -> PyResult<Self> {
+    fn new(py: Python<'_>, sensor: &Sensor, settings: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
         let of_run = PyDict::new(py);
-        if let Some(settings) = settings {
-            of_run.set_item("simulate", PyDict::from_sequence(settings.items()?.as_any())?)?;
-        }
-        let settings = but(RunSettings::fine(), Some(of_run.as_mapping()))?;
+        of_run.set_item("simulate", settings.unwrap_or_else(|| PyDict::new(py)))?;
+        let settings = but(RunSettings::fine(), Some(&of_run))?;
         let gel = twintac::Gel::with_settings(&sensor.sensor, settings.simulate);
         Ok(Self { gel: Arc::new(gel) })
     }

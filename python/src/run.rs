@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use pyo3::types::PyMapping;
+use pyo3::types::PyDict;
 use twintac::{RunError, RunSettings, Silent};
 
 use crate::error::OrRaise;
@@ -45,7 +45,7 @@ impl Run {
         sensor: &Sensor,
         source: &str,
         seed: u64,
-        settings: Option<Bound<'_, PyMapping>>,
+        settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let settings = but(RunSettings::default(), settings.as_ref())?;
         let run = twintac::Run::start(&folder, &sensor.sensor, source, seed, settings, caller(py)?);

@@ -1,7 +1,7 @@
 //! Settings as dictionaries.
 
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping};
+use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
 use twintac::RunSettings;
 
@@ -27,11 +27,9 @@ pub(crate) fn as_toml(values: &Bound<'_, PyAny>) -> PyResult<String> {
 }
 
 /// Settings but for those of a dictionary with a dictionary for each stage.
-pub(crate) fn but(base: RunSettings, own: Option<&Bound<'_, PyMapping>>) -> PyResult<RunSettings> {
+pub(crate) fn but(base: RunSettings, own: Option<&Bound<'_, PyDict>>) -> PyResult<RunSettings> {
     let Some(own) = own else {
         return Ok(base);
     };
-    let own_dict = PyDict::from_sequence(own.items()?.as_any())?;
-    base.but_parsed("settings", &as_toml(own_dict.as_any())?)
-        .or_raise(own.py())
+    base.but_parsed("settings", &as_toml(own)?).or_raise(own.py())
 }

@@ -92,7 +92,7 @@ class Press:
 
 @final
 class Gel:
-    def __new__(cls, sensor: Sensor, settings: Mapping[str, Any] | None = None) -> Gel: ...
+    def __new__(cls, sensor: Sensor, settings: dict[str, Any] | None = None) -> Gel: ...
     def press(self, press: Press) -> Pressed: ...
 
 @final
@@ -204,7 +204,7 @@ class Run:
         source: str,
         *,
         seed: int = 1,
-        settings: Mapping[str, Any] | None = None,
+        settings: dict[str, Any] | None = None,
     ) -> Run: ...
     @staticmethod
     def open(folder: _Path) -> Run: ...
