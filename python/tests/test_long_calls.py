@@ -4,7 +4,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +39,14 @@ def test_a_batch_lets_other_threads_run() -> None:
     places = np.tile([0.0, 0.0, 7.5], (60_000, 1))
     n_turns, seconds = turns_while(lambda: batch.read(places))
     assert n_turns > 20 * seconds > 2.0
+
+
+@pytest.fixture(autouse=True)
+def hears_ctrl_c() -> Iterator[None]:
+    """A program that was started in the background may ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def interrupt() -> None:
