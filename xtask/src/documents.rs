@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 
 /// Folders of the checkout that documents name files of.
-const FOLDERS: [&str; 10] = [
+const FOLDERS: [&str; 11] = [
     "crates",
     "sensors",
     "protocols",
@@ -17,6 +17,7 @@ const FOLDERS: [&str; 10] = [
     "xtask",
     "docs",
     "fuzz",
+    "python",
 ];
 
 /// Writes what stands between `<!-- NAME -->` and `<!-- end -->` anew.
@@ -52,7 +53,7 @@ pub fn files_named_exist(root: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Each link between documents leads to a file: those at the root, those of `docs`, and the README of each crate.
+/// Each link between documents leads to a file: those at the root, those of `docs`, and the README of each package.
 pub fn links_lead_somewhere(root: &Path) -> Result<()> {
     for document in documents(root)? {
         let text =
@@ -75,7 +76,12 @@ pub fn links_lead_somewhere(root: &Path) -> Result<()> {
 
 fn documents(root: &Path) -> Result<Vec<PathBuf>> {
     let mut documents = Vec::new();
-    let mut pending = vec![root.to_owned(), root.join("docs"), root.join("crates")];
+    let mut pending = vec![
+        root.to_owned(),
+        root.join("docs"),
+        root.join("crates"),
+        root.join("python"),
+    ];
     while let Some(folder) = pending.pop() {
         for entry in fs::read_dir(&folder).with_context(|| format!("reading {}", folder.display()))? {
             let path = entry?.path();

@@ -59,7 +59,9 @@ fn main() -> ExitCode {
 
 fn lint() -> Result<()> {
     cargo(&["fmt", "--all", "--check"])?;
-    cargo(&["fmt", "--manifest-path", "fuzz/Cargo.toml", "--check"])?;
+    for beside in ["fuzz/Cargo.toml", "python/Cargo.toml"] {
+        cargo(&["fmt", "--manifest-path", beside, "--check"])?;
+    }
     cargo(&[
         "clippy",
         "--release",

@@ -74,7 +74,8 @@ fn of_rooms(workspace: &Arc<Workspace>) -> Vec<Trial> {
         "rooms::every_package_has_one".into(),
         |all, _| rule::every_package_has_a_room(&all.rooms, &all.graph),
     )];
-    for room in workspace.rooms.rooms.iter().filter(|room| room.folder != "fuzz") {
+    let rooms = workspace.rooms.rooms.iter();
+    for room in rooms.filter(|room| !room.is_beside_the_workspace()) {
         let place = &room.folder;
         let (name, own) = (room.name().to_owned(), room.package());
         if room.shelf().is_some() {

@@ -15,14 +15,14 @@ use super::tree::{Crate, Target};
 use super::{identifiers, rust_files};
 use crate::rooms::Graph;
 
-/// Identifiers of every source file of the workspace and of `fuzz`, by path from the root.
+/// Identifiers of every source file of the workspace and of the packages beside it, by path from the root.
 pub struct Words(BTreeMap<String, BTreeSet<String>>);
 
 impl Words {
     /// Reads them all.
     pub fn read(root: &Path) -> Result<Self> {
         let mut words = BTreeMap::new();
-        for path in rust_files(root, &["crates", "xtask", "fuzz"])? {
+        for path in rust_files(root, &["crates", "xtask", "fuzz", "python"])? {
             let text = fs::read_to_string(&path)?;
             let tokens = text.parse().map_err(|error| anyhow::anyhow!("{error}"));
             let found = identifiers(tokens.with_context(|| format!("reading {}", path.display()))?);

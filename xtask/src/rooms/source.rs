@@ -106,6 +106,11 @@ impl Room {
             .unwrap_or_else(|| format!("twintac-{}", self.name().replace('_', "-")))
     }
 
+    /// Whether it is a package with a lock file of its own.
+    pub fn is_beside_the_workspace(&self) -> bool {
+        ["fuzz", "python"].contains(&self.folder.as_str())
+    }
+
     /// The folder of `crates` that it stands in, if it does.
     pub fn shelf(&self) -> Option<&str> {
         self.folder.strip_prefix("crates/")?.split('/').next()

@@ -84,6 +84,20 @@ impl Recorded {
     }
 }
 
+impl From<Recording> for Recorded {
+    /// Presses without temperatures.
+    fn from(recording: Recording) -> Self {
+        let unloaded = recording.taxels.iter().map(|taxel| UnloadedCourse {
+            taxel: taxel.clone(),
+            readings: Vec::new(),
+        });
+        Self {
+            unloaded: unloaded.collect(),
+            recording,
+        }
+    }
+}
+
 /// The files to read: without logs that were set aside, and without cut ones beside what was recovered of them.
 fn to_read(files: &[PathBuf], progress: &dyn Progress) -> Result<Vec<PathBuf>, RunError> {
     let mut kept = Vec::new();

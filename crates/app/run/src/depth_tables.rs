@@ -12,6 +12,7 @@ use twintac_simulate::{Gel, PressPlace};
 use crate::Progress;
 use crate::fast::tables::FastTables;
 use crate::files::{read_json, sha256, write_json};
+use crate::progress::go_on;
 
 /// Spacing of a lattice over the gel's height, for places along a line and over a plane, which has so many more of them.
 const LATTICE_SPACINGS: [f64; 2] = [1.0 / 4.0, 1.0 / 3.0];
@@ -48,6 +49,7 @@ impl<'a> DepthTableStore<'a> {
             .par_iter()
             .with_max_len(1)
             .map(|place| {
+                go_on(self.progress)?;
                 let path = self.path(place)?;
                 let table = match read_json(&path) {
                     Ok(table) => table,

@@ -80,6 +80,9 @@ pub enum RunError {
         /// What was expected in it.
         source: Box<Self>,
     },
+    /// [`Progress::is_stopped`](crate::Progress::is_stopped) said so.
+    #[error("stopped before it was done; the same again goes on from there")]
+    Stopped,
     /// What was given cannot be used: what is wrong, and what to do.
     #[error("{0}")]
     Input(String),

@@ -1,4 +1,6 @@
-//! Following long work.
+//! Following long work, and stopping it.
+
+use crate::RunError;
 
 /// Whether a stage ran or was already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +44,11 @@ pub trait Progress: Send + Sync {
         let _ = state;
     }
 
+    /// Whether the work should end before its next step, with [`RunError::Stopped`]. What is done is kept.
+    fn is_stopped(&self) -> bool {
+        false
+    }
+
     /// The work is finished, or has failed.
     fn finished(&self) {}
 
@@ -74,6 +81,19 @@ impl<'a> Work<'a> {
     pub(crate) fn step(&self, state: &str) {
         self.0.step(state);
     }
+
+    /// Nothing, unless the work should end.
+    pub(crate) fn go_on(&self) -> Result<(), RunError> {
+        go_on(self.0)
+    }
+}
+
+/// Nothing, unless work should end.
+pub(crate) fn go_on(progress: &dyn Progress) -> Result<(), RunError> {
+    if progress.is_stopped() {
+        return Err(RunError::Stopped);
+    }
+    Ok(())
 }
 
 impl Drop for Work<'_> {

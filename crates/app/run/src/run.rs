@@ -14,6 +14,7 @@ use crate::error::At;
 use crate::fast::FAST_GEL;
 use crate::fast::tables::FastTables;
 use crate::files::{read_json, write_file, write_json};
+use crate::progress::go_on;
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
 
 /// What a run is made from: `run.json`.
@@ -100,6 +101,13 @@ impl Run {
             sensor,
             caller,
         })
+    }
+
+    /// The same run, whose work another follows.
+    #[must_use]
+    pub fn followed_by(mut self, progress: Arc<dyn Progress>) -> Self {
+        self.caller.progress = progress;
+        self
     }
 
     /// Runs all stages after the recordings, and says how well the twin did.
@@ -202,6 +210,7 @@ impl Run {
         inputs: Inputs,
         work: impl FnOnce(&Path) -> Result<(), RunError>,
     ) -> Result<(), RunError> {
+        go_on(self.progress())?;
         let outcome = cache::run(&self.stage(name), inputs, work).at(|| format!("stage `{name}`"))?;
         self.progress().stage(name, outcome);
         Ok(())

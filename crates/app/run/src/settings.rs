@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::RunError;
 use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings, Variant};
 use serde::{Deserialize, Serialize};
+use twintac_config::Document;
 use twintac_recording::{Control, Recording};
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
@@ -64,23 +65,15 @@ impl RunSettings {
         let Some(path) = path else {
             return Ok(self);
         };
-        let document = twintac_config::read_over(path, &self)?;
-        let simulate = &document.value.simulate;
-        for (field, value) in [
-            ("edges_per_height", simulate.edges_per_height),
-            ("edges_per_contact_radius", simulate.edges_per_contact_radius),
-            ("contact_edge_mm", simulate.contact_edge_mm.unwrap_or(1.0)),
-            ("edges_per_rounding", simulate.edges_per_rounding),
-            ("depth_step_mm", simulate.depth_step_mm),
-        ] {
-            if value <= 0.0 || !value.is_finite() {
-                let field = format!("simulate.{field}");
-                return Err(document
-                    .error(&field, format!("is {value}"), "give a number above zero")
-                    .into());
-            }
-        }
-        Ok(document.value)
+        checked(twintac_config::read_over(path, &self)?)
+    }
+
+    /// These settings but for those of a TOML text, which `file` names in errors.
+    ///
+    /// # Errors
+    /// A field that there is not, a value that makes no sense.
+    pub fn but_parsed(self, file: &str, text: &str) -> Result<Self, RunError> {
+        checked(twintac_config::parse_over(file, text, &self)?)
     }
 
     /// The settings with all that depends on the seed, the sensor and the presses filled in.
@@ -105,6 +98,26 @@ impl RunSettings {
         }
         resolved
     }
+}
+
+/// The settings, if their simulation can be.
+fn checked(document: Document<RunSettings>) -> Result<RunSettings, RunError> {
+    let simulate = &document.value.simulate;
+    for (field, value) in [
+        ("edges_per_height", simulate.edges_per_height),
+        ("edges_per_contact_radius", simulate.edges_per_contact_radius),
+        ("contact_edge_mm", simulate.contact_edge_mm.unwrap_or(1.0)),
+        ("edges_per_rounding", simulate.edges_per_rounding),
+        ("depth_step_mm", simulate.depth_step_mm),
+    ] {
+        if value <= 0.0 || !value.is_finite() {
+            let field = format!("simulate.{field}");
+            return Err(document
+                .error(&field, format!("is {value}"), "give a number above zero")
+                .into());
+        }
+    }
+    Ok(document.value)
 }
 
 /// Places of the ports in the gel's plane, mm.

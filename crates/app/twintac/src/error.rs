@@ -53,4 +53,98 @@ pub enum Error {
     #[cfg(feature = "run")]
     #[error(transparent)]
     Run(#[from] twintac_run::RunError),
+    /// Readings cannot be followed back to contacts.
+    #[cfg(feature = "fast")]
+    #[error(transparent)]
+    Inverse(#[from] twintac_inverse::InverseError),
+}
+
+/// Where an error stands, as far as that is known.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ErrorPlace {
+    /// The file, as it was named.
+    pub file: Option<String>,
+    /// Line, from 1.
+    pub line: Option<u64>,
+    /// The field or the column.
+    pub field: Option<String>,
+}
+
+impl Error {
+    /// Where the error stands.
+    #[must_use]
+    pub fn place(&self) -> ErrorPlace {
+        match self {
+            Self::Sensor(error) => of_description(error),
+            Self::Shape(error) => of_shape(error),
+            #[cfg(feature = "recording")]
+            Self::Recording(error) => of_recording(error),
+            #[cfg(feature = "fast")]
+            Self::Inverse(twintac_inverse::InverseError::Shape(error)) => of_shape(error),
+            #[cfg(feature = "fast")]
+            Self::Inverse(twintac_inverse::InverseError::Setting { field, .. }) => ErrorPlace {
+                field: Some((*field).to_owned()),
+                ..ErrorPlace::default()
+            },
+            #[cfg(feature = "run")]
+            Self::Run(error) => of_run(error),
+            _ => ErrorPlace::default(),
+        }
+    }
+}
+
+fn of_description(error: &twintac_sensor::SensorError) -> ErrorPlace {
+    ErrorPlace {
+        file: Some(error.file.clone()),
+        line: u64::try_from(error.line).ok().filter(|line| *line > 0),
+        field: Some(error.field.clone()).filter(|field| !field.is_empty()),
+    }
+}
+
+fn of_shape(error: &twintac_shape::ShapeError) -> ErrorPlace {
+    ErrorPlace {
+        field: Some(error.field.clone()),
+        ..ErrorPlace::default()
+    }
+}
+
+#[cfg(feature = "recording")]
+fn of_recording(error: &twintac_recording::RecordingError) -> ErrorPlace {
+    use twintac_recording::RecordingError as Wrong;
+    let (file, line, field) = match error {
+        Wrong::Description(error) => return of_description(error),
+        Wrong::MissingColumn { file, column, .. } => (file, Some(1), Some(column)),
+        Wrong::Line { file, line, .. } => (file, Some(*line), None),
+        Wrong::Cell {
+            file, line, column, ..
+        } => (file, Some(*line), Some(column)),
+        Wrong::Read { file, .. }
+        | Wrong::Write { file, .. }
+        | Wrong::NoPresses { file, .. }
+        | Wrong::Damaged { file, .. } => (file, None, None),
+        _ => return ErrorPlace::default(),
+    };
+    ErrorPlace {
+        file: Some(file.clone()),
+        line,
+        field: field.cloned(),
+    }
+}
+
+#[cfg(feature = "run")]
+fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
+    use twintac_run::RunError as Wrong;
+    let path = match error {
+        Wrong::In { source, .. } => return of_run(source),
+        Wrong::Config(error) => return of_description(error),
+        Wrong::Recording(error) => return of_recording(error),
+        Wrong::Shape(error) => return of_shape(error),
+        Wrong::File { path, .. } | Wrong::Damaged { path, .. } | Wrong::Csv { path, .. } => path,
+        Wrong::NotARun { folder, .. } | Wrong::Unfinished { folder, .. } => folder,
+        _ => return ErrorPlace::default(),
+    };
+    ErrorPlace {
+        file: Some(path.display().to_string()),
+        ..ErrorPlace::default()
+    }
 }

@@ -173,7 +173,7 @@ mod sensor;
 #[cfg(feature = "twin")]
 mod twin;
 
-pub use error::Error;
+pub use error::{Error, ErrorPlace};
 pub use gel::{Gel, Pressed};
 #[cfg(feature = "map")]
 pub use map::PressureMap;
@@ -188,17 +188,23 @@ pub use twin::Twin;
 pub use digitac::{Prediction, PressCertainty, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
-pub use twintac_fast::{Body, FastBatch, FastGel, FastReader, Friction, Touch};
+pub use twintac_fast::{Body, FastBatch, FastFileError, FastGel, FastReader, Friction, Touch};
 #[cfg(feature = "fast")]
 pub use twintac_inverse::{
-    Contact, FloorMap, Inverse, InverseSettings, KnownShape, ReadingTable, TableModel, Tracker,
+    Contact, FastModel, FloorMap, Inverse, InverseError, InverseSettings, KnownShape, ReadingTable,
+    TableModel, Tracker,
 };
 #[cfg(feature = "recording")]
-pub use twintac_recording::{Import, Provenance, Recording};
+pub use twintac_recording::{Column, Import, Provenance, Recording};
 #[cfg(feature = "run")]
-pub use twintac_run::{Caller, Metrics, Outcome, Progress, Run, RunSettings, Silent};
+pub use twintac_run::characterization::Recorded;
+#[cfg(feature = "run")]
+pub use twintac_run::{
+    Caller, Metrics, Outcome, Progress, Run, RunError, RunSettings, Silent, import_files, read_recordings,
+    sha256_of_file,
+};
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{Imperfection, SensorBatch};
-pub use twintac_shape::{Pose, Shape};
+pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
 pub use twintac_simulate::SimulateSettings;

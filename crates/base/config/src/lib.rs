@@ -135,7 +135,25 @@ pub fn read_over<T: DeserializeOwned + Serialize>(
     path: impl AsRef<Path>,
     base: &T,
 ) -> Result<Document<T>, ConfigError> {
-    let document = read::<T>(path)?;
+    over(read::<T>(path)?, base)
+}
+
+/// Parses a TOML text that has only what differs from `base`, in tables of any depth; `file` names it in errors.
+///
+/// # Errors
+/// Those of [`parse`].
+pub fn parse_over<T: DeserializeOwned + Serialize>(
+    file: &str,
+    text: &str,
+    base: &T,
+) -> Result<Document<T>, ConfigError> {
+    over(parse::<T>(file, text)?, base)
+}
+
+fn over<T: DeserializeOwned + Serialize>(
+    document: Document<T>,
+    base: &T,
+) -> Result<Document<T>, ConfigError> {
     let failed = |problem: String| ConfigError {
         file: document.file.clone(),
         line: 0,

@@ -61,6 +61,9 @@ pub enum DigitacError {
         /// The loss.
         loss: f64,
     },
+    /// Who followed the training broke it off.
+    #[error("the training was stopped")]
+    Stopped,
     /// A file of a model cannot be read or written.
     #[error("{path}: {source}")]
     File {

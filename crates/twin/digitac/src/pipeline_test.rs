@@ -1,6 +1,7 @@
 //! From a recording to a twin, against formulas whose truth is known.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 
 use twintac_depth_table::DepthTableSource;
 
@@ -58,7 +59,7 @@ fn train_quietly(made: &Made, settings: &TrainSettings) -> Vec<Trained> {
         &made.split,
         &made.scale,
         settings,
-        &mut |_| {},
+        &mut |_| ControlFlow::Continue(()),
     )
     .unwrap()
 }

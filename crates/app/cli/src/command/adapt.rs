@@ -9,14 +9,14 @@ use twintac_run::{
 };
 
 use super::files::expand;
+use crate::Program;
 use crate::arguments::Adapt;
-use crate::caller::caller;
 use crate::output::print;
 use crate::progress::Bars;
 
-pub(crate) fn run(arguments: &Adapt) -> Result<()> {
+pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
     if let Some(run) = &arguments.run {
-        return curve(arguments, run);
+        return curve(arguments, run, program);
     }
     let sensor = arguments.sensor.as_deref().map(SensorFile::read).transpose()?;
     let named = sensor.as_ref().and_then(SensorFile::import);
@@ -42,8 +42,8 @@ pub(crate) fn run(arguments: &Adapt) -> Result<()> {
     print(&adapted(&found))
 }
 
-fn curve(arguments: &Adapt, run: &Path) -> Result<()> {
-    let run = Run::open(run, caller()?)?;
+fn curve(arguments: &Adapt, run: &Path, program: &Program) -> Result<()> {
+    let run = Run::open(run, program.caller()?)?;
     let plan = CurvePlan {
         presses: arguments.curve.iter().map(|count| *count as usize).collect(),
         seeds: arguments.seeds,

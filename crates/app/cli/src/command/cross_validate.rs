@@ -3,12 +3,12 @@
 use anyhow::Result;
 use twintac_run::{CertaintySpread, CrossValidation, CrossValidationPlan, Run, Spread};
 
+use crate::Program;
 use crate::arguments::CrossValidate;
-use crate::caller::caller;
 use crate::output::print;
 
-pub(crate) fn run(arguments: &CrossValidate) -> Result<()> {
-    let run = Run::open(&arguments.run, caller()?)?;
+pub(crate) fn run(arguments: &CrossValidate, program: &Program) -> Result<()> {
+    let run = Run::open(&arguments.run, program.caller()?)?;
     let plan = CrossValidationPlan {
         held_out: arguments.held_out.clone(),
         seeds: arguments.seeds,

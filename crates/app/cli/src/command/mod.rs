@@ -23,33 +23,34 @@ mod stream;
 
 use anyhow::Result;
 
+use crate::Program;
 use crate::arguments::{Command, FastCommand, SensorCommand};
 
 pub(crate) use record::Stopped;
 
 /// Does what was asked for.
-pub(crate) fn run(command: Command) -> Result<()> {
+pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
     match command {
-        Command::Demo(arguments) => demo::run(&arguments),
-        Command::Reproduce(arguments) => reproduce::run(&arguments),
+        Command::Demo(arguments) => demo::run(&arguments, program),
+        Command::Reproduce(arguments) => reproduce::run(&arguments, program),
         Command::Sensor(SensorCommand::Show(arguments)) => sensor::show(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments, program),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Characterize(arguments) => characterize::run(&arguments),
         Command::Stream(arguments) => stream::run(&arguments),
-        Command::Record(arguments) => record::run(&arguments),
+        Command::Record(arguments) => record::run(&arguments, program),
         Command::Export(arguments) => export::run(&arguments),
-        Command::Import(arguments) => reproduce::import(&arguments),
-        Command::Align(arguments) => stages::align(&arguments),
-        Command::Train(arguments) => stages::train(&arguments),
-        Command::Evaluate(arguments) => stages::evaluate(&arguments),
-        Command::Adapt(arguments) => adapt::run(&arguments),
-        Command::CrossValidate(arguments) => cross_validate::run(&arguments),
+        Command::Import(arguments) => reproduce::import(&arguments, program),
+        Command::Align(arguments) => stages::align(&arguments, program),
+        Command::Train(arguments) => stages::train(&arguments, program),
+        Command::Evaluate(arguments) => stages::evaluate(&arguments, program),
+        Command::Adapt(arguments) => adapt::run(&arguments, program),
+        Command::CrossValidate(arguments) => cross_validate::run(&arguments, program),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Locate(arguments) => locate::run(&arguments),
         Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments),
         Command::Fast(FastCommand::Imperfection(arguments)) => imperfection::run(&arguments),
-        Command::Report(arguments) => stages::report(&arguments),
+        Command::Report(arguments) => stages::report(&arguments, program),
     }
 }

@@ -5,18 +5,18 @@ use std::path::Path;
 use anyhow::Result;
 use twintac_run::paper::{Effort, Paper, PaperMetrics};
 
+use crate::Program;
 use crate::arguments::Reproduce;
-use crate::caller::caller;
 use crate::output::print;
 
-pub(super) fn run(arguments: &Reproduce) -> Result<()> {
+pub(super) fn run(arguments: &Reproduce, program: &Program) -> Result<()> {
     let effort = if arguments.quick {
         Effort::Quick
     } else {
         Effort::Full
     };
     let out = arguments.out.as_deref().unwrap_or(Path::new("runs/paper"));
-    let paper = Paper::start(out, effort, arguments.start.seed, caller()?)?;
+    let paper = Paper::start(out, effort, arguments.start.seed, program.caller()?)?;
     let found = paper.finish()?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);

@@ -16,8 +16,8 @@ use twintac_run::built_in::{LAB_RIG, reality};
 use twintac_run::{Caller, Planned, Progress, Run, RunSettings, SensorFile};
 
 use super::files::sensor_or_phystac;
+use crate::Program;
 use crate::arguments::Record;
-use crate::caller::caller;
 use crate::output::print;
 use crate::progress::say;
 
@@ -42,7 +42,7 @@ struct Summary {
     provenance: Provenance,
 }
 
-pub(super) fn run(arguments: &Record) -> Result<()> {
+pub(super) fn run(arguments: &Record, program: &Program) -> Result<()> {
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
     let planned = Planned::read(&arguments.protocol, &sensor.sensor, arguments.start.seed)?;
     let reality = arguments.lab.as_ref().map(|named| reality(named.as_deref()));
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
     if let (Some(reality), true) = (&reality, arguments.at_once) {
         let n_presses = planned.presses.len() + planned.loads.len();
         let source = format!("{n_presses} presses on the emulated bench");
-        let run = start(arguments, sensor, &source, caller()?)?;
+        let run = start(arguments, sensor, &source, program.caller()?)?;
         return Ok(run.emulate(reality, &planned)?);
     }
     let n_loads = planned.loads.len();
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Record) -> Result<()> {
         return dry_run(arguments, &settings, &plans, &sensor);
     }
     sensor_limits(&sensor.sensor)?;
-    press(arguments, sensor, reality.as_ref(), settings, &plans)
+    press(arguments, (sensor, settings), reality.as_ref(), &plans, program)
 }
 
 /// Folder of the run.
@@ -115,10 +115,10 @@ fn dry_run(
 /// Carries the presses out, and stops on Ctrl-C.
 fn press(
     arguments: &Record,
-    sensor: SensorFile,
+    (sensor, settings): (SensorFile, PressSettings),
     reality: Option<&Reality>,
-    settings: PressSettings,
     plans: &[PressPlan],
+    program: &Program,
 ) -> Result<()> {
     let faults = arguments.faults.as_deref().map(read_faults).transpose()?;
     let whose = if reality.is_some() {
@@ -131,7 +131,7 @@ fn press(
     };
     check_folder(&out(arguments).join("logs"), plans)?;
     let source = format!("{} presses on {whose} bench, over its wires", plans.len());
-    let caller = caller()?;
+    let caller = program.caller()?;
     let run = start(arguments, sensor, &source, caller.clone())?;
     let mut bench = match reality {
         Some(reality) => OpenBench::emulate(&run, reality, plans, &settings, faults.unwrap_or_default())?,

@@ -6,29 +6,35 @@ use anyhow::{Context, Result};
 use twintac_run::{Run, RunSettings, SensorFile};
 
 use super::files::expand;
+use crate::Program;
 use crate::arguments::{Import, Recorded, Reproduce, Start};
-use crate::caller::caller;
 
 /// Runs every stage on recordings.
-pub(crate) fn run(arguments: &Reproduce) -> Result<()> {
+pub(crate) fn run(arguments: &Reproduce, program: &Program) -> Result<()> {
     let Some(sensor) = &arguments.sensor else {
-        return super::paper::run(arguments);
+        return super::paper::run(arguments, program);
     };
     let recorded = Recorded {
         sensor: sensor.clone(),
         recordings: arguments.recordings.clone(),
         import: arguments.import.clone(),
     };
-    let run = start(&recorded, &arguments.start, arguments.out.as_deref())?;
+    let run = start(&recorded, &arguments.start, arguments.out.as_deref(), program)?;
     super::stages::finish(&run)
 }
 
 /// `twintac import`: starts a run with a lab's files.
-pub(crate) fn import(arguments: &Import) -> Result<()> {
-    start(&arguments.recorded, &arguments.start, Some(&arguments.out)).map(drop)
+pub(crate) fn import(arguments: &Import, program: &Program) -> Result<()> {
+    start(
+        &arguments.recorded,
+        &arguments.start,
+        Some(&arguments.out),
+        program,
+    )
+    .map(drop)
 }
 
-fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> {
+fn start(recorded: &Recorded, start: &Start, out: Option<&Path>, program: &Program) -> Result<Run> {
     let sensor = SensorFile::read(&recorded.sensor)?;
     let settings = RunSettings::read(start.settings.as_deref())?;
     let files = expand(&recorded.recordings)?;
@@ -48,7 +54,7 @@ fn start(recorded: &Recorded, start: &Start, out: Option<&Path>) -> Result<Run> 
         .filter_map(|file| file.file_name())
         .map(|name| name.to_string_lossy());
     let source = names.collect::<Vec<_>>().join(", ");
-    let run = Run::start(&folder, sensor, &source, start.seed, settings, caller()?)?;
+    let run = Run::start(&folder, sensor, &source, start.seed, settings, program.caller()?)?;
     run.import(&import, &files)?;
     Ok(run)
 }

@@ -7,14 +7,14 @@ use twintac_run::simulated::simulate_presses;
 use twintac_run::{Planned, Run, RunSettings, SensorFile};
 use twintac_simulate::Gel;
 
+use crate::Program;
 use crate::arguments::Simulate;
-use crate::caller::caller;
 use crate::progress::Bars;
 
 /// Simulates and writes one table over depth for each press.
-pub(crate) fn run(arguments: &Simulate) -> Result<()> {
+pub(crate) fn run(arguments: &Simulate, program: &Program) -> Result<()> {
     if let Some(folder) = &arguments.run {
-        let run = Run::open(folder, caller()?)?;
+        let run = Run::open(folder, program.caller()?)?;
         run.mesh()?;
         return Ok(run.simulate()?);
     }

@@ -4,8 +4,8 @@ use anyhow::{Context, Result};
 use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files, read_recordings};
 
 use super::files::expand;
+use crate::Program;
 use crate::arguments::{Align, Evaluate, Report, Train};
-use crate::caller::caller;
 use crate::output::print;
 use crate::progress::Bars;
 
@@ -16,21 +16,21 @@ pub(crate) fn finish(run: &Run) -> Result<()> {
 }
 
 /// `twintac align`: simulates the places of a run's presses, fits the bench, and pairs frames.
-pub(crate) fn align(arguments: &Align) -> Result<()> {
-    let run = Run::open(&arguments.run, caller()?)?;
+pub(crate) fn align(arguments: &Align, program: &Program) -> Result<()> {
+    let run = Run::open(&arguments.run, program.caller()?)?;
     run.simulate()?;
     Ok(run.pair()?)
 }
 
 /// `twintac train`.
-pub(crate) fn train(arguments: &Train) -> Result<()> {
-    Ok(Run::open(&arguments.run, caller()?)?.train()?)
+pub(crate) fn train(arguments: &Train, program: &Program) -> Result<()> {
+    Ok(Run::open(&arguments.run, program.caller()?)?.train()?)
 }
 
 /// `twintac evaluate`: a run's held-out presses, or a model on recordings from elsewhere.
-pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
+pub(crate) fn evaluate(arguments: &Evaluate, program: &Program) -> Result<()> {
     if let Some(folder) = &arguments.run {
-        let run = Run::open(folder, caller()?)?;
+        let run = Run::open(folder, program.caller()?)?;
         let metrics = run.evaluate()?;
         if arguments.json {
             return print(&serde_json::to_string_pretty(&metrics)?);
@@ -52,8 +52,8 @@ pub(crate) fn evaluate(arguments: &Evaluate) -> Result<()> {
 }
 
 /// `twintac report`.
-pub(crate) fn report(arguments: &Report) -> Result<()> {
-    Ok(Run::open(&arguments.run, caller()?)?.report()?)
+pub(crate) fn report(arguments: &Report, program: &Program) -> Result<()> {
+    Ok(Run::open(&arguments.run, program.caller()?)?.report()?)
 }
 
 fn print_headline(run: &Run, metrics: &Metrics) -> Result<()> {

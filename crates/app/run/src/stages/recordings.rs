@@ -228,6 +228,7 @@ fn kept<P: Sync, T: Serialize + DeserializeOwned + Send>(
         .par_iter()
         .with_max_len(1)
         .map(|plan| -> Result<T, RunError> {
+            work.go_on()?;
             let path = kept_in(folder, name(plan));
             let made = match read_json(&path) {
                 Ok(made) => made,

@@ -1,5 +1,6 @@
 //! Stage `training`: every variant of the twin, the one that validation presses choose, and that one again on all presses.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use digitac::{
@@ -179,6 +180,7 @@ impl<'a> Training<'a> {
     ) -> Result<Vec<Trained>, RunError> {
         let mut follow = |step: Step| {
             work.step(&format!("{} {:.2} %", step.variant, 100.0 * step.validation_loss));
+            work.go_on().map_or(ControlFlow::Break(()), ControlFlow::Continue)
         };
         let taxels = &self.recording.taxels;
         Ok(digitac::train(

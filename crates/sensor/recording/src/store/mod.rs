@@ -5,9 +5,11 @@ mod frames;
 mod read;
 mod schema;
 mod seal;
+mod table;
 mod write;
 
 pub use frames::{FrameTable, TaxelCell};
+pub use table::Column;
 
 #[cfg(test)]
 mod tests;

@@ -41,29 +41,6 @@ pub(super) const COUNTS: &str = "_counts";
 pub(super) const TEMPERATURE_C: &str = "_temperature_c";
 pub(super) const FAULT: &str = "_fault";
 
-/// The columns of a recording, in the order of the file. `mounting` is what the column [`MOUNTING`] is called.
-pub(super) fn schema(taxels: &[String], mounting: &str) -> Result<TypePtr, ParquetError> {
-    let mut columns = vec![required(PRESS_INDEX, Physical::INT32)?];
-    for name in TEXTS {
-        let name = if name == MOUNTING { mounting } else { name };
-        columns.push(required(name, Physical::BYTE_ARRAY)?);
-    }
-    for name in [TIME].into_iter().chain(POSE) {
-        columns.push(required(name, Physical::DOUBLE)?);
-    }
-    columns.push(optional(FORCE, Physical::DOUBLE)?);
-    for (suffix, physical) in [
-        (KPA, Physical::DOUBLE),
-        (RAW, Physical::DOUBLE),
-        (VALID, Physical::BOOLEAN),
-    ] {
-        for taxel in taxels {
-            columns.push(required(&format!("{taxel}{suffix}"), physical)?);
-        }
-    }
-    group("recording", columns)
-}
-
 /// The columns of a table of frames, in the order of the file.
 pub(super) fn frame_schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
     let mut columns = vec![
@@ -84,16 +61,16 @@ pub(super) fn frame_schema(taxels: &[String]) -> Result<TypePtr, ParquetError> {
     group("frames", columns)
 }
 
-fn group(name: &str, columns: Vec<TypePtr>) -> Result<TypePtr, ParquetError> {
+pub(super) fn group(name: &str, columns: Vec<TypePtr>) -> Result<TypePtr, ParquetError> {
     let group = Type::group_type_builder(name).with_fields(columns);
     group.build().map(Arc::new)
 }
 
-fn required(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
+pub(super) fn required(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
     column(name, physical, Repetition::REQUIRED)
 }
 
-fn optional(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
+pub(super) fn optional(name: &str, physical: Physical) -> Result<TypePtr, ParquetError> {
     column(name, physical, Repetition::OPTIONAL)
 }
 

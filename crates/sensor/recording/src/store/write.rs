@@ -12,8 +12,8 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::ColumnPath;
 
-use super::{schema, seal};
-use crate::{Press, Recording, RecordingError};
+use super::{Column, schema, seal, table};
+use crate::{Recording, RecordingError};
 
 impl Recording {
     /// Writes a Parquet file with one row per frame, through a temporary name. The same recording gives the same bytes.
@@ -49,106 +49,43 @@ impl Recording {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
         let properties = Arc::new(properties.build());
-        let mut writer =
-            SerializedFileWriter::new(Vec::new(), schema::schema(&self.taxels, mounting)?, properties)?;
-        self.put_columns(writer.next_row_group()?)?;
+        let mut columns = self.columns();
+        for (name, _) in &mut columns {
+            if name == schema::MOUNTING {
+                mounting.clone_into(name);
+            }
+        }
+        let mut writer = SerializedFileWriter::new(Vec::new(), table::types(&columns)?, properties)?;
+        let mut group = writer.next_row_group()?;
+        for (_, column) in &columns {
+            self.put(&mut group, column)?;
+        }
+        group.close()?;
         writer.into_inner()
     }
 
-    fn put_columns(&self, writer: SerializedRowGroupWriter<'_, Vec<u8>>) -> Result<(), ParquetError> {
-        let mut rows = Rows {
-            presses: &self.presses,
-            writer,
-        };
-        let frames = |press: &Press| 0..press.time_s.len();
-        rows.put::<Int32Type>(
-            (0..)
-                .zip(&self.presses)
-                .flat_map(|(index, press)| frames(press).map(move |_| index)),
-        )?;
-        let provenance = self.provenance.to_string();
-        rows.text(|press| press.name.clone())?;
-        rows.text(|press| press.mounting.clone())?;
-        rows.text(|press| press.indenter.clone())?;
-        rows.text(|press| press.control.to_string())?;
-        rows.text(|_| provenance.clone())?;
-        rows.double(|press, frame| press.time_s[frame])?;
-        for axis in 0..3 {
-            rows.double(|press, frame| press.gel_from_indenter[frame].position_mm[axis])?;
-        }
-        for axis in 0..4 {
-            rows.double(|press, frame| press.gel_from_indenter[frame].rotation.to_array()[axis])?;
-        }
-        rows.force()?;
-        for taxel in 0..self.taxels.len() {
-            rows.double(|press, frame| press.taxels_kpa[frame][taxel])?;
-        }
-        for taxel in 0..self.taxels.len() {
-            rows.double(|press, frame| press.taxels_raw[frame][taxel])?;
-        }
-        for taxel in 0..self.taxels.len() {
-            rows.put::<BoolType>(
-                self.presses
-                    .iter()
-                    .flat_map(|press| press.valid.iter().map(move |row| row[taxel])),
-            )?;
-        }
-        rows.writer.close()?;
-        Ok(())
-    }
-}
-
-/// Writes one column after the other, in the order of the schema.
-struct Rows<'a, 'w> {
-    presses: &'a [Press],
-    writer: SerializedRowGroupWriter<'w, Vec<u8>>,
-}
-
-impl Rows<'_, '_> {
-    fn put<T: DataType>(&mut self, values: impl Iterator<Item = T::T>) -> Result<(), ParquetError> {
-        self.put_some::<T>(values, None)
-    }
-
-    /// `present` tells for each row whether it has a value: 1 or 0.
-    fn put_some<T: DataType>(
-        &mut self,
-        values: impl Iterator<Item = T::T>,
-        present: Option<&[i16]>,
+    fn put(
+        &self,
+        group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
+        column: &Column,
     ) -> Result<(), ParquetError> {
-        put_column::<T, _>(&mut self.writer, &values.collect::<Vec<_>>(), present)
-    }
-
-    fn text(&mut self, text: impl Fn(&Press) -> String) -> Result<(), ParquetError> {
-        let presses = self.presses;
-        let rows = presses.iter().flat_map(|press| {
-            let text = ByteArray::from(text(press).into_bytes());
-            press.time_s.iter().map(move |_| text.clone())
-        });
-        self.put::<ByteArrayType>(rows)
-    }
-
-    fn double(&mut self, number: impl Fn(&Press, usize) -> f64) -> Result<(), ParquetError> {
-        let presses = self.presses;
-        let number = &number;
-        self.put::<DoubleType>(
-            presses
-                .iter()
-                .flat_map(|press| (0..press.time_s.len()).map(move |frame| number(press, frame))),
-        )
-    }
-
-    fn force(&mut self) -> Result<(), ParquetError> {
-        let presses = self.presses;
-        let present = |press: &Press| vec![i16::from(press.force_n.is_some()); press.time_s.len()];
-        let present: Vec<i16> = presses.iter().flat_map(present).collect();
-        self.put_some::<DoubleType>(
-            presses
-                .iter()
-                .filter_map(|press| press.force_n.as_ref())
-                .flatten()
-                .copied(),
-            Some(&present),
-        )
+        match column {
+            Column::Index(numbers) => put_column::<Int32Type, _>(group, numbers, None),
+            Column::Number(numbers) => put_column::<DoubleType, _>(group, numbers, None),
+            Column::Flag(flags) => put_column::<BoolType, _>(group, flags, None),
+            Column::Known(numbers) => {
+                let present: Vec<i16> = numbers.iter().map(|number| i16::from(number.is_some())).collect();
+                let known: Vec<f64> = numbers.iter().copied().flatten().collect();
+                put_column::<DoubleType, _>(group, &known, Some(&present))
+            }
+            Column::Text(texts) => {
+                let rows = texts.iter().zip(&self.presses).flat_map(|(text, press)| {
+                    let text = ByteArray::from(text.as_bytes().to_vec());
+                    std::iter::repeat_n(text, press.time_s.len())
+                });
+                put_column::<ByteArrayType, _>(group, &rows.collect::<Vec<_>>(), None)
+            }
+        }
     }
 }
 

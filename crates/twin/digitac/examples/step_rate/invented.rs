@@ -1,6 +1,7 @@
 //! A twin of a sensor that nobody has built, trained for a moment on presses that nobody has made.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 
 use digitac::{DigitacError, Features, PairedPress, Scale, Split, TrainSettings, Twin, Variant, Warp, train};
 
@@ -64,7 +65,9 @@ pub(crate) fn twin(variant: Variant, n_taxels: usize) -> Result<Twin, DigitacErr
     };
     let taxels: Vec<String> = (0..n_taxels).map(|taxel| format!("t{taxel}")).collect();
     let scale = Scale::of(&presses, BTreeSet::new());
-    let trained = train(&presses, &taxels, &split, &scale, &settings, &mut |_| ())?;
+    let trained = train(&presses, &taxels, &split, &scale, &settings, &mut |_| {
+        ControlFlow::Continue(())
+    })?;
     trained
         .into_iter()
         .next()

@@ -1,6 +1,7 @@
 //! The twin made again without some of what taught it, to see how far off it then is.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 use twintac_depth_table::DepthTable;
@@ -232,7 +233,9 @@ impl Lessons<'_> {
             ..self.train.clone()
         };
         let taxels = &self.recording.taxels;
-        let trained = train(&presses, taxels, &division, self.scale, &settings, &mut |_| ())?;
+        let trained = train(&presses, taxels, &division, self.scale, &settings, &mut |_| {
+            ControlFlow::Continue(())
+        })?;
         let Some(trained) = trained.first() else {
             return Ok(Vec::new());
         };

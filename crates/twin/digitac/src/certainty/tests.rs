@@ -1,6 +1,7 @@
 //! How sure a twin is of a gel of formulas.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_protocol::PressPlan;
@@ -51,7 +52,7 @@ fn make(truth: &Truth, n_places: usize) -> Made {
         &split,
         &scale,
         &train_settings,
-        &mut |_| (),
+        &mut |_| ControlFlow::Continue(()),
     );
     Made {
         contacts: Contact::of_places(&places, &Formula).unwrap(),

@@ -1,6 +1,7 @@
 //! One division of the presses: bench, twin and baselines fitted to what teaches, judged on what was held out.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::DepthTable;
@@ -108,7 +109,7 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         split,
         &scale,
         &train_settings,
-        &mut |_| (),
+        &mut |_| ControlFlow::Continue(()),
     )?;
     let kernel = match fold.taxel {
         None => Some(Baselines::fit(&pairs, &teachers, bench.ports_mm, left_out)?),

@@ -1,6 +1,7 @@
 //! Trains the variants, and chooses among them by their errors on validation presses.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
@@ -54,7 +55,7 @@ pub struct Trained {
     pub history: Vec<Epoch>,
 }
 
-/// Trains every variant of the settings, in their order. `presses` are all presses of the recording: the gel remembers those that do not
+/// Trains every variant of the settings, in their order, unless `progress` breaks it off. `presses` are all presses of the recording: the gel remembers those that do not
 /// teach.
 pub fn train(
     presses: &[PairedPress],
@@ -62,7 +63,7 @@ pub fn train(
     split: &Split,
     scale: &Scale,
     settings: &TrainSettings,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<Trained>, DigitacError> {
     settings.check()?;
     let parts = Parts::new(presses, taxels, split)?;
@@ -223,7 +224,7 @@ fn train_variant(
     parts: &Parts<'_>,
     split: &Split,
     settings: &TrainSettings,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(Parameters, Vec<Epoch>), DigitacError> {
     let variant = physics.variant;
     let train = gather(physics, &parts.rested(physics, &split.train), settings);
@@ -265,13 +266,16 @@ fn train_variant(
             loss,
             validation_loss,
         });
-        progress(Progress {
+        let follows = progress(Progress {
             variant,
             epoch: epoch + 1,
             of: settings.epochs,
             loss,
             validation_loss,
         });
+        if follows.is_break() {
+            return Err(DigitacError::Stopped);
+        }
         if validation_loss < best_loss {
             (best, best_loss, since_best) = (parameters.clone(), validation_loss, 0);
             continue;

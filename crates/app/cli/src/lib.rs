@@ -1,0 +1,49 @@
+//! The command line as a library: for the program `twintac`, and for the Python package, whose command it is too.
+//!
+//! Exit codes: 0 when all was done, 2 when something was wrong with what was asked for or given; the error says what, where, and what to do.
+//! 3 when a bench was stopped: what was recorded until then is kept.
+
+mod arguments;
+mod command;
+mod output;
+mod program;
+mod progress;
+
+use std::io::Write;
+
+use anyhow::{Context, Result};
+use clap::Parser;
+
+use crate::arguments::Arguments;
+pub use crate::program::Program;
+
+impl Program {
+    /// Does what the arguments ask for. Returns the exit code.
+    #[must_use]
+    pub fn run(&self) -> u8 {
+        let arguments = match Arguments::try_parse_from(&self.arguments) {
+            Ok(arguments) => arguments,
+            Err(asked) => {
+                let _ = asked.print(); // of help and version as well
+                return if asked.use_stderr() { 2 } else { 0 };
+            }
+        };
+        match run(arguments, self) {
+            Ok(()) => 0,
+            Err(error) => {
+                let _ = writeln!(std::io::stderr(), "error: {error:#}");
+                if error.is::<command::Stopped>() { 3 } else { 2 }
+            }
+        }
+    }
+}
+
+fn run(arguments: Arguments, program: &Program) -> Result<()> {
+    if let Some(threads) = arguments.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global()
+            .context("starting threads")?;
+    }
+    command::run(arguments.command, program)
+}

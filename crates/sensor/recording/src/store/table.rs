@@ -1,0 +1,95 @@
+//! A recording as a table.
+
+use parquet::basic::Type as Physical;
+use parquet::errors::ParquetError;
+use parquet::schema::types::TypePtr;
+
+use super::schema;
+use crate::{Press, Recording};
+
+/// A column of a recording's table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Column {
+    /// A count from 0 for each frame.
+    Index(Vec<i32>),
+    /// A text for each press, the same in all its frames.
+    Text(Vec<String>),
+    /// A number for each frame.
+    Number(Vec<f64>),
+    /// The same, where it is known.
+    Known(Vec<Option<f64>>),
+    /// Yes or no for each frame.
+    Flag(Vec<bool>),
+}
+
+/// The types of columns, in their order.
+pub(super) fn types(columns: &[(String, Column)]) -> Result<TypePtr, ParquetError> {
+    let typed = columns.iter().map(|(name, column)| match column {
+        Column::Index(_) => schema::required(name, Physical::INT32),
+        Column::Text(_) => schema::required(name, Physical::BYTE_ARRAY),
+        Column::Number(_) => schema::required(name, Physical::DOUBLE),
+        Column::Known(_) => schema::optional(name, Physical::DOUBLE),
+        Column::Flag(_) => schema::required(name, Physical::BOOLEAN),
+    });
+    schema::group("recording", typed.collect::<Result<_, _>>()?)
+}
+
+impl Recording {
+    /// The recording as a table with one row per frame: names of columns and what they have, as [`write_parquet`](Self::write_parquet) writes
+    /// them.
+    #[must_use]
+    pub fn columns(&self) -> Vec<(String, Column)> {
+        let frames = |press: &Press| press.time_s.len();
+        let index = (0..).zip(&self.presses);
+        let index = index.flat_map(|(index, press)| std::iter::repeat_n(index, frames(press)));
+        let text = |text: &dyn Fn(&Press) -> String| Column::Text(self.presses.iter().map(text).collect());
+        let number = |number: &dyn Fn(&Press, usize) -> f64| {
+            let mut numbers = Vec::new();
+            for press in &self.presses {
+                numbers.extend((0..frames(press)).map(|frame| number(press, frame)));
+            }
+            Column::Number(numbers)
+        };
+        let force = self.presses.iter().flat_map(|press| match &press.force_n {
+            Some(force_n) => force_n.iter().copied().map(Some).collect(),
+            None => vec![None; frames(press)],
+        });
+        let mut columns = vec![
+            (schema::PRESS_INDEX, Column::Index(index.collect())),
+            (schema::PRESS, text(&|press| press.name.clone())),
+            (schema::MOUNTING, text(&|press| press.mounting.clone())),
+            (schema::INDENTER, text(&|press| press.indenter.clone())),
+            (schema::CONTROL, text(&|press| press.control.to_string())),
+            (schema::PROVENANCE, text(&|_| self.provenance.to_string())),
+            (schema::TIME, number(&|press, frame| press.time_s[frame])),
+        ];
+        columns.extend(schema::POSE.iter().enumerate().map(|(axis, name)| {
+            let of_pose = |press: &Press, frame: usize| {
+                let pose = &press.gel_from_indenter[frame];
+                let (place_mm, turn) = (pose.position_mm.to_array(), pose.rotation.to_array());
+                if axis < 3 { place_mm[axis] } else { turn[axis - 3] }
+            };
+            (*name, number(&of_pose))
+        }));
+        columns.push((schema::FORCE, Column::Known(force.collect())));
+        let mut columns: Vec<(String, Column)> = columns
+            .into_iter()
+            .map(|(name, column)| (name.to_owned(), column))
+            .collect();
+        let mut of_taxels = |suffix: &str, column: &dyn Fn(usize) -> Column| {
+            let taxels = self.taxels.iter().enumerate();
+            columns.extend(taxels.map(|(taxel, name)| (format!("{name}{suffix}"), column(taxel))));
+        };
+        of_taxels(schema::KPA, &|taxel| {
+            number(&|press, frame| press.taxels_kpa[frame][taxel])
+        });
+        of_taxels(schema::RAW, &|taxel| {
+            number(&|press, frame| press.taxels_raw[frame][taxel])
+        });
+        of_taxels(schema::VALID, &|taxel| {
+            let rows = self.presses.iter().flat_map(|press| &press.valid);
+            Column::Flag(rows.map(|row| row[taxel]).collect())
+        });
+        columns
+    }
+}

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Builds the package, installs it into the virtual environment of a Python, and checks it: types, stubs against the library, sources, tests.
+set -euo pipefail
+python=$(realpath --no-symlinks "${1:?usage: python/check.sh VENV/bin/python}")
+cd "$(dirname "$0")/tests" # where `twintac` is the installed one
+export CARGO_TARGET_DIR="$PWD/../../target" # what the workspace has built is not built again
+"$python" -m pip install --quiet --disable-pip-version-check '..[test]'
+"$python" -m mypy --strict ../examples .
+"$python" -m mypy.stubtest twintac
+PYO3_PYTHON=$python cargo clippy --manifest-path ../Cargo.toml --release --quiet -- --deny warnings
+"$python" -m pytest --quiet

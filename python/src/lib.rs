@@ -1,0 +1,55 @@
+//! TwinTac for Python: the library `twintac`, with NumPy in and out.
+//!
+//! Each file binds the types of one of the library's files; nothing is computed here. Long calls work on a thread of their own ([`long_call`]).
+
+mod array;
+mod error;
+mod fast;
+mod gel;
+mod inverse;
+mod long_call;
+mod map;
+mod pose;
+mod press;
+mod program;
+mod recording;
+mod run;
+mod sensor;
+mod sensors;
+mod settings;
+mod shape;
+mod touches;
+mod twin;
+
+use pyo3::prelude::*;
+
+/// Barometric touch sensors and their digital twin.
+#[pymodule]
+mod _twintac {
+    #[pymodule_export]
+    use crate::fast::{FastBatch, FastGel, FastReader};
+    #[pymodule_export]
+    use crate::gel::{Gel, Pressed};
+    #[pymodule_export]
+    use crate::inverse::{Contact, Inverse, Tracker};
+    #[pymodule_export]
+    use crate::map::PressureMap;
+    #[pymodule_export]
+    use crate::pose::Pose;
+    #[pymodule_export]
+    use crate::press::Press;
+    #[pymodule_export]
+    use crate::program::command;
+    #[pymodule_export]
+    use crate::recording::Recording;
+    #[pymodule_export]
+    use crate::run::Run;
+    #[pymodule_export]
+    use crate::sensor::Sensor;
+    #[pymodule_export]
+    use crate::sensors::{Imperfection, SensorBatch};
+    #[pymodule_export]
+    use crate::shape::{Body, Shape};
+    #[pymodule_export]
+    use crate::twin::{Prediction, Twin, TwinAtPlace, TwinState};
+}

@@ -1,0 +1,176 @@
+//! Calls that take from a second to hours: a thread of their own works, the calling one hears Python's signals and tells of progress.
+
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use pyo3::exceptions::PyUserWarning;
+use pyo3::prelude::*;
+use twintac::Progress;
+
+/// How long Ctrl-C may wait to be heard.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// What the working thread says.
+enum Message<T> {
+    /// A person should know this.
+    Note(String),
+    /// How far the work is.
+    Step {
+        work: String,
+        done: usize,
+        total: usize,
+        state: String,
+    },
+    /// It is done.
+    Done(T),
+}
+
+/// Does work that nobody follows. On Ctrl-C it is left to itself, and what comes of it is dropped.
+pub(crate) fn long_call<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, receiver) = channel();
+    let worker = std::thread::spawn(move || drop(sender.send(Message::Done(work()))));
+    match listen(py, receiver, None)? {
+        Some(done) => Ok(done),
+        None => end(py, worker),
+    }
+}
+
+/// Does work that `progress` follows, as `listener` in `_progress.py` understands it. On Ctrl-C the work ends before its next step.
+pub(crate) fn followed<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(Arc<dyn Progress>) -> T + Send + 'static,
+) -> PyResult<T> {
+    let listener = py
+        .import("twintac._progress")?
+        .getattr("listener")?
+        .call1((progress,))?;
+    let (sender, receiver) = channel();
+    let stops = Arc::new(AtomicBool::new(false));
+    let teller = Teller {
+        sender: sender.clone(),
+        work: Mutex::default(),
+        done: AtomicUsize::new(0),
+        total: AtomicUsize::new(0),
+        stops: Arc::clone(&stops),
+    };
+    let worker = std::thread::spawn(move || drop(sender.send(Message::Done(work(Arc::new(teller))))));
+    match listen(
+        py,
+        receiver,
+        Some(&listener).filter(|listener| !listener.is_none()),
+    ) {
+        Ok(Some(done)) => Ok(done),
+        Ok(None) => end(py, worker),
+        Err(interrupt) => {
+            stops.store(true, Ordering::Relaxed);
+            let _ = py.detach(|| worker.join());
+            Err(interrupt)
+        }
+    }
+}
+
+/// Listens until the work is done, or a signal or the listener raises an exception. Nothing comes of work that panicked.
+fn listen<T: Send>(
+    py: Python<'_>,
+    mut receiver: Receiver<Message<T>>,
+    listener: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<T>> {
+    loop {
+        let heard;
+        (receiver, heard) = py.detach(move || {
+            let heard = receiver.recv_timeout(PATIENCE);
+            (receiver, heard)
+        });
+        match (heard, listener) {
+            (Ok(Message::Done(done)), _) => return Ok(Some(done)),
+            (Ok(Message::Note(text)), _) => {
+                let text = std::ffi::CString::new(text)?;
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+            }
+            (
+                Ok(Message::Step {
+                    work,
+                    done,
+                    total,
+                    state,
+                }),
+                Some(listener),
+            ) => {
+                listener.call1((work, done, total, state))?;
+            }
+            (Ok(Message::Step { .. }) | Err(RecvTimeoutError::Timeout), _) => {}
+            (Err(RecvTimeoutError::Disconnected), _) => return Ok(None),
+        }
+        py.check_signals()?;
+    }
+}
+
+/// Panics as the worker did.
+fn end<T>(py: Python<'_>, worker: JoinHandle<()>) -> PyResult<T> {
+    match py.detach(|| worker.join()) {
+        Err(panic) => resume_unwind(panic),
+        Ok(()) => unreachable!("a thread that did not panic has sent what it did"),
+    }
+}
+
+/// Tells the calling thread of progress.
+struct Teller<T> {
+    sender: Sender<Message<T>>,
+    work: Mutex<String>,
+    done: AtomicUsize,
+    total: AtomicUsize,
+    stops: Arc<AtomicBool>,
+}
+
+impl<T> Teller<T> {
+    fn tell(&self, done: usize, state: &str) {
+        let step = Message::Step {
+            work: self.work.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+            done,
+            total: self.total.load(Ordering::Relaxed),
+            state: state.to_owned(),
+        };
+        let _ = self.sender.send(step); // to nobody, once the caller was interrupted
+    }
+}
+
+impl<T: Send> Progress for Teller<T> {
+    fn started(&self, work: &str, n_steps: usize) {
+        work.clone_into(&mut self.work.lock().unwrap_or_else(PoisonError::into_inner));
+        self.done.store(0, Ordering::Relaxed);
+        self.total.store(n_steps, Ordering::Relaxed);
+        self.tell(0, "");
+    }
+
+    fn more_steps(&self, n_steps: usize) {
+        self.total.fetch_add(n_steps, Ordering::Relaxed);
+    }
+
+    fn step(&self, state: &str) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.tell(done, state);
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stops.load(Ordering::Relaxed)
+    }
+
+    /// What had fewer steps than were thought of is done all the same.
+    fn finished(&self) {
+        let done = self.done.load(Ordering::Relaxed);
+        self.total.store(done, Ordering::Relaxed);
+        self.tell(done, "");
+    }
+
+    fn note(&self, text: &str) {
+        let _ = self.sender.send(Message::Note(text.to_owned()));
+    }
+}

@@ -1,0 +1,34 @@
+//! This package as the program that runs are worked on with.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use twintac::{Caller, sha256_of_file};
+use twintac_cli::Program;
+
+use crate::error::OrRaise;
+
+/// The package's own file, which tells one build from another, and what Python was started with.
+fn program(py: Python<'_>) -> PyResult<Program> {
+    let file: PathBuf = py.import("twintac._twintac")?.getattr("__file__")?.extract()?;
+    let arguments = py.import("sys")?.getattr("argv")?.extract()?;
+    Ok(Program { file, arguments })
+}
+
+/// Does what the command line asks for. Returns the exit code.
+#[pyfunction]
+pub(crate) fn command(py: Python<'_>) -> PyResult<u8> {
+    let program = program(py)?;
+    Ok(py.detach(|| program.run()))
+}
+
+/// This package, for runs whose work nobody follows.
+pub(crate) fn caller(py: Python<'_>) -> PyResult<Caller> {
+    let Program { file, arguments } = program(py)?;
+    let words: Vec<_> = arguments.iter().map(|word| word.to_string_lossy()).collect();
+    Ok(Caller {
+        program: py.detach(|| sha256_of_file(&file)).or_raise(py)?,
+        command: format!("python {}", words.join(" ")),
+        ..Caller::default()
+    })
+}

@@ -1,0 +1,123 @@
+//! Runs: from recordings to a judged twin.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use twintac::{RunError, RunSettings, Silent};
+
+use crate::error::OrRaise;
+use crate::long_call::followed;
+use crate::program::caller;
+use crate::recording::Recording;
+use crate::sensor::Sensor;
+use crate::settings::{but, to_python};
+
+/// A folder in which recordings become a judged twin and a report. What is done is kept: the same again does only what is missing.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct Run {
+    run: twintac::Run,
+}
+
+impl Run {
+    /// Does something with the run while `progress` follows.
+    fn work<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+        work: impl FnOnce(&twintac::Run) -> Result<T, RunError> + Send + 'static,
+    ) -> PyResult<T> {
+        let run = self.run.clone();
+        followed(py, progress, |progress| work(&run.followed_by(progress)))?.or_raise(py)
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// Starts a run, or takes up the one that the folder holds with new settings. `source` says in words where the presses come from. `settings`
+    /// has those that differ from the usual ones, with a dictionary for each stage: `{"train": {"epochs": 40}}`.
+    #[staticmethod]
+    #[pyo3(signature = (folder, sensor, source, *, seed=1, settings=None))]
+    fn start(
+        py: Python<'_>,
+        folder: PathBuf,
+        sensor: &Sensor,
+        source: &str,
+        seed: u64,
+        settings: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let settings = but(RunSettings::default(), settings.as_ref())?;
+        let run = twintac::Run::start(&folder, &sensor.sensor, source, seed, settings, caller(py)?);
+        Ok(Self {
+            run: run.or_raise(py)?,
+        })
+    }
+
+    /// Opens a run that was started.
+    #[staticmethod]
+    fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let run = twintac::Run::open(&folder, caller(py)?).or_raise(py)?;
+        Ok(Self { run })
+    }
+
+    /// Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute.
+    #[staticmethod]
+    #[pyo3(signature = (folder, *, seed=1, progress=None))]
+    fn demo(
+        py: Python<'_>,
+        folder: PathBuf,
+        seed: u64,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let caller = caller(py)?;
+        let run = followed(py, progress.as_ref(), move |progress| {
+            twintac::Run::demo(&folder, seed, twintac::Caller { progress, ..caller })
+        })?;
+        Ok(Self {
+            run: run.or_raise(py)?.followed_by(Arc::new(Silent)),
+        })
+    }
+
+    /// Makes the run's recordings of CSV files of any laboratory, which the description (TOML) says how to read.
+    #[pyo3(signature = (description, *paths))]
+    fn import_csv(&self, py: Python<'_>, description: PathBuf, paths: Vec<PathBuf>) -> PyResult<()> {
+        self.work(py, None, move |run| run.import(&description, &paths))
+    }
+
+    /// Runs all stages after the recordings: simulates, aligns, trains, judges, reports. Returns how well the twin does, as `metrics.json` has it.
+    /// Ctrl-C stops before the next step; the same call goes on from there.
+    #[pyo3(signature = (*, progress=None))]
+    fn finish<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let metrics = self.work(py, progress.as_ref(), twintac::Run::finish)?;
+        to_python(py, &metrics)
+    }
+
+    /// The presses, as recorded.
+    fn recording(&self, py: Python<'_>) -> PyResult<Recording> {
+        let recording = py.detach(|| self.run.recording()).or_raise(py)?;
+        Ok(Recording { recording })
+    }
+
+    /// The run's folder.
+    #[getter]
+    fn folder(&self) -> PathBuf {
+        self.run.folder().to_owned()
+    }
+
+    /// The folder of the twin of all presses, which `Twin.load` reads.
+    #[getter]
+    fn model_folder(&self) -> PathBuf {
+        self.run.model_folder()
+    }
+
+    /// The page that says how well the twin does.
+    #[getter]
+    fn report_path(&self) -> PathBuf {
+        self.run.report_path()
+    }
+}

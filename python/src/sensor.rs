@@ -1,0 +1,78 @@
+//! Sensors as they are described.
+
+use std::path::PathBuf;
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+
+use crate::array::rows;
+use crate::error::OrRaise;
+
+/// A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
+#[pyclass(frozen, from_py_object, module = "twintac")]
+#[derive(Clone)]
+pub(crate) struct Sensor {
+    pub(crate) sensor: twintac::Sensor,
+}
+
+#[pymethods]
+impl Sensor {
+    /// PhysTac: eight barometers under a flat gel of 34 × 18 × 8.5 mm.
+    #[staticmethod]
+    fn phystac(py: Python<'_>) -> PyResult<Self> {
+        let sensor = twintac::Sensor::phystac().or_raise(py)?;
+        Ok(Self { sensor })
+    }
+
+    /// Reads a description (TOML).
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let sensor = py.detach(|| twintac::Sensor::read(path)).or_raise(py)?;
+        Ok(Self { sensor })
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.sensor.name()
+    }
+
+    /// Names of its taxels, in the order of every row of readings.
+    #[getter]
+    fn taxels(&self) -> Vec<&str> {
+        self.sensor.taxels().collect()
+    }
+
+    /// Centres of the taxels' ports in the gel's frame, mm; `[n_taxels, 3]`.
+    #[getter]
+    fn taxel_positions_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let taxels = &self.sensor.file().sensor.taxels;
+        let positions = taxels.iter().flat_map(|taxel| taxel.position_mm.to_array());
+        rows(py, positions.collect(), [taxels.len(), 3])
+    }
+
+    /// Names of the indenters that it can be pressed with.
+    #[getter]
+    fn indenters(&self) -> Vec<&str> {
+        self.sensor.indenters().collect()
+    }
+
+    /// Frames that it gives in a second, Hz.
+    #[getter]
+    fn rate_hz(&self) -> f64 {
+        self.sensor.file().sensor.readout.rate_hz
+    }
+
+    /// All that the description says, with units, as a text for people.
+    fn describe(&self) -> String {
+        self.sensor.file().sensor.describe()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Sensor {:?} with {} taxels>",
+            self.name(),
+            self.sensor.taxels().count()
+        )
+    }
+}

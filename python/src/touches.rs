@@ -1,0 +1,95 @@
+//! What touches many sensors, as arrays.
+
+use numpy::ndarray::{Ix1, Ix2};
+use numpy::{AllowTypeChange, PyArrayLike};
+use pyo3::prelude::*;
+use twintac::Touch;
+
+use crate::array::{Numbers, in_order};
+use crate::error::unusable;
+use crate::pose::checked;
+use crate::shape::Body;
+
+/// Numbers of bodies, and ends.
+pub(crate) type Counts<'py> = PyArrayLike<'py, i64, Ix1, AllowTypeChange>;
+
+/// What touches each of many sensors.
+pub(crate) struct Touches {
+    pub(crate) touches: Vec<Touch>,
+    /// Where each sensor's touches end; `[n_sensors]`.
+    pub(crate) ends: Vec<usize>,
+}
+
+impl Touches {
+    /// - `gel_from_body`: `[n_touches, 7]`, place in mm and quaternion `(x, y, z, w)`; or `[n_touches, 3]`, places of bodies that are not turned.
+    /// - `body`: numbers of the bodies, `[n_touches]`; the first body unless given.
+    /// - `ends`: where each sensor's touches end, `[n_sensors]`; one touch for each sensor unless given.
+    pub(crate) fn checked(
+        py: Python<'_>,
+        gel_from_body: &Numbers<'_, Ix2>,
+        body: Option<&Counts<'_>>,
+        ends: Option<&Counts<'_>>,
+        n_bodies: usize,
+    ) -> PyResult<Self> {
+        let &[n_touches, n_columns] = gel_from_body.as_array().shape() else {
+            return Err(unusable(
+                py,
+                "gel_from_body",
+                "has another shape than [n_touches, 7]",
+            ));
+        };
+        if n_columns != 7 && n_columns != 3 {
+            let problem = format!("has {n_columns} columns, expected 7 (place and quaternion) or 3 (place)");
+            return Err(unusable(py, "gel_from_body", &problem));
+        }
+        let body = body.map_or_else(|| vec![0; n_touches], |body| body.as_array().to_vec());
+        if body.len() != n_touches {
+            let problem = format!(
+                "has {} numbers, expected one for each of {n_touches} touches",
+                body.len()
+            );
+            return Err(unusable(py, "body", &problem));
+        }
+        let poses = in_order(gel_from_body);
+        let touches = poses.chunks_exact(n_columns).zip(body).map(|(pose, body)| {
+            let number = u32::try_from(body)
+                .ok()
+                .filter(|number| (*number as usize) < n_bodies);
+            let number = number.ok_or_else(|| {
+                unusable(py, "body", &format!("has {body}, expected 0 to {}", n_bodies - 1))
+            })?;
+            let quaternion = pose
+                .get(3..7)
+                .map_or([0.0, 0.0, 0.0, 1.0], |q| [q[0], q[1], q[2], q[3]]);
+            Ok(Touch {
+                body: number,
+                gel_from_body: checked(py, [pose[0], pose[1], pose[2]], quaternion)?,
+            })
+        });
+        Ok(Self {
+            touches: touches.collect::<PyResult<_>>()?,
+            ends: match ends {
+                Some(ends) => checked_ends(py, &ends.as_array().to_vec(), n_touches)?,
+                None => (1..=n_touches).collect(),
+            },
+        })
+    }
+}
+
+fn checked_ends(py: Python<'_>, ends: &[i64], n_touches: usize) -> PyResult<Vec<usize>> {
+    let numbers: Option<Vec<usize>> = ends.iter().map(|end| usize::try_from(*end).ok()).collect();
+    let numbers =
+        numbers.filter(|numbers| numbers.is_sorted() && numbers.last().copied().unwrap_or(0) == n_touches);
+    numbers.ok_or_else(|| {
+        let problem = format!("has to grow from 0 or more to the number of touches, {n_touches}");
+        unusable(py, "ends", &problem)
+    })
+}
+
+/// Bodies side by side in memory, at least one.
+pub(crate) fn bodies(py: Python<'_>, bodies: Vec<Body>) -> PyResult<Vec<twintac::Body>> {
+    if bodies.is_empty() {
+        return Err(unusable(py, "bodies", "has none, expected at least one"));
+    }
+    Ok(bodies.into_iter().map(|body| (*body.body).clone()).collect())
+}

@@ -1,0 +1,273 @@
+//! Trained twins.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::ndarray::Ix2;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::array::{Numbers, in_order, of_rows, rows};
+use crate::error::{OrRaise, unusable};
+use crate::fast::PROVENANCE;
+use crate::long_call::long_call;
+use crate::press::Press;
+use crate::sensor::Sensor;
+use crate::sensors::since;
+
+/// A trained twin: what the barometers of one sensor would read while its gel is pressed.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct Twin {
+    pub(crate) twin: Arc<twintac::Twin>,
+}
+
+#[pymethods]
+impl Twin {
+    /// Loads a twin from the folder that a run leaves it in: `<run>/model`.
+    #[staticmethod]
+    fn load(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let twin = py.detach(|| twintac::Twin::load(folder)).or_raise(py)?;
+        Ok(Self { twin: Arc::new(twin) })
+    }
+
+    /// The sensor whose twin it is.
+    #[getter]
+    fn sensor(&self) -> Sensor {
+        Sensor {
+            sensor: self.twin.sensor().clone(),
+        }
+    }
+
+    /// Where the recordings come from that it was trained with. What it predicts is simulated.
+    #[getter]
+    fn trained_on(&self) -> String {
+        self.twin.trained_on().to_string()
+    }
+
+    /// What the barometers would read along a press, as many frames a second as the sensor gives. Takes a few seconds; Ctrl-C ends the wait.
+    fn predict(&self, py: Python<'_>, press: &Press) -> PyResult<Prediction> {
+        let (twin, press) = (Arc::clone(&self.twin), twintac::Press::from(press));
+        let prediction = long_call(py, move || twin.predict(&press))?.or_raise(py)?;
+        Ok(Prediction {
+            n_taxels: self.twin.sensor().taxels().count(),
+            prediction,
+        })
+    }
+
+    /// The twin at the place of a press and down to its depth, to be stepped with depths as they come. Takes a second; Ctrl-C ends the wait.
+    fn at(&self, py: Python<'_>, press: &Press) -> PyResult<TwinAtPlace> {
+        let (twin, press) = (Arc::clone(&self.twin), twintac::Press::from(press));
+        Ok(TwinAtPlace {
+            n_taxels: self.twin.sensor().taxels().count(),
+            twin: long_call(py, move || twin.at(&press))?.or_raise(py)?,
+        })
+    }
+
+    /// Twins of so many sensors, to be stepped together with pressures at their ports.
+    #[pyo3(signature = (n_sensors=1))]
+    fn states(&self, n_sensors: usize) -> TwinState {
+        TwinState {
+            shape: [n_sensors, self.twin.sensor().taxels().count()],
+            state: self.twin.states(n_sensors),
+        }
+    }
+}
+
+/// What a twin would read along a press.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct Prediction {
+    prediction: twintac::Prediction,
+    n_taxels: usize,
+}
+
+#[pymethods]
+impl Prediction {
+    /// What every number here is: simulated.
+    #[getter]
+    fn provenance(&self) -> &'static str {
+        PROVENANCE
+    }
+
+    /// Time since the start of the press, s; `[n_frames]`.
+    #[getter]
+    fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.prediction.time_s)
+    }
+
+    /// Depth below first touch, mm, negative above the gel; `[n_frames]`.
+    #[getter]
+    fn depth_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.prediction.depth_mm)
+    }
+
+    /// Force of the indenter on the gel, N; `[n_frames]`.
+    #[getter]
+    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.prediction.force_n)
+    }
+
+    /// What the barometers would read above what they read untouched, kPa; `[n_frames, n_taxels]`.
+    #[getter]
+    fn readings_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        of_rows(py, &self.prediction.readings_kpa, self.n_taxels)
+    }
+
+    /// Whether the frame was simulated, and not deeper than the gel could be pressed; `[n_frames]`.
+    #[getter]
+    fn simulated<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_slice(py, &self.prediction.simulated)
+    }
+
+    /// Half the width of the 90 % interval around each reading, kPa, `[n_frames, n_taxels]`; `None` of a twin that does not know.
+    #[getter]
+    fn half_width_kpa<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let certainty = self.prediction.certainty.as_ref();
+        certainty
+            .map(|certainty| of_rows(py, &certainty.half_width_kpa, self.n_taxels))
+            .transpose()
+    }
+
+    /// How unlike the contact is to what taught the twin, `[n_frames]`; `None` of a twin that does not know.
+    #[getter]
+    fn unlikeness<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let certainty = self.prediction.certainty.as_ref()?;
+        Some(PyArray1::from_slice(py, &certainty.unlikeness))
+    }
+
+    /// Whether the contact is too unlike for readings and intervals to be trusted, `[n_frames]`; `None` of a twin that does not know.
+    #[getter]
+    fn is_unlike<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<bool>>> {
+        let certainty = self.prediction.certainty.as_ref()?;
+        Some(PyArray1::from_slice(py, &certainty.is_unlike))
+    }
+}
+
+/// A twin whose sensor is pressed at one place, stepped with depths.
+#[pyclass(module = "twintac")]
+pub(crate) struct TwinAtPlace {
+    twin: twintac::TwinAtPlace,
+    n_taxels: usize,
+}
+
+#[pymethods]
+impl TwinAtPlace {
+    /// What every reading is: simulated.
+    #[getter]
+    fn provenance(&self) -> &'static str {
+        PROVENANCE
+    }
+
+    /// One more frame, `since_previous_s` after the last, at a depth below first touch, mm. Returns what the barometers would read, kPa;
+    /// `[n_taxels]`.
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        since_previous_s: f64,
+        depth_mm: f64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        since(py, since_previous_s)?;
+        let mut readings_kpa = vec![0.0; self.n_taxels];
+        self.twin.step(since_previous_s, depth_mm, &mut readings_kpa);
+        Ok(PyArray1::from_vec(py, readings_kpa))
+    }
+
+    /// Force of the indenter on the gel at the last frame, N.
+    #[getter]
+    fn force_n(&self) -> f64 {
+        self.twin.force_n()
+    }
+
+    /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
+    #[getter]
+    fn half_widths_kpa<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.twin
+            .half_widths_kpa()
+            .map(|widths| PyArray1::from_slice(py, widths))
+    }
+
+    /// How unlike the last contact is to what taught the twin, and whether it is too unlike to be trusted; `None` of a twin that does not know.
+    #[getter]
+    fn unlikeness(&self) -> Option<(f64, bool)> {
+        self.twin.unlikeness()
+    }
+
+    /// Depth below first touch at which the table ends, mm; deeper, its last pressures stand.
+    #[getter]
+    fn max_depth_mm(&self) -> f64 {
+        self.twin.max_depth_mm()
+    }
+
+    /// Takes what is read now as zero, as a tare of a real sensor does.
+    fn tare(&mut self) {
+        self.twin.tare();
+    }
+
+    /// Lets the gel rest until the next frame. The zero stays.
+    fn rest(&mut self) {
+        self.twin.rest();
+    }
+}
+
+/// Twins of many sensors, stepped together with pressures at their ports.
+#[pyclass(module = "twintac")]
+pub(crate) struct TwinState {
+    state: twintac::TwinState,
+    /// Sensors and taxels.
+    shape: [usize; 2],
+}
+
+#[pymethods]
+impl TwinState {
+    /// What every reading is: simulated.
+    #[getter]
+    fn provenance(&self) -> &'static str {
+        PROVENANCE
+    }
+
+    /// One more frame of every sensor, `since_previous_s` after the last: from pressures at the ports to what the barometers would read, kPa; both
+    /// `[n_sensors, n_taxels]`.
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        since_previous_s: f64,
+        pressure_kpa: Numbers<'_, Ix2>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        since(py, since_previous_s)?;
+        if pressure_kpa.as_array().shape() != self.shape {
+            let problem = format!(
+                "has the shape {:?}, expected {:?}",
+                pressure_kpa.as_array().shape(),
+                self.shape
+            );
+            return Err(unusable(py, "pressure_kpa", &problem));
+        }
+        let seen = in_order(&pressure_kpa);
+        let mut readings_kpa = vec![0.0; seen.len()];
+        py.detach(|| self.state.step(since_previous_s, &seen, &mut readings_kpa));
+        rows(py, readings_kpa, self.shape)
+    }
+
+    /// Takes what is read now as zero, as a tare of a real sensor does.
+    fn tare(&mut self) {
+        self.state.tare();
+    }
+
+    /// Takes what a sensor that nothing touches reads as zero.
+    fn tare_untouched(&mut self) {
+        self.state.tare_untouched();
+    }
+
+    /// Lets the gel of one sensor rest until its next frame. Its zero stays.
+    fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
+        if sensor >= self.shape[0] {
+            let problem = format!("is {sensor}, there are {}", self.shape[0]);
+            return Err(unusable(py, "sensor", &problem));
+        }
+        self.state.rest(sensor);
+        Ok(())
+    }
+
+    fn __len__(&self) -> usize {
+        self.shape[0]
+    }
+}

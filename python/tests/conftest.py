@@ -1,0 +1,33 @@
+"""What several tests use."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DATA = ROOT / "crates/app/twintac/examples/data"
+
+
+def run_example(name: str, folder: Path) -> str:
+    """Runs an example in a folder. What it prints."""
+    example = ROOT / "python/examples" / name
+    ran = subprocess.run([sys.executable, example], cwd=folder, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    return ran.stdout
+
+
+def run_command(*arguments: object) -> "subprocess.CompletedProcess[str]":
+    """Runs the command that the package installs."""
+    command = Path(sys.executable).with_name("twintac")
+    words = [str(command), *map(str, arguments)]
+    return subprocess.run(words, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="session")
+def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished run: that of the example that trains."""
+    folder = tmp_path_factory.mktemp("trained")
+    run_example("train_from_csv.py", folder)
+    return folder / "runs/from-csv"

@@ -1,0 +1,25 @@
+"""Every example runs."""
+
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, run_example
+
+EXAMPLES = sorted(path.name for path in (ROOT / "python/examples").glob("*.py"))
+
+
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("press_a_ball.py", "train_from_csv.py")])
+def test_example_prints(name: str, tmp_path: Path) -> None:
+    last = run_example(name, tmp_path).splitlines()[-1]
+    assert "emulated" in last or "simulated" in last
+
+
+def test_a_ball_is_read_and_drawn(tmp_path: Path) -> None:
+    lines = run_example("press_a_ball.py", tmp_path).splitlines()
+    assert len(lines) == 8 and all(line.endswith("kPa, simulated") for line in lines)
+    assert (tmp_path / "ball.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_training_makes_a_model_and_a_report(trained: Path) -> None:
+    assert (trained / "report.html").is_file()
+    assert (trained / "model").is_dir()
