@@ -10,14 +10,18 @@ use crate::distance::{Body, Field, Form, REACH_MM};
 use crate::engine::dispatch;
 use crate::surface::SurfaceGrid;
 
-/// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses.
-const LEVELS_MM: [f32; 3] = [0.0, -1.5, -3.0];
+/// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses. Over gels that are higher
+/// than [`HEIGHT_MM`] they lie in proportion to the height.
+const LEVELS_MM: [f32; N_CHANNELS] = [0.0, -1.5, -3.0];
 
-/// Deeper points are no deeper to the network, mm.
+/// Deeper points are no deeper to the network, mm; in the same proportion.
 const DEEPEST_MM: f32 = 4.0;
 
+/// Height of the gel for which both are, mm: PhysTac's.
+const HEIGHT_MM: f32 = 8.5;
+
 /// Numbers for each point.
-pub(crate) const N_CHANNELS: usize = LEVELS_MM.len();
+pub(crate) const N_CHANNELS: usize = 3;
 
 /// The points of all grids, one grid after the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +37,10 @@ struct ContactGrid {
     spacing_mm: f32,
     n: [usize; 2],
     height_mm: Vec<f32>,
-    /// Lowest and highest of the points.
-    heights_mm: [f32; 2],
+    /// Of the highest point.
+    highest_mm: f32,
+    levels_mm: [f32; N_CHANNELS],
+    deepest_mm: f32,
 }
 
 impl ContactPoints {
@@ -68,14 +74,15 @@ impl ContactPoints {
 impl ContactGrid {
     fn new(grid: &SurfaceGrid) -> Self {
         let height_mm: Vec<f32> = grid.height_mm.iter().map(|height| *height as f32).collect();
+        let highest_mm = height_mm.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let scale = (highest_mm / HEIGHT_MM).max(1.0);
         Self {
             first_mm: grid.first_mm.map(|first| first as f32),
             spacing_mm: grid.spacing_mm as f32,
             n: grid.n,
-            heights_mm: [
-                height_mm.iter().copied().fold(f32::INFINITY, f32::min),
-                height_mm.iter().copied().fold(f32::NEG_INFINITY, f32::max),
-            ],
+            highest_mm,
+            levels_mm: LEVELS_MM.map(|level_mm| scale * level_mm),
+            deepest_mm: scale * DEEPEST_MM,
             height_mm,
         }
     }
@@ -92,7 +99,7 @@ impl ContactGrid {
         let body_from_gel = Mat3::from_quat(rotation.inverse());
         let origin = position_mm.as_vec3();
         let [low, high] = self.box_in_gel(body, &Mat3::from_quat(rotation), origin);
-        if low.z > self.heights_mm[1] {
+        if low.z > self.highest_mm {
             return;
         }
         let [n_x, n_y] = self.n;
@@ -136,10 +143,11 @@ impl ContactGrid {
             for ((i, height_mm), input) in placed.columns.clone().zip(heights_mm).zip(&mut inputs[points]) {
                 let x_mm = self.first_mm[0] + self.spacing_mm * i as f32 - placed.origin.x;
                 let (plane, z_mm) = (along * x_mm + row, height_mm - placed.origin.z);
-                for (input, level_mm) in input.iter_mut().zip(LEVELS_MM) {
-                    let share = share(field.distance_mm(plane + up * (z_mm + level_mm)));
+                for (input, level_mm) in input.iter_mut().zip(self.levels_mm) {
+                    let distance_mm = field.distance_mm(plane + up * (z_mm + level_mm));
+                    let share = share(larger(distance_mm, -self.deepest_mm));
                     // What is not near the surface is not near anything below it.
-                    if level_mm == LEVELS_MM[0] && share == 0.0 {
+                    if level_mm == 0.0 && share == 0.0 {
                         break;
                     }
                     *input = larger(*input, share);
@@ -190,7 +198,6 @@ impl<'b, B: Iterator<Item = (&'b Body, Pose)> + Clone> WithSimd for Filling<'_, 
 /// How much of the reach around a body is left at a distance, in units of the reach.
 #[inline(always)]
 fn share(distance_mm: f32) -> f32 {
-    let distance_mm = larger(distance_mm, -DEEPEST_MM);
     larger((REACH_MM - distance_mm) * (1.0 / REACH_MM), 0.0)
 }
 

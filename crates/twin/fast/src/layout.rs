@@ -25,7 +25,7 @@ impl Layout {
     pub(crate) fn of(sensor: &Sensor) -> Self {
         let (grids, surroundings) = (SurfaceGrid::all(sensor), Surroundings::of(sensor));
         Self {
-            patch: Patch::round(grids[0].spacing_mm, surroundings.height_mm()),
+            patch: Patch::round(&grids[0], surroundings.height_mm()),
             grids,
             surroundings,
         }

@@ -114,6 +114,11 @@ impl SurfaceGrid {
         row(j) + part.y * (row(j + 1) - row(j))
     }
 
+    /// Whether the points are as far apart as they are only over high gels.
+    pub(crate) fn is_coarse(&self) -> bool {
+        self.spacing_mm > SPACING_MM
+    }
+
     /// Number of points.
     pub(crate) fn len(&self) -> usize {
         self.height_mm.len()

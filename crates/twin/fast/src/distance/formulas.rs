@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec3A};
 
-use super::Field;
+use super::field::Field;
 
 /// A ball.
 #[derive(Clone, Debug, PartialEq)]

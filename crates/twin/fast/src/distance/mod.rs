@@ -1,16 +1,15 @@
 //! Distances to a rigid shape, fast enough to ask for hundreds of them in a microsecond.
 
+mod field;
 mod formulas;
 mod samples;
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 use twintac_shape::{Shape, ShapeError, Surfaces};
 
+pub(crate) use field::{Field, REACH_MM};
 use formulas::{Ball, RoundedBox, RoundedCylinder};
 use samples::Samples;
-
-/// How far around a shape its distance is told, mm: what is further away does not press.
-pub(crate) const REACH_MM: f32 = 2.0;
 
 /// A rigid shape whose distance is known at once: balls, boxes and cylinders by formulas, any other shape by samples on a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,12 +25,6 @@ pub(crate) enum Form {
     Box(RoundedBox),
     Cylinder(RoundedCylinder),
     Sampled(Samples),
-}
-
-/// What tells distances.
-pub(crate) trait Field {
-    /// The distance of a point in the body's frame, mm; [`REACH_MM`] or more where it is more than that.
-    fn distance_mm(&self, point: Vec3A) -> f32;
 }
 
 impl Body {

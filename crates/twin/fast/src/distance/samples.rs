@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
 use twintac_shape::SignedDistance;
 
-use super::{Field, REACH_MM};
+use super::field::{Field, REACH_MM};
 
 /// Distance of the samples, mm, unless there would be too many.
 const SPACING_MM: f64 = 0.5;

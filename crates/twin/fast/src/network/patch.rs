@@ -33,9 +33,13 @@ pub(crate) struct Turn {
 }
 
 impl Patch {
-    /// All points of a grid within reach, over a gel of this height.
-    pub(crate) fn round(spacing_mm: f64, height_mm: f64) -> Self {
-        let reach = (REACH_OF_HEIGHT * height_mm / spacing_mm).round() as i32;
+    /// All points of a grid within reach, over a gel of this height: a high gel bends as a whole, and its floor feels what presses anywhere.
+    pub(crate) fn round(grid: &SurfaceGrid, height_mm: f64) -> Self {
+        let reach = if grid.is_coarse() {
+            grid.n[0].max(grid.n[1]) as i32
+        } else {
+            (REACH_OF_HEIGHT * height_mm / grid.spacing_mm).round() as i32
+        };
         let reach = reach.max(LEAST_REACH);
         let within = |[i, j]: &[i32; 2]| i * i + j * j <= reach * reach + 1;
         let all = (-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| [i, j]));
