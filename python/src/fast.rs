@@ -139,6 +139,11 @@ impl FastReader {
     fn novelty(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
         py.detach(|| self.reader.novelty(&placed(&bodies)))
     }
+
+    /// Area of the gel that carries bodies, mm²: an estimate, for `Friction`.
+    fn contact_area_mm2(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
+        py.detach(|| self.reader.contact_area_mm2(&placed(&bodies)))
+    }
 }
 
 fn placed(bodies: &[(Body, Pose)]) -> Vec<(&twintac::Body, twintac::Pose)> {

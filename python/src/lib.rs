@@ -5,6 +5,7 @@
 mod array;
 mod error;
 mod fast;
+mod friction;
 mod gel;
 mod inverse;
 mod long_call;
@@ -28,6 +29,8 @@ use pyo3::prelude::*;
 mod _twintac {
     #[pymodule_export]
     use crate::fast::{FastBatch, FastGel, FastReader};
+    #[pymodule_export]
+    use crate::friction::Friction;
     #[pymodule_export]
     use crate::gel::{Gel, Pressed};
     #[pymodule_export]

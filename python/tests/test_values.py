@@ -10,7 +10,9 @@ from conftest import DATA, ROOT, run_command
 
 from twintac import (
     Body,
+    Error,
     FastGel,
+    Friction,
     Gel,
     Imperfection,
     Inverse,
@@ -56,6 +58,21 @@ def test_a_press_has_a_row_for_each_frame_and_repeats_to_the_last_bit() -> None:
     assert np.all(np.diff(pressed.force_n) > 0.0)
     assert np.array_equal(pressed.readings_kpa, again.readings_kpa)
     assert pressed.provenance == "simulated"
+
+
+def test_friction_holds_up_to_coulombs_limit() -> None:
+    sensor, reader = Sensor.phystac(), FastGel.phystac().reader()
+    ball, friction = Body(Shape.sphere(radius_mm=12.5)), Friction(Sensor.phystac(), 0.5)
+    wrench, held = np.zeros(6, np.float32), np.zeros(6, np.float32)
+    for x_mm in np.linspace(0.0, 2.0, 21):
+        bodies = [(ball, Pose((x_mm, 0.0, 7.5)))]
+        _, wrench = reader.read(bodies)
+        held = friction.step(bodies[0][1], reader.contact_area_mm2(bodies), wrench)
+    assert held[0] - wrench[0] == pytest.approx(0.5 * np.linalg.norm(wrench[:3]), rel=1e-3)
+    friction.release()
+    assert np.array_equal(friction.step(bodies[0][1], 40.0, wrench), wrench)
+    with pytest.raises(Error, match="coefficient"):
+        Friction(sensor, -0.1)
 
 
 def test_a_press_is_that_of_the_command(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ __all__ = [
     "FastBatch",
     "FastGel",
     "FastReader",
+    "Friction",
     "Gel",
     "Imperfection",
     "Inverse",
@@ -281,6 +282,15 @@ class FastReader:
     def provenance(self) -> _Simulated: ...
     def read(self, bodies: Sequence[tuple[Body, Pose]]) -> tuple[_Single, _Single]: ...
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float: ...
+    def contact_area_mm2(self, bodies: Sequence[tuple[Body, Pose]]) -> float: ...
+
+@final
+class Friction:
+    def __new__(cls, sensor: Sensor, coefficient: float) -> Friction: ...
+    def step(
+        self, gel_from_body: Pose, area_mm2: float, wrench: Sequence[float] | npt.NDArray[np.floating[Any]]
+    ) -> _Single: ...
+    def release(self) -> None: ...
 
 @final
 class FastBatch:
