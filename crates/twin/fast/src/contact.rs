@@ -135,6 +135,7 @@ impl ContactGrid {
             placed.body_from_gel.z_axis,
         ]
         .map(Vec3A::from);
+        let (levels_mm, least_mm) = (self.levels_mm, -self.deepest_mm);
         let inputs = inputs.as_chunks_mut::<N_CHANNELS>().0;
         for j in placed.rows.clone() {
             let row = across * (self.first_mm[1] + self.spacing_mm * j as f32 - placed.origin.y);
@@ -143,11 +144,11 @@ impl ContactGrid {
             for ((i, height_mm), input) in placed.columns.clone().zip(heights_mm).zip(&mut inputs[points]) {
                 let x_mm = self.first_mm[0] + self.spacing_mm * i as f32 - placed.origin.x;
                 let (plane, z_mm) = (along * x_mm + row, height_mm - placed.origin.z);
-                for (input, level_mm) in input.iter_mut().zip(self.levels_mm) {
+                for (level, (input, level_mm)) in input.iter_mut().zip(levels_mm).enumerate() {
                     let distance_mm = field.distance_mm(plane + up * (z_mm + level_mm));
-                    let share = share(larger(distance_mm, -self.deepest_mm));
+                    let share = share(larger(distance_mm, least_mm));
                     // What is not near the surface is not near anything below it.
-                    if level_mm == 0.0 && share == 0.0 {
+                    if level == 0 && share == 0.0 {
                         break;
                     }
                     *input = larger(*input, share);
