@@ -26,7 +26,7 @@ const ARM_OF_RADIUS: f64 = 0.6;
 /// Sticking, the gel resists as an elastic layer on a rigid base does under a rigid disc of the contact's area: with `8 G a / (2 - ν) (1 + a / 2 h)` along the surface
 /// and `16/3 G a³` about the vertical (Gazetas, 1991, "Formulas and charts for impedances of surface and embedded foundations"), from where the body came on
 /// (Cundall and Strack, 1979). Force and torque together slip at Coulomb's limit (an ellipsoid as limit surface: Howe and Cutkosky, 1996). Beside PhysTac's finite
-/// elements with friction, pushed aside in the gel's middle, the force is right to 16 % under its ball, cube and cylinder, and 30 % too low under its ring.
+/// elements with friction, pushed aside in the gel's middle, the force is right to 16 % under its ball, cube and cylinder, and up to 30 % too low under its ring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     coefficient: f64,
@@ -93,11 +93,10 @@ impl Friction {
             torque_n_mm: before.torque_n_mm + about_n_mm * turned_rad,
         };
         let limit_n = self.coefficient * normal_n;
-        let limit_n_mm = limit_n * ARM_OF_RADIUS * radius_mm;
         let share = held
             .force_n
             .length()
-            .hypot(held.torque_n_mm * limit_n / limit_n_mm);
+            .hypot(held.torque_n_mm / (ARM_OF_RADIUS * radius_mm));
         if share > limit_n {
             held.force_n *= limit_n / share;
             held.torque_n_mm *= limit_n / share;
@@ -221,6 +220,17 @@ mod tests {
         let both = turned(2.0, 5.0);
         let share = (both[0] / force_n).hypot(both[1] / torque_n_mm);
         assert!(both[0] < force_n && both[1] < torque_n_mm && (share - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn without_friction_nothing_is_held() {
+        let sensor = SensorFile::phystac().unwrap().sensor;
+        let mut friction = Friction::on(&sensor, 0.0);
+        let pressed = [0.0, 0.0, -2.0, 0.0, 0.0, 0.0];
+        friction.step(&Pose::IDENTITY, 50.0, &mut pressed.clone());
+        let mut wrench = pressed;
+        friction.step(&Pose::from_position(DVec3::X), 50.0, &mut wrench);
+        assert_eq!(wrench, pressed);
     }
 
     #[test]

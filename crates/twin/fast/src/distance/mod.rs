@@ -28,7 +28,7 @@ pub(crate) enum Form {
 }
 
 impl Body {
-    /// Samples a shape, which takes from a millisecond to a second for a surface of many triangles.
+    /// Prepares a shape; sampling one without a formula takes from a millisecond to a second, for a surface of many triangles.
     ///
     /// # Errors
     /// A shape that can't be.
