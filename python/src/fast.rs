@@ -122,27 +122,31 @@ impl FastReader {
 
     /// What the gel does under bodies at these poses in its frame: pressure at each port, kPa, `[n_taxels]`; and force on the gel, N, and torque
     /// about the top of its middle, N mm, `[6]`.
-    fn read<'py>(
-        &mut self,
-        py: Python<'py>,
-        bodies: Vec<(Body, Pose)>,
-    ) -> (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>) {
-        let (mut pressure_kpa, mut wrench) = (vec![0.0; self.reader.n_taxels()], [0.0; 6]);
-        py.detach(|| self.reader.read(&placed(&bodies), &mut pressure_kpa, &mut wrench));
-        (
-            PyArray1::from_vec(py, pressure_kpa),
-            PyArray1::from_slice(py, &wrench),
-        )
+    fn read<'py>(&mut self, py: Python<'py>, bodies: Vec<(Body, Pose)>) -> Reading<'py> {
+        self.answer(py, |reader, pressure_kpa, wrench| {
+            reader.read(&placed(&bodies), pressure_kpa, wrench);
+        })
     }
 
     /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 readings and force may be wrong.
     fn novelty(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
         py.detach(|| self.reader.novelty(&placed(&bodies)))
     }
+}
 
-    /// Area of the gel that carries bodies, mm²: an estimate, for `Friction`.
-    fn contact_area_mm2(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
-        py.detach(|| self.reader.contact_area_mm2(&placed(&bodies)))
+impl FastReader {
+    /// What a reading of this gel gives.
+    pub(crate) fn answer<'py>(
+        &mut self,
+        py: Python<'py>,
+        read: impl FnOnce(&mut twintac::FastReader, &mut [f32], &mut [f32; 6]) + Send,
+    ) -> Reading<'py> {
+        let (mut pressure_kpa, mut wrench) = (vec![0.0; self.reader.n_taxels()], [0.0; 6]);
+        py.detach(|| read(&mut self.reader, &mut pressure_kpa, &mut wrench));
+        (
+            PyArray1::from_vec(py, pressure_kpa),
+            PyArray1::from_slice(py, &wrench),
+        )
     }
 }
 
@@ -152,6 +156,9 @@ fn placed(bodies: &[(Body, Pose)]) -> Vec<(&twintac::Body, twintac::Pose)> {
         .map(|(body, pose)| (&*body.body, pose.pose))
         .collect()
 }
+
+/// Pressures at the ports, kPa, and force and torque, N and N mm.
+pub(crate) type Reading<'py> = (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>);
 
 /// Fast gels of many sensors of one kind, read in one call.
 #[pyclass(module = "twintac")]

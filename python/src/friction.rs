@@ -1,13 +1,14 @@
 //! Friction of a body on a fast gel.
 
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::error::unusable;
+use crate::fast::{FastReader, Reading};
 use crate::pose::Pose;
 use crate::sensor::Sensor;
+use crate::shape::Body;
 
-/// Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips. Readings do not feel it.
+/// Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips.
 #[pyclass(module = "twintac")]
 pub(crate) struct Friction {
     friction: twintac::Friction,
@@ -18,29 +19,35 @@ impl Friction {
     /// Friction with Coulomb's coefficient; nothing is held yet.
     #[new]
     fn new(py: Python<'_>, sensor: &Sensor, coefficient: f64) -> PyResult<Self> {
-        if !(coefficient.is_finite() && coefficient >= 0.0) {
-            return Err(unusable(py, "coefficient", "is not a number from 0 on"));
-        }
-        let sensor = &sensor.sensor.file().sensor;
         Ok(Self {
-            friction: twintac::Friction::on(sensor, coefficient),
+            friction: friction(py, sensor, coefficient)?,
         })
     }
 
-    /// One more moment: the wrench of `FastReader.read` under the body alone, `[6]`, with friction. `area_mm2` is `FastReader.contact_area_mm2` of the body.
-    fn step<'py>(
+    /// One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+    fn read<'py>(
         &mut self,
         py: Python<'py>,
+        reader: &mut FastReader,
+        body: &Body,
         gel_from_body: Pose,
-        area_mm2: f32,
-        mut wrench: [f32; 6],
-    ) -> Bound<'py, PyArray1<f32>> {
-        self.friction.step(&gel_from_body.pose, area_mm2, &mut wrench);
-        PyArray1::from_slice(py, &wrench)
+    ) -> Reading<'py> {
+        reader.answer(py, |reader, pressure_kpa, wrench| {
+            let touching = (&*body.body, gel_from_body.pose);
+            self.friction.read(reader, touching, pressure_kpa, wrench);
+        })
     }
 
     /// Lets go of what touches: the next moment begins without friction.
     fn release(&mut self) {
         self.friction.release();
     }
+}
+
+/// Friction with a coefficient that can be.
+pub(crate) fn friction(py: Python<'_>, sensor: &Sensor, coefficient: f64) -> PyResult<twintac::Friction> {
+    if !(coefficient.is_finite() && coefficient >= 0.0) {
+        return Err(unusable(py, "coefficient", "is not a number from 0 on"));
+    }
+    Ok(twintac::Friction::on(&sensor.sensor.file().sensor, coefficient))
 }

@@ -50,7 +50,7 @@ mod _twintac {
     #[pymodule_export]
     use crate::sensor::Sensor;
     #[pymodule_export]
-    use crate::sensors::{Imperfection, SensorBatch};
+    use crate::sensors::{Coupling, Imperfection, SensorBatch};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
     #[pymodule_export]

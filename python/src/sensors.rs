@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use numpy::PyArray2;
 use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,6 +10,7 @@ use pyo3::types::PyDict;
 use crate::array::{Numbers, rows};
 use crate::error::{OrRaise, unreadable, unusable};
 use crate::fast::{Answers, FastGel, PROVENANCE, n_cores};
+use crate::sensor::Sensor;
 use crate::settings::as_toml;
 use crate::shape::Body;
 use crate::touches::{Counts, Touches, bodies};
@@ -53,6 +55,31 @@ impl Imperfection {
     }
 }
 
+/// How bodies and gels hold each other where bodies move freely: friction, with Coulomb's coefficient, and the gel's loss, as of a Kelvin-Voigt solid: its force leads the
+/// elastic one by a time.
+#[pyclass(frozen, from_py_object, module = "twintac")]
+#[derive(Clone)]
+pub(crate) struct Coupling {
+    coupling: twintac::Coupling,
+}
+
+#[pymethods]
+impl Coupling {
+    #[new]
+    #[pyo3(signature = (sensor, *, friction, retardation_s=0.0))]
+    fn new(py: Python<'_>, sensor: &Sensor, friction: f64, retardation_s: f64) -> PyResult<Self> {
+        if !(retardation_s.is_finite() && retardation_s >= 0.0) {
+            return Err(unusable(py, "retardation_s", "is not a number from 0 on"));
+        }
+        Ok(Self {
+            coupling: twintac::Coupling {
+                friction: crate::friction::friction(py, sensor, friction)?,
+                retardation_s,
+            },
+        })
+    }
+}
+
 /// Many sensors of one kind, each imperfect in its own way, stepped in one call.
 #[pyclass(module = "twintac")]
 pub(crate) struct SensorBatch {
@@ -66,7 +93,7 @@ impl SensorBatch {
     /// So many sensors whose gels have rested, which these bodies touch. With a twin, readings are those of its barometers; without, the
     /// pressures at the ports. Sensor `n` is the same under the same seed, whatever the other sensors are.
     #[new]
-    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, seed=0, n_threads=None))]
+    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None))]
     #[allow(clippy::too_many_arguments)] // keywords in Python
     fn new(
         py: Python<'_>,
@@ -75,6 +102,7 @@ impl SensorBatch {
         n_sensors: usize,
         imperfection: Option<Imperfection>,
         twin: Option<PyRef<'_, Twin>>,
+        coupling: Option<Coupling>,
         seed: u64,
         n_threads: Option<usize>,
     ) -> PyResult<Self> {
@@ -94,6 +122,10 @@ impl SensorBatch {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
             None => twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed),
         });
+        let batch = match coupling {
+            Some(own) => batch.with_coupling(own.coupling),
+            None => batch,
+        };
         Ok(Self {
             batch,
             bodies,
@@ -152,6 +184,14 @@ impl SensorBatch {
             rows(py, readings_kpa, [n_sensors, self.n_taxels])?,
             rows(py, wrench.into_flattened(), [n_sensors, 6])?,
         ))
+    }
+
+    /// What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of its middle, N mm,
+    /// `[n_touches, 6]`. None without a `Coupling`.
+    fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let wrenches: Vec<f32> = self.batch.wrench_of_touches().flatten().copied().collect();
+        let n_touches = wrenches.len() / 6;
+        rows(py, wrenches, [n_touches, 6])
     }
 
     /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.

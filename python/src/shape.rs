@@ -1,12 +1,17 @@
 //! Rigid shapes.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use glam::DVec3;
+use numpy::ndarray::{ArrayView1, Ix2};
+use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
 use twintac::{Part, Surfaces, TriangleSurface};
 
-use crate::error::{OrRaise, unreadable};
+use crate::array::Numbers;
+use crate::error::{OrRaise, unreadable, unusable};
 use crate::long_call::long_call;
 use crate::pose::Pose;
 
@@ -24,6 +29,25 @@ impl Shape {
     fn of(py: Python<'_>, shape: twintac::Shape, surfaces: Surfaces) -> PyResult<Self> {
         shape.validate().or_raise(py)?;
         Ok(Self { shape, surfaces })
+    }
+
+    /// A surface where it is: as the shape of a file it would be moved, so that its lowest point has the origin's z.
+    fn of_surface(py: Python<'_>, surface: TriangleSurface) -> PyResult<Self> {
+        let mut hasher = DefaultHasher::new();
+        let corners_mm = surface.vertices_mm().iter().map(|corner| corner.to_array());
+        for number in corners_mm.flatten() {
+            number.to_bits().hash(&mut hasher);
+        }
+        surface.triangles().hash(&mut hasher);
+        let path = format!("surface {:016x}", hasher.finish());
+        let lowest_mm = surface.vertices_mm().iter().map(|corner| corner.z);
+        let lowest_mm = lowest_mm.fold(f64::INFINITY, f64::min);
+        let part = Part {
+            shape: twintac::Shape::Stl { path: path.clone() },
+            whole_from_part: twintac::Pose::from_position(lowest_mm * DVec3::Z),
+        };
+        let surfaces = Surfaces::from([(path, Arc::new(surface))]);
+        Self::of(py, twintac::Shape::Union { parts: vec![part] }, surfaces)
     }
 }
 
@@ -129,6 +153,50 @@ impl Shape {
         let path = path.display().to_string();
         let surfaces = Surfaces::from([(path.clone(), Arc::new(surface))]);
         Self::of(py, twintac::Shape::Stl { path }, surfaces)
+    }
+
+    /// A closed surface of triangles: places of its corners, mm, `[n_vertices, 3]`, and the corners of each triangle, counter-clockwise seen from outside,
+    /// `[n_triangles, 3]`. It stays where it is.
+    #[staticmethod]
+    fn surface(
+        py: Python<'_>,
+        vertices_mm: Numbers<'_, Ix2>,
+        triangles: PyArrayLike<'_, i64, Ix2, AllowTypeChange>,
+    ) -> PyResult<Self> {
+        let (vertices_mm, triangles) = (vertices_mm.as_array(), triangles.as_array());
+        for (name, n_columns) in [
+            ("vertices_mm", vertices_mm.ncols()),
+            ("triangles", triangles.ncols()),
+        ] {
+            if n_columns != 3 {
+                return Err(unusable(
+                    py,
+                    name,
+                    &format!("has {n_columns} columns, expected 3"),
+                ));
+            }
+        }
+        let corner = |number: i64| {
+            let row = usize::try_from(number)
+                .ok()
+                .filter(|row| *row < vertices_mm.nrows());
+            let row = row.ok_or_else(|| {
+                let n = vertices_mm.nrows();
+                unusable(
+                    py,
+                    "triangles",
+                    &format!("has a corner {number}, expected 0 to {}", n.saturating_sub(1)),
+                )
+            })?;
+            let [x, y, z] = [0, 1, 2].map(|axis| vertices_mm[[row, axis]]);
+            PyResult::Ok(DVec3::new(x, y, z))
+        };
+        let triangle = |row: ArrayView1<'_, i64>| Ok([corner(row[0])?, corner(row[1])?, corner(row[2])?]);
+        let triangles = triangles.rows().into_iter().map(triangle);
+        let triangles = triangles.collect::<PyResult<Vec<[DVec3; 3]>>>()?;
+        let surface = TriangleSurface::from_triangles(&triangles);
+        let surface = surface.map_err(|error| unusable(py, "triangles", &error.to_string()))?;
+        Self::of_surface(py, surface)
     }
 
     /// Several shapes held together, each where its pose in the whole says; they may overlap.

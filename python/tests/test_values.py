@@ -63,14 +63,17 @@ def test_a_press_has_a_row_for_each_frame_and_repeats_to_the_last_bit() -> None:
 def test_friction_holds_up_to_coulombs_limit() -> None:
     sensor, reader = Sensor.phystac(), FastGel.phystac().reader()
     ball, friction = Body(Shape.sphere(radius_mm=12.5)), Friction(Sensor.phystac(), 0.5)
-    wrench, held = np.zeros(6, np.float32), np.zeros(6, np.float32)
+    readings_kpa = felt_kpa = wrench = held = np.zeros(0, np.float32)
+    pose = Pose((0.0, 0.0, 7.5))
     for x_mm in np.linspace(0.0, 2.0, 21):
-        bodies = [(ball, Pose((x_mm, 0.0, 7.5)))]
-        _, wrench = reader.read(bodies)
-        held = friction.step(bodies[0][1], reader.contact_area_mm2(bodies), wrench)
+        pose = Pose((x_mm, 0.0, 7.5))
+        readings_kpa, wrench = reader.read([(ball, pose)])
+        felt_kpa, held = friction.read(reader, ball, pose)
     assert held[0] - wrench[0] == pytest.approx(0.5 * np.linalg.norm(wrench[:3]), rel=1e-3)
+    ahead = readings_kpa.argmax()
+    assert felt_kpa[ahead] > readings_kpa[ahead]
     friction.release()
-    assert np.array_equal(friction.step(bodies[0][1], 40.0, wrench), wrench)
+    assert np.array_equal(friction.read(reader, ball, pose)[1], wrench)
     with pytest.raises(Error, match="coefficient"):
         Friction(sensor, -0.1)
 

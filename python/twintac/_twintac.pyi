@@ -13,6 +13,7 @@ from twintac._progress import Progress
 __all__ = [
     "Body",
     "Contact",
+    "Coupling",
     "FastBatch",
     "FastGel",
     "FastReader",
@@ -256,6 +257,8 @@ class Shape:
     @staticmethod
     def stl(path: _Path) -> Shape: ...
     @staticmethod
+    def surface(vertices_mm: _Floats, triangles: _Integers) -> Shape: ...
+    @staticmethod
     def union(parts: Sequence[tuple[Shape, Pose]]) -> Shape: ...
 
 @final
@@ -282,14 +285,11 @@ class FastReader:
     def provenance(self) -> _Simulated: ...
     def read(self, bodies: Sequence[tuple[Body, Pose]]) -> tuple[_Single, _Single]: ...
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float: ...
-    def contact_area_mm2(self, bodies: Sequence[tuple[Body, Pose]]) -> float: ...
 
 @final
 class Friction:
     def __new__(cls, sensor: Sensor, coefficient: float) -> Friction: ...
-    def step(
-        self, gel_from_body: Pose, area_mm2: float, wrench: Sequence[float] | npt.NDArray[np.floating[Any]]
-    ) -> _Single: ...
+    def read(self, reader: FastReader, body: Body, gel_from_body: Pose) -> tuple[_Single, _Single]: ...
     def release(self) -> None: ...
 
 @final
@@ -309,6 +309,10 @@ class Imperfection:
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
+class Coupling:
+    def __new__(cls, sensor: Sensor, *, friction: float, retardation_s: float = 0.0) -> Coupling: ...
+
+@final
 class SensorBatch:
     def __new__(
         cls,
@@ -318,6 +322,7 @@ class SensorBatch:
         *,
         imperfection: Imperfection | None = None,
         twin: Twin | None = None,
+        coupling: Coupling | None = None,
         seed: int = 0,
         n_threads: int | None = None,
     ) -> SensorBatch: ...
@@ -330,6 +335,7 @@ class SensorBatch:
         body: _Integers | None = None,
         ends: _Integers | None = None,
     ) -> tuple[_Single, _Single]: ...
+    def wrench_of_touches(self) -> _Single: ...
     def rest(self, sensor: int) -> None: ...
     def replace(self, sensor: int, number: int) -> None: ...
     def __len__(self) -> int: ...

@@ -41,7 +41,7 @@
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
-//! | [`SensorBatch`], [`Imperfection`] | the same with a twin's gains and memory, and with what no two sensors have alike | `sensors` |
+//! | [`SensorBatch`], [`Imperfection`], [`Coupling`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
@@ -205,6 +205,6 @@ pub use twintac_run::{
 };
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
-pub use twintac_sensors::{Imperfection, SensorBatch};
+pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
 pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
 pub use twintac_simulate::SimulateSettings;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use twintac_config::{ConfigError, Document};
 
 use crate::file::SensorToml;
@@ -10,9 +10,6 @@ use crate::{Indenter, Sensor};
 
 /// Lengths that differ by less are the same, mm.
 const TOLERANCE_MM: f64 = 1e-6;
-
-/// Points of a port's rim that have to lie in the gel.
-const RIM_POINTS: u32 = 16;
 
 struct Checker<'a> {
     sensor: &'a Sensor,
@@ -187,23 +184,6 @@ impl Checker<'_> {
                 return Err(self.error(&field("position_mm"), problem, "put the taxel onto its face"));
             }
             self.above_zero(&field("port_radius_mm"), taxel.port_radius_mm)?;
-            let rim = (0..RIM_POINTS).map(|step| {
-                let angle = std::f64::consts::TAU * f64::from(step) / f64::from(RIM_POINTS);
-                at + (taxel.port_radius_mm * DVec2::from_angle(angle)).extend(0.0)
-            });
-            for point in rim {
-                if !self.sensor.is_within_gel(point) {
-                    let problem = format!(
-                        "is {}, which lets the port reach out of the gel",
-                        taxel.port_radius_mm
-                    );
-                    return Err(self.error(
-                        &field("port_radius_mm"),
-                        problem,
-                        "make it smaller or move the taxel inwards",
-                    ));
-                }
-            }
             if let Some(first) = channels.insert(taxel.channel, index) {
                 let problem = format!("is {}, as that of taxels[{first}]", taxel.channel);
                 return Err(self.error(&field("channel"), problem, "give each taxel a channel of its own"));

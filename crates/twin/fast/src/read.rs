@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
 use twintac_shape::Pose;
 
 use crate::contact::{ContactPoints, N_CHANNELS};
 use crate::engine::{Engine, Scratch};
-use crate::friction::contact_area_mm2;
+use crate::footprint::Footprint;
 use crate::novelty::Novelty;
 use crate::surface::SurfaceGrid;
 use crate::{Body, FastGel, Touch};
@@ -19,7 +20,7 @@ pub struct FastReader {
     /// What touches sensors that are evaluated together.
     inputs: Vec<f32>,
     scratch: Scratch,
-    n_taxels: usize,
+    ports_mm: Arc<[DVec2]>,
     grid: Arc<SurfaceGrid>,
     novelty: Arc<Novelty>,
 }
@@ -33,7 +34,7 @@ impl FastGel {
         FastReader {
             inputs: vec![0.0; engine.n_together() * points.n_inputs()],
             scratch: engine.scratch(),
-            n_taxels: self.n_taxels(),
+            ports_mm: self.ports_mm.as_slice().into(),
             grid: Arc::new(self.layout.grid().clone()),
             novelty: Arc::new(self.novelty.clone()),
             points: Arc::new(points),
@@ -52,7 +53,7 @@ impl FastReader {
     /// Number of taxels.
     #[must_use]
     pub fn n_taxels(&self) -> usize {
-        self.n_taxels
+        self.ports_mm.len()
     }
 
     /// What the gel does under bodies at these poses in the gel's frame.
@@ -63,7 +64,7 @@ impl FastReader {
     /// # Panics
     /// A slice of pressures of another length than there are taxels, a pose that is not finite.
     pub fn read(&mut self, bodies: &[(&Body, Pose)], pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
-        assert_eq!(pressure_kpa.len(), self.n_taxels, "a pressure for each taxel");
+        assert_eq!(pressure_kpa.len(), self.n_taxels(), "a pressure for each taxel");
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
         let wrench = std::slice::from_mut(wrench);
@@ -81,14 +82,12 @@ impl FastReader {
         self.novelty.score(&self.grid, inputs)
     }
 
-    /// Area of the gel that carries bodies, mm²; an estimate from points 2 mm apart, for [`Friction`](crate::Friction).
-    ///
-    /// # Panics
-    /// A pose that is not finite.
-    pub fn contact_area_mm2(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
+    /// Where bodies are carried, and where the ports are, mm; `None` where nothing touches.
+    pub(crate) fn footprint(&mut self, bodies: &[(&Body, Pose)]) -> Option<(Footprint<'_>, &[DVec2])> {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
-        contact_area_mm2(&self.grid, &inputs[..N_CHANNELS * self.grid.len()])
+        let footprint = Footprint::of(&self.grid, &inputs[..N_CHANNELS * self.grid.len()])?;
+        Some((footprint, &self.ports_mm))
     }
 
     /// [`Self::read`] of many sensors, one after the other on the calling thread. A sensor's numbers do not depend on the others.
@@ -125,13 +124,13 @@ impl FastReader {
         let n_sensors = ends.len();
         assert_eq!(
             pressure_kpa.len(),
-            n_sensors * self.n_taxels,
+            n_sensors * self.n_taxels(),
             "a pressure for each taxel of each sensor"
         );
         assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
         let (n_together, n_inputs) = (self.engine.n_together(), self.points.n_inputs());
         let numbers = pressure_kpa
-            .chunks_mut((n_together * self.n_taxels).max(1))
+            .chunks_mut((n_together * self.n_taxels()).max(1))
             .zip(wrench.chunks_mut(n_together));
         for (ends, (pressure_kpa, wrench)) in ends.chunks(n_together).zip(numbers) {
             for (end, inputs) in ends.iter().zip(self.inputs.chunks_exact_mut(n_inputs)) {

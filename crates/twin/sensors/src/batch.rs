@@ -1,13 +1,14 @@
 //! Sensors from what touches to what is read.
 
 use digitac::{Twin, TwinState};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, Vec3};
 use rayon::prelude::*;
 use twintac_fast::{Body, FastGel, FastReader, Touch};
 use twintac_shape::Pose;
 
-use crate::Imperfection;
+use crate::hold::Holds;
 use crate::sensor::Sensor;
+use crate::{Coupling, Imperfection};
 
 /// Many sensors of one kind, with the memory that steps need: it is kept from step to step.
 #[derive(Clone, Debug)]
@@ -15,6 +16,7 @@ pub struct SensorBatch {
     imperfection: Imperfection,
     seed: u64,
     n_taxels: usize,
+    coupling: Option<Coupling>,
     chunks: Vec<Chunk>,
     /// Sensors of each chunk but the last.
     of_chunk: usize,
@@ -24,6 +26,8 @@ pub struct SensorBatch {
 #[derive(Clone, Debug)]
 struct Chunk {
     sensors: Vec<Sensor>,
+    /// `[n_sensors]`
+    holds: Vec<Holds>,
     gel: FastReader,
     /// What touches, as the sensors that are not where they should be feel it.
     touches: Vec<Touch>,
@@ -32,6 +36,8 @@ struct Chunk {
     twin: Option<TwinState>,
     /// What the gels show, in single and in double precision, and what perfect sensors would read of it. `[n_sensors * n_taxels]`
     pressure_kpa: Vec<f32>,
+    /// Of each touch, in the frame in which its sensor should be. `[n_touches]`, if bodies and gels hold each other.
+    wrench_of_touch: Vec<[f32; 6]>,
     seen: Vec<f64>,
     true_kpa: Vec<f64>,
 }
@@ -39,6 +45,7 @@ struct Chunk {
 /// What happens in a step.
 struct Moment<'a> {
     imperfection: &'a Imperfection,
+    coupling: Option<&'a Coupling>,
     since_previous_s: f64,
     bodies: &'a [Body],
     touches: &'a [Touch],
@@ -83,10 +90,12 @@ impl SensorBatch {
                     twin.tare_untouched();
                     twin
                 }),
+                holds: vec![Holds::default(); n],
                 gel: gel.clone(),
                 touches: Vec::new(),
                 ends: Vec::with_capacity(n),
                 pressure_kpa: vec![0.0; n * n_taxels],
+                wrench_of_touch: Vec::new(),
                 seen: vec![0.0; n * n_taxels],
                 true_kpa: vec![0.0; n * n_taxels],
             }
@@ -96,8 +105,16 @@ impl SensorBatch {
             imperfection,
             seed,
             n_taxels,
+            coupling: None,
             of_chunk,
         }
+    }
+
+    /// The same sensors, which hold what touches them, with friction and loss.
+    #[must_use]
+    pub fn with_coupling(mut self, coupling: Coupling) -> Self {
+        self.coupling = Some(coupling);
+        self
     }
 
     /// Number of sensors.
@@ -112,7 +129,7 @@ impl SensorBatch {
     /// - `bodies`, `touches`, `ends`: what touches whom, as [`FastBatch::read`] takes it. Poses are in the frame in which the sensor should be.
     /// - `readings_kpa`: is written; what the bus of each sensor delivered last, kPa. `[n_sensors * n_taxels]`
     /// - `wrench`: is written; force on each gel, N, and torque about the top of its middle, N mm, in the frame of the sensor where it is.
-    ///   `[n_sensors]`
+    ///   `[n_sensors]`. With what a [`Coupling`] adds.
     ///
     /// # Panics
     /// Those of [`FastBatch::read`].
@@ -141,6 +158,7 @@ impl SensorBatch {
         );
         let moment = Moment {
             imperfection: &self.imperfection,
+            coupling: self.coupling.as_ref(),
             since_previous_s,
             bodies,
             touches,
@@ -160,6 +178,12 @@ impl SensorBatch {
         });
     }
 
+    /// What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of the gel's middle, N mm, in the
+    /// frame in which the sensor should be. Sensors without a [`Coupling`] have none.
+    pub fn wrench_of_touches(&self) -> impl Iterator<Item = &[f32; 6]> {
+        self.chunks.iter().flat_map(|chunk| &chunk.wrench_of_touch)
+    }
+
     /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.
     ///
     /// # Panics
@@ -167,6 +191,7 @@ impl SensorBatch {
     pub fn rest(&mut self, sensor: usize) {
         let (chunk, own) = (&mut self.chunks[sensor / self.of_chunk], sensor % self.of_chunk);
         chunk.sensors[own].rest();
+        chunk.holds[own] = Holds::default();
         if let Some(twin) = &mut chunk.twin {
             twin.rest(own);
         }
@@ -191,6 +216,9 @@ impl Chunk {
         let (touches, ends) = (&self.touches, &self.ends);
         self.gel
             .read_many(moment.bodies, touches, ends, &mut self.pressure_kpa, wrench);
+        if let Some(coupling) = moment.coupling {
+            self.hold(moment, coupling, wrench);
+        }
         for (seen, pressure_kpa) in self.seen.iter_mut().zip(&self.pressure_kpa) {
             *seen = f64::from(*pressure_kpa);
         }
@@ -212,6 +240,48 @@ impl Chunk {
                 true_kpa,
                 readings_kpa,
             );
+        }
+    }
+
+    /// Friction and loss of each body on each gel.
+    fn hold(&mut self, moment: &Moment, coupling: &Coupling, wrench: &mut [[f32; 6]]) {
+        self.wrench_of_touch.clear();
+        self.wrench_of_touch.resize(self.touches.len(), [0.0; 6]);
+        let n_taxels = self.gel.n_taxels().max(1);
+        let pressures = self.pressure_kpa.chunks_exact_mut(n_taxels);
+        let sensors = self
+            .sensors
+            .iter()
+            .zip(&mut self.holds)
+            .zip(pressures)
+            .zip(wrench);
+        let mut start = 0;
+        for ((((sensor, holds), pressure_kpa), wrench), end) in sensors.zip(&self.ends) {
+            let own = start..*end;
+            start = *end;
+            let (touches, apart) = (&self.touches[own.clone()], &mut self.wrench_of_touch[own]);
+            holds.step(
+                coupling,
+                moment.since_previous_s,
+                &mut self.gel,
+                (moment.bodies, touches),
+                pressure_kpa,
+                (wrench, apart),
+            );
+            let described_from_actual = sensor.actual_from_described.rotation.inverse().as_quat();
+            for wrench in apart {
+                let [fx, fy, fz, tx, ty, tz] = *wrench;
+                let force_n = described_from_actual * Vec3::new(fx, fy, fz);
+                let torque_n_mm = described_from_actual * Vec3::new(tx, ty, tz);
+                *wrench = [
+                    force_n.x,
+                    force_n.y,
+                    force_n.z,
+                    torque_n_mm.x,
+                    torque_n_mm.y,
+                    torque_n_mm.z,
+                ];
+            }
         }
     }
 

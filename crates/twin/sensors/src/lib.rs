@@ -4,8 +4,10 @@
 //! there is one, its gains, port law and memory, and an [`Imperfection`] what no two sensors have alike. All of it is simulated.
 
 mod batch;
+mod hold;
 mod imperfection;
 mod sensor;
 
 pub use batch::SensorBatch;
+pub use hold::Coupling;
 pub use imperfection::Imperfection;

@@ -27,26 +27,26 @@ impl PortReadout {
         Self::new(mesh, &taxel.name, taxel.position_mm, taxel.port_radius_mm)
     }
 
-    /// Samples a disc (normal z) at points of equal area and spreads each over its tetrahedron's nodes.
+    /// Samples a disc (normal z) at points of equal area and spreads each over its tetrahedron's nodes. What of the disc lies beside the gel, which
+    /// presses on none of it, is left out.
     pub(crate) fn new(
         mesh: &TetMesh,
         name: &str,
         center_mm: DVec3,
         radius_mm: f64,
     ) -> Result<Self, SimulateError> {
-        let samples = disc_samples(radius_mm);
-        let share = 1.0 / samples.len() as f64;
         let around = mesh.neighbourhood(center_mm, radius_mm + PORT_TOLERANCE_MM);
+        let located = |sample: &DVec2| around.locate(center_mm + sample.extend(0.0), PORT_TOLERANCE_MM);
+        if located(&DVec2::ZERO).is_none() {
+            return Err(SimulateError::PortOutside {
+                place: name.to_owned(),
+                distance_mm: PORT_TOLERANCE_MM,
+            });
+        }
+        let samples: Vec<_> = disc_samples(radius_mm).iter().filter_map(located).collect();
+        let share = 1.0 / samples.len() as f64;
         let mut weights = std::collections::BTreeMap::new();
-        for sample in &samples {
-            let point = center_mm + sample.extend(0.0);
-            let (tet, barycentric) =
-                around
-                    .locate(point, PORT_TOLERANCE_MM)
-                    .ok_or_else(|| SimulateError::PortOutside {
-                        place: name.to_owned(),
-                        distance_mm: PORT_TOLERANCE_MM,
-                    })?;
+        for (tet, barycentric) in samples {
             for (node, weight) in mesh.tets[tet].iter().zip(barycentric) {
                 *weights.entry(*node as usize).or_insert(0.0) += weight * share;
             }

@@ -33,6 +33,12 @@ const HEIGHT_MM: f64 = 8.5;
 /// The shortest edges under a shape, mm.
 const FINEST_MM: f64 = 0.6;
 
+/// Edges away from the shape, over the gel's height.
+const EDGES_PER_HEIGHT: f64 = 7.0;
+
+/// Points of a port's rim.
+const RIM_POINTS: u32 = 16;
+
 /// A press to teach with.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Draw {
@@ -41,7 +47,6 @@ pub(crate) struct Draw {
     pub(crate) rotation: DQuat,
     pub(crate) depth_mm: f64,
     pub(crate) edge_mm: f64,
-    pub(crate) edges_per_height: f64,
     /// How it goes on once it is down.
     pub(crate) slide: Option<Slide>,
 }
@@ -110,6 +115,34 @@ pub(crate) fn scale(sensor: &Sensor) -> f64 {
     (high - low).truncate().element_product().sqrt() / WIDTH_MM
 }
 
+/// Lengths of a mesh's edges away from the shape, over the gel's height, and under it, mm, for a press that was drawn with these under it. Where the side
+/// of the gel meets the floor, pressure grows without end the closer it is looked at: what a port there reads depends on the edges. With such a port, all
+/// edges of all meshes are alike.
+pub(crate) fn edges(sensor: &Sensor, edge_mm: f64) -> (f64, f64) {
+    if has_port_at_side(sensor) {
+        return (HEIGHT_MM / FINEST_MM, finest_mm(sensor));
+    }
+    (EDGES_PER_HEIGHT, edge_mm)
+}
+
+/// The shortest edges under a shape, mm.
+fn finest_mm(sensor: &Sensor) -> f64 {
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    (high.z - low.z) / HEIGHT_MM * FINEST_MM
+}
+
+/// Whether a port reaches out of the gel.
+fn has_port_at_side(sensor: &Sensor) -> bool {
+    sensor.taxels.iter().any(|taxel| {
+        let rim = (0..RIM_POINTS).map(|point| TAU * f64::from(point) / f64::from(RIM_POINTS));
+        let mut rim = rim.map(|angle| taxel.port_radius_mm * DVec2::from_angle(angle));
+        rim.any(|aside_mm| {
+            let at = taxel.position_mm + aside_mm.extend(0.0);
+            !sensor.gel.solid.contains(at, 1e-6, &sensor.surfaces)
+        })
+    })
+}
+
 /// Draws a press for a sensor.
 pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> Draw {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
@@ -123,10 +156,10 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         (true, _) => whole(scale, random),
     };
     // Coarse presses are cheap, so that there are many; fine ones are right.
-    let (edges_per_height, finest_mm, coarsest_mm) = match random.random_range(0..3) {
-        _ if !is_lesson => (7.0, FINEST_MM, FINEST_MM),
-        0 => (7.0, 0.8, 1.05),
-        _ => (7.0, FINEST_MM, 0.8),
+    let (finest_mm, coarsest_mm) = match random.random_range(0..3) {
+        _ if !is_lesson => (FINEST_MM, FINEST_MM),
+        0 => (0.8, 1.05),
+        _ => (FINEST_MM, 0.8),
     };
     let tilt = if random.random_bool(0.4) {
         0.0
@@ -146,7 +179,6 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
             } else {
                 finest_mm
             },
-        edges_per_height,
         slide: (purpose == Purpose::Slide).then(|| {
             // Towards the middle, so that it stays on the gel.
             let inwards = (DVec2::splat(0.5) - within).to_angle() + random.random_range(-1.0..1.0);
@@ -161,14 +193,12 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
 
 /// A press straight down of an upright shape, on the finest mesh.
 pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad: f64, depth_mm: f64) -> Draw {
-    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     Draw {
         shape: shape.clone(),
         place_mm,
         rotation: DQuat::from_rotation_z(spin_rad),
         depth_mm,
-        edge_mm: (high.z - low.z) / HEIGHT_MM * FINEST_MM,
-        edges_per_height: 7.0,
+        edge_mm: finest_mm(sensor),
         slide: None,
     }
 }

@@ -1,0 +1,110 @@
+//! What a pull along the gel's surface does to the pressure on its floor.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::footprint::Footprint;
+
+/// Distance of the table's entries, of the layer's height.
+const STEP: f64 = 0.02;
+
+/// Where the table ends, in heights: further away next to nothing is felt.
+const FURTHEST: f64 = 5.0;
+
+/// Steps and end of the waves that are summed, in radians over the layer's height.
+const WAVE_STEP: f64 = 0.05;
+const SHORTEST_WAVE: f64 = 25.0;
+
+/// Pressure on the rigid floor of an elastic layer that is bonded to it and pulled along its surface at a point: `F κ(r/h)/h² cos θ`, for a force `F` and a place
+/// of the floor at the distance `r` in a direction `θ` from that of the force. It is higher ahead, and lower behind.
+///
+/// The layer's equations are solved for waves `exp(ikx)` by Papkovich-Neuber potentials `φ + zψ`, with nothing moving at `z = 0`, and the traction `q` along x at `z = h`: with `H = kh`,
+/// `p = -i q ⅔(1 + ν) ((1 - 2ν) sinh H + H cosh H) / (4(1 - ν)² cosh² H + H² - (1 - 2ν)² sinh² H)`. Waves across the pull give no pressure. What a point does is the
+/// sum of all waves (a Hankel transform of the first order).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Shear {
+    /// `κ` at even distances, from 0 on.
+    kernel: Arc<[f64]>,
+}
+
+impl Shear {
+    /// The pressure in a layer of a Poisson's ratio.
+    pub(crate) fn of(poissons_ratio: f64) -> Self {
+        let n_waves = (SHORTEST_WAVE / WAVE_STEP) as u32;
+        let waves: Vec<(f64, f64)> = (1..=n_waves)
+            .map(|wave| WAVE_STEP * f64::from(wave))
+            .map(|wave| {
+                (
+                    wave,
+                    floor_pressure(wave, poissons_ratio) * wave * WAVE_STEP / TAU,
+                )
+            })
+            .collect();
+        let at = |distance: f64| -> f64 {
+            waves
+                .iter()
+                .map(|(wave, part)| part * libm::j1(wave * distance))
+                .sum()
+        };
+        let n_entries = (FURTHEST / STEP) as u32 + 1;
+        Self {
+            kernel: (0..n_entries).map(|entry| at(STEP * f64::from(entry))).collect(),
+        }
+    }
+
+    /// Adds what a force along the surface does at the ports when it is shared by all places that carry a body.
+    pub(crate) fn add(
+        &self,
+        footprint: &Footprint,
+        force_n: DVec2,
+        ports_mm: &[DVec2],
+        pressure_kpa: &mut [f32],
+    ) {
+        let height_mm = footprint.thickness_mm();
+        let all: f32 = footprint.places().map(|(_, share)| share).sum();
+        // N/mm² = 1000 kPa
+        let scale = 1e3 / (f64::from(all) * height_mm * height_mm);
+        for (port_mm, pressure_kpa) in ports_mm.iter().zip(pressure_kpa) {
+            let felt = footprint.places().map(|(place_mm, share)| {
+                let way_mm = *port_mm - place_mm;
+                f64::from(share)
+                    * force_n.dot(way_mm.normalize_or_zero())
+                    * self.at(way_mm.length() / height_mm)
+            });
+            *pressure_kpa += (scale * felt.sum::<f64>()) as f32;
+        }
+    }
+
+    /// `κ` at a distance in heights.
+    fn at(&self, distance: f64) -> f64 {
+        let entries = distance / STEP;
+        let entry = entries as usize;
+        let Some([low, high]) = self.kernel.get(entry..entry + 2) else {
+            return 0.0;
+        };
+        low + (entries - entry as f64) * (high - low)
+    }
+}
+
+/// Pressure on the floor for a wave of traction of height 1, a quarter of a wave behind it.
+fn floor_pressure(wave: f64, poissons_ratio: f64) -> f64 {
+    let (sinh, cosh) = (wave.sinh(), wave.cosh());
+    let compressible = 1.0 - 2.0 * poissons_ratio;
+    let below = (2.0 * (1.0 - poissons_ratio) * cosh).powi(2) + wave * wave - (compressible * sinh).powi(2);
+    2.0 / 3.0 * (1.0 + poissons_ratio) * (compressible * sinh + wave * cosh) / below
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_waves_press_as_a_thin_layer_does() {
+        // The formula in first order of the wave number.
+        let (wave, poissons_ratio) = (1e-3, 0.4);
+        let expected = (1.0 + poissons_ratio) / (3.0 * (1.0 - poissons_ratio)) * wave;
+        assert!((floor_pressure(wave, poissons_ratio) / expected - 1.0).abs() < 1e-3);
+    }
+}
