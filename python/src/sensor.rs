@@ -51,6 +51,14 @@ impl Sensor {
         rows(py, positions.collect(), [taxels.len(), 3])
     }
 
+    /// Lowest and highest corner of the box that holds the gel, mm. `[2, 3]`
+    #[getter]
+    fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let sensor = &self.sensor.file().sensor;
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        rows(py, [low.to_array(), high.to_array()].concat(), [2, 3])
+    }
+
     /// Names of the indenters that it can be pressed with.
     #[getter]
     fn indenters(&self) -> Vec<&str> {

@@ -75,7 +75,7 @@ impl Friction {
         self.add(reader, (body, gel_from_body), pressure_kpa, wrench);
     }
 
-    /// One more moment: adds friction to what there is without.
+    /// One more moment: adds friction to what there is without. A body that does not touch, only nearly, has no force.
     ///
     /// - `reader`: of the gel, for where the body is carried.
     /// - `pressure_kpa`: is changed; of everything that touches. `[n_taxels]`
@@ -93,6 +93,7 @@ impl Friction {
         assert_eq!(pressure_kpa.len(), reader.n_taxels(), "a pressure for each taxel");
         let Some((footprint, ports_mm)) = reader.footprint(&[(body, gel_from_body)]) else {
             self.held = None;
+            *wrench = [0.0; 6];
             return;
         };
         if let Some(force_n) = self.step(&gel_from_body, footprint.area_mm2(), wrench) {

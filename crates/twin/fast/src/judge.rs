@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use twintac_shape::{Shape, ShapeError, Surfaces};
+use twintac_shape::{Pose, Shape, ShapeError, Surfaces};
 
 use crate::{Body, FastGel, Lesson};
 
@@ -33,9 +34,15 @@ pub struct Judgement {
     pub by_depth_mm: BTreeMap<u32, GroupErrors>,
     /// By distance of the shape's origin from the gel's middle, as part of the way to its corner: four equal parts.
     pub by_place: BTreeMap<String, GroupErrors>,
+    /// What is read of shapes that do not touch, 0.1 to 1 mm above the gel: the largest at any taxel, mean, % of each press's largest.
+    #[serde(default)]
+    pub untouched_percent: f64,
     /// Frames whose contact is like what was taught (`familiar`), and others (`new`).
     pub by_novelty: BTreeMap<String, GroupErrors>,
 }
+
+/// Gaps between gel and shape at which nothing should be read, mm.
+const GAPS_MM: [f64; 4] = [0.1, 0.25, 0.5, 1.0];
 
 /// Errors of one frame, as part of the press's largest value.
 struct FrameErrors {
@@ -54,9 +61,9 @@ impl FastGel {
     /// # Errors
     /// A press whose shape can't be.
     pub fn judge(&self, presses: &[Lesson], surfaces: &Surfaces) -> Result<Judgement, ShapeError> {
-        let mut frames = Vec::new();
+        let (mut frames, mut untouched) = (Vec::new(), Vec::new());
         for press in presses {
-            self.judge_press(press, surfaces, &mut frames)?;
+            self.judge_press(press, surfaces, &mut frames, &mut untouched)?;
         }
         let grouped = |key: &dyn Fn(&FrameErrors) -> String| {
             let mut groups: BTreeMap<String, Vec<&FrameErrors>> = BTreeMap::new();
@@ -80,6 +87,7 @@ impl FastGel {
             format!("{:.0} to {:.0} %", 25.0 * quarter, 25.0 * (quarter + 1.0))
         };
         Ok(Judgement {
+            untouched_percent: 100.0 * untouched.iter().sum::<f64>() / untouched.len().max(1) as f64,
             overall: mean(&frames.iter().collect::<Vec<_>>()),
             by_shape: grouped(&|frame| frame.shape.to_owned()),
             by_depth_mm: by_depth
@@ -96,6 +104,7 @@ impl FastGel {
         press: &Lesson,
         surfaces: &Surfaces,
         frames: &mut Vec<FrameErrors>,
+        untouched: &mut Vec<f64>,
     ) -> Result<(), ShapeError> {
         let body = Body::new(&press.shape, surfaces)?;
         let n_taxels = self.ports_mm.len();
@@ -126,6 +135,19 @@ impl FastGel {
                 all: (0..n_taxels).map(|taxel| error(taxel).abs()).sum::<f64>() / n_taxels as f64,
                 force: force.distance(frame.force_n) / largest_n,
             });
+        }
+        for (touch, gap_mm) in press
+            .touch()
+            .into_iter()
+            .flat_map(|touch| GAPS_MM.map(|gap_mm| (touch, gap_mm)))
+        {
+            let above = Pose {
+                position_mm: touch.position_mm + gap_mm * DVec3::Z,
+                ..touch
+            };
+            reader.read(&[(&body, above)], &mut found_kpa, &mut wrench);
+            let most_kpa = found_kpa.iter().fold(0.0f32, |most, found| most.max(found.abs()));
+            untouched.push(f64::from(most_kpa) / largest_kpa);
         }
         Ok(())
     }

@@ -9,8 +9,12 @@ use crate::contact::ContactPoints;
 use crate::layout::Layout;
 use crate::{Body, Lesson};
 
-/// Gaps between gel and shape at which nothing is felt, mm.
-const HOVER_MM: [f64; 2] = [0.0, 0.8];
+/// Gaps between gel and shape at which nothing is felt are evenly spread up to these, mm: one each for each lesson.
+const HOVER_MM: [f64; 2] = [0.5, 2.0];
+
+/// By which part of them the gap grows from lesson to lesson: two numbers whose multiples spread evenly together (Roberts, 2018, "The unreasonable effectiveness
+/// of quasirandom sequences").
+const SPREAD: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 /// Least share of the floor's largest pressure by which errors are weighed.
 const LEAST_SHARE: f32 = 0.3;
@@ -95,11 +99,11 @@ impl Frames {
                 teach(frame.gel_from_indenter, frame.floor_kpa.clone(), wrench);
             }
             // What only hovers is not felt.
-            for (touch, gap_mm) in lesson
-                .touch()
-                .into_iter()
-                .flat_map(|touch| HOVER_MM.map(|gap_mm| (touch, gap_mm)))
-            {
+            let Some(touch) = lesson.touch() else {
+                continue;
+            };
+            for (most_mm, spread) in HOVER_MM.into_iter().zip(SPREAD) {
+                let gap_mm = most_mm * (number as f64 * spread).fract();
                 let hovering = Pose {
                     position_mm: touch.position_mm + gap_mm * DVec3::Z,
                     ..touch

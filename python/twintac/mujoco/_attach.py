@@ -1,0 +1,48 @@
+"""A sensor, put onto a body of a model."""
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from .. import Sensor
+
+_GEL_RGBA = (0.35, 0.65, 0.85, 0.6)
+
+
+def add_sensor(
+    spec: mujoco.MjSpec,
+    sensor: Sensor,
+    *,
+    body: str,
+    name: str,
+    position_mm: Sequence[float] = (0.0, 0.0, 0.0),
+    quaternion: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+) -> None:
+    """Puts a sensor onto a body: a site `name` that is the frame of its gel, z out of the board, and a box `name` that shows the gel and touches nothing.
+
+    `position_mm` and `quaternion` `(x, y, z, w)` are those of the gel's frame in the body's.
+    """
+    parent = spec.body(body)
+    if parent is None:
+        known = ", ".join(other.name for other in spec.bodies)
+        raise ValueError(f"`body` is `{body}`, which the model does not have; it has {known}")
+    x, y, z, w = quaternion
+    low_mm, high_mm = sensor.bounds_mm
+    middle_mm = 0.5 * (low_mm + high_mm)
+    place = [1e-3 * length_mm for length_mm in position_mm]
+    parent.add_site(name=name, pos=place, quat=[w, x, y, z], size=[1e-3] * 3, group=3)
+    to_middle_mm = np.zeros(3)
+    mujoco.mju_rotVecQuat(to_middle_mm, middle_mm, np.array([w, x, y, z]))
+    parent.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_BOX,
+        size=[0.5e-3 * length_mm for length_mm in high_mm - low_mm],
+        pos=[start + 1e-3 * aside_mm for start, aside_mm in zip(place, to_middle_mm)],
+        quat=[w, x, y, z],
+        contype=0,
+        conaffinity=0,
+        mass=0.0,
+        rgba=_GEL_RGBA,
+    )
+
