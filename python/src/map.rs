@@ -45,6 +45,11 @@ impl PressureMap {
         rows(py, self.map.pressure_kpa().to_vec(), [n_rows, n_columns])
     }
 
+    /// The picture that a notebook shows.
+    fn _repr_svg_(&self) -> String {
+        self.map.svg()
+    }
+
     /// Draws the map, with the taxels marked, into a file: `.svg` or `.png`.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.map.write(path)).or_raise(py)

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use twintac_map::{MapSettings, Rectangle, pressure_map};
-use twintac_plot::{HeatMap, HeatMaps};
+use twintac_plot::{HeatMap, HeatMaps, Scene};
 
 use crate::{Error, Sensor};
 
@@ -55,6 +55,16 @@ impl PressureMap {
     /// # Errors
     /// A name with another ending; a file that cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        Ok(self.scene().write(path.as_ref())?)
+    }
+
+    /// The map as a picture, with the taxels marked: the text of an SVG file.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        twintac_plot::svg(&self.scene())
+    }
+
+    fn scene(&self) -> Scene {
         let map = HeatMap {
             name: String::new(),
             min_mm: self.map.rectangle.min_mm,
@@ -69,6 +79,6 @@ impl PressureMap {
             marks_mm: self.taxels_mm.clone(),
             circle_mm: None,
         };
-        Ok(maps.scene().write(path.as_ref())?)
+        maps.scene()
     }
 }
