@@ -1,15 +1,16 @@
 """Two fingers with a PhysTac each lift objects of unknown weight and shape, by touch alone.
 
-    python grasp_by_touch.py [--objects 20] [--seed 1] [--plot grasps.png]
+    python grasp_by_touch.py [--objects 20] [--seed 1] [--plot grasps.png] [--json]
 
 What a finger knows is what its eight barometers read, and how far it has been moved. It presses lightly and is raised in small steps while the object still
 stands. As long as the object does, the gel is sheared by as much as the finger rises, and the readings of the upper and the lower row part. Where they stop parting,
-the object hangs: by then the gel carries its weight, and the fingers hold it with what friction needs and a half more. Beside it stands a gripper
-without touch, which takes every object with one force.
+the object hangs: by then the gel carries its weight, and the fingers hold it with what friction needs and a fifth more, as far as they know. Beside it
+stands a gripper without touch, which takes every object with one force.
 """
 
 import argparse
-from dataclasses import dataclass
+import json
+from dataclasses import asdict, dataclass
 
 import mujoco
 import numpy as np
@@ -22,10 +23,11 @@ Array = npt.NDArray[np.float64]
 
 FRICTION = 0.8
 GRAVITY_M_PER_S2 = 9.81
-FIRST_N = 0.19  # a light touch
-MARGIN = 1.45  # of what friction needs
+FIRST_N = 0.17  # a light touch
+MARGIN = 1.2  # of what friction needs
 FIXED_N = 3.0  # of the gripper without touch: lifts the heaviest
-RISE_MM = 0.1  # of a step
+FIRST_RISE_MM = 0.03  # of a step
+RISE_N, RISE_PART = 0.025, 0.12  # that a step should load the gel with, and of what it carries already
 LIFT_MM = 20.0
 APART_M = 0.06  # from the middle to each finger
 FRAMES = 12  # that are averaged, at 55 Hz
@@ -75,20 +77,26 @@ def features(readings_kpa: Array) -> Array:
 
 
 class Meaning:
-    """The force on a finger, N, and how stiff its gel is against shear, N/mm, from what its sensor reads."""
+    """The force on a finger, N, from what its sensor reads; and how stiff its gel is against shear, N/mm, from that and from how its rows part, as part of all readings for each
+    mm: they part most under a ball, which moves away from one row."""
 
     def __init__(self, seed: int) -> None:
         rng = np.random.default_rng(seed)
-        readings_kpa, force_n, stiffness_n_per_mm = lessons(4000, rng)
-        known = features(readings_kpa)
-        self.force = fit(known, force_n)
-        self.stiffness = fit(known, stiffness_n_per_mm)
+        readings_kpa, force_n, parting_per_mm, stiffness_n_per_mm = lessons(6000, rng)
+        self.force = fit(features(readings_kpa), force_n)
+        self.stiffness = fit(with_parting(readings_kpa, parting_per_mm), stiffness_n_per_mm)
 
     def force_n(self, readings_kpa: Array) -> float:
         return max(float((features(readings_kpa[None]) @ self.force)[0]), 0.0)
 
-    def stiffness_n_per_mm(self, readings_kpa: Array) -> float:
-        return float(np.clip((features(readings_kpa[None]) @ self.stiffness)[0], 0.05, 2.0))
+    def stiffness_n_per_mm(self, readings_kpa: Array, parting_per_mm: float) -> float:
+        known = with_parting(readings_kpa[None], np.array([parting_per_mm]))
+        return float(np.clip((known @ self.stiffness)[0], 0.05, 2.0))
+
+
+def with_parting(readings_kpa: Array, parting_per_mm: Array) -> Array:
+    known, part = features(readings_kpa), np.clip(parting_per_mm, 0.0, 1.0)[:, None]
+    return np.concatenate([known, part * known, part**2 * known[:, :8]], axis=1)
 
 
 def fit(known: Array, wanted: Array) -> Array:
@@ -99,7 +107,7 @@ def fit(known: Array, wanted: Array) -> Array:
     return np.linalg.solve(square, rows.T @ (wanted * weight)).astype(float)
 
 
-def lessons(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array]:
+def lessons(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
     """Sensors that are pressed by boxes, balls and lying cylinders at random, and sheared a little."""
     sensor = Sensor.phystac()
     top_mm = sensor.bounds_mm[1, 2]
@@ -127,14 +135,21 @@ def lessons(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array]:
     poses[:, 2] = top_mm - depth_mm + np.array(origins_mm)[shape, 1]
     coupling = Coupling(sensor, friction=FRICTION)
     sensors = SensorBatch(FastGel.phystac(), [Body(shape) for shape in shapes], n, coupling=coupling)
-    _, pressed = sensors.step(1.0, poses, shape)
-    poses[:, 1] -= 0.03
-    _, nudged = sensors.step(1.0, poses, shape)
-    stiffness_n_per_mm = (pressed[:, 1] - nudged[:, 1]).astype(float) / 0.03
+    pressed_kpa, pressed = sensors.step(1.0, poses, shape)
+    poses[:, 1] -= 0.05
+    nudged_kpa, nudged = sensors.step(1.0, poses, shape)
+    stiffness_n_per_mm = (pressed[:, 1] - nudged[:, 1]).astype(float) / 0.05
+    parting_per_mm = (parting_kpa(nudged_kpa) - parting_kpa(pressed_kpa)) / np.maximum(pressed_kpa.sum(1), 0.2) / 0.05
     poses[:, 1] -= rng.uniform(0.0, 0.6, n) * np.sqrt(depth_mm)
     readings_kpa, sheared = sensors.step(1.0, poses, shape)
     touching = sheared[:, 2] < -0.05
-    return readings_kpa[touching].astype(float), -sheared[touching, 2].astype(float), stiffness_n_per_mm[touching]
+    force_n = -sheared[touching, 2].astype(float)
+    return readings_kpa[touching].astype(float), force_n, parting_per_mm[touching], stiffness_n_per_mm[touching]
+
+
+def parting_kpa(readings_kpa: Array) -> Array:
+    """How much more the lower row of each sensor reads than the upper one, kPa."""
+    return (readings_kpa[:, :4] - readings_kpa[:, 4:]).sum(1).astype(float)
 
 
 # --- the bench ---
@@ -195,10 +210,10 @@ def scene(thing: Thing) -> mujoco.MjModel:
           <visual><global offwidth="800" offheight="600"/></visual>
           <worldbody>
             <light pos="0 -0.3 0.5"/>
-            <geom type="plane" size="0.3 0.3 0.1"/>
+            <geom type="plane" size="0.3 0.3 0.1" solref="0.004 1" solimp="0.99 0.999 0.0001"/>
             <body name="thing" pos="0 0 {thing.half_height_m + 1e-4}"><freejoint/><geom {thing.geom} mass="{thing.mass_kg}" rgba="0.9 0.6 0.3 1"/></body>
             <body name="wrist" pos="0 0 {thing.half_height_m}">
-              <joint name="lift" type="slide" axis="0 0 1" damping="50"/>
+              <joint name="lift" type="slide" axis="0 0 1" damping="400"/>
               <geom type="box" size="0.08 0.012 0.005" pos="0 0 0.08" contype="0" conaffinity="0" mass="0.5"/>
               <body name="left" pos="{-APART_M} 0 0">
                 <joint name="left" type="slide" axis="1 0 0" damping="20"/>
@@ -211,7 +226,7 @@ def scene(thing: Thing) -> mujoco.MjModel:
             </body>
           </worldbody>
           <actuator>
-            <position joint="left" kp="4000"/><position joint="right" kp="4000"/><position joint="lift" kp="20000"/>
+            <position joint="left" kp="4000"/><position joint="right" kp="4000"/><position joint="lift" kp="100000"/>
           </actuator>
         </mujoco>""")
     half = 0.5  # of a quaternion: the gels face each other, their x along the fingers' width, their y up
@@ -236,33 +251,43 @@ def grip(gripper: Gripper, meaning: Meaning, wanted_n: float) -> Array:
     return readings_kpa
 
 
-def parting_kpa(readings_kpa: Array) -> float:
-    """How much more the lower row reads than the upper one, mean of both fingers, kPa."""
-    return float((readings_kpa[:, :4] - readings_kpa[:, 4:]).sum(1).mean())
-
-
 def lift_by_touch(gripper: Gripper, meaning: Meaning) -> None:
     while gripper.step(0.04).max(axis=1).min() < 0.15:
         gripper.closed_mm += 0.03
     readings_kpa = grip(gripper, meaning, FIRST_N)
-    parts: list[float] = []  # of what the parting would be if the object stood, in each step
-    carried_n, steepest_kpa_per_n = 0.0, 0.0
-    while gripper.risen_mm < LIFT_MM and not (len(parts) > 3 and np.mean(parts[-3:]) < 0.35):
-        before_kpa = parting_kpa(readings_kpa)
-        gripper.risen_mm += RISE_MM
-        readings_kpa = gripper.step(0.3)
-        sheared_n = RISE_MM * float(np.mean([meaning.stiffness_n_per_mm(finger) for finger in readings_kpa]))
-        kpa_per_n = (parting_kpa(readings_kpa) - before_kpa) / sheared_n
-        steepest_kpa_per_n = max(steepest_kpa_per_n, kpa_per_n if len(parts) < 2 else 0.0)
-        if DEBUG: print('  est N %.3f true %.3f | k %.3f sheared %.3f true T %.3f z %.3f A %.3f'%(np.mean([meaning.force_n(f) for f in readings_kpa]),gripper.true_n, sheared_n/RISE_MM, sheared_n, -gripper.touch.wrench[0,:,1].mean(), 1e3*(gripper.height_m-gripper.start_m), parting_kpa(readings_kpa)))
-        parts.append(float(np.clip(kpa_per_n / steepest_kpa_per_n, 0.0, 1.0)))
-        carried_n += parts[-1] * sheared_n
-        wanted_n = max(FIRST_N, MARGIN * (carried_n + 0.5 * sheared_n) / FRICTION)
+    parting: list[float] = []  # in each step, kPa/mm
+    carried_n, rise_mm = 0.0, FIRST_RISE_MM
+    while gripper.risen_mm < LIFT_MM and not hangs(parting):
+        before_kpa = readings_kpa
+        gripper.risen_mm += rise_mm
+        readings_kpa = gripper.step(0.25)
+        parting.append(float((parting_kpa(readings_kpa) - parting_kpa(before_kpa)).mean()) / rise_mm)
+        usual = standing(parting)
+        per_mm = usual / readings_kpa.sum(1).mean()
+        stiffness_n_per_mm = np.mean([meaning.stiffness_n_per_mm(finger, per_mm) for finger in readings_kpa])
+        sheared_n = rise_mm * float(stiffness_n_per_mm)
+        carried_n += float(np.clip(parting[-1] / (0.9 * usual), 0.0, 1.0)) * sheared_n
+        next_n = RISE_N + RISE_PART * carried_n
+        rise_mm = next_n / float(stiffness_n_per_mm)
+        wanted_n = max(FIRST_N, MARGIN * (carried_n + 0.7 * next_n) / FRICTION)
         if wanted_n > 1.05 * np.mean([meaning.force_n(finger) for finger in readings_kpa]):
             readings_kpa = grip(gripper, meaning, wanted_n)
-    if DEBUG: print(np.round(parts,2), 'carried',carried_n, 'W/2', gripper.model.body('thing').mass[0]*9.81/2, 'N',gripper.true_n)
     grip(gripper, meaning, max(FIRST_N, MARGIN * carried_n / FRICTION))
     gripper.lift()
+
+
+def standing(parting: list[float]) -> float:
+    """How the rows part in a step of an object that stands: the median of its last five steps, but for those that may be of one that hangs."""
+    usual = max(float(np.median(parting[:3])), 0.1)
+    for number in range(3, len(parting)):
+        stood = [step for step in parting[max(number - 4, 0) : number + 1] if step > 0.5 * usual]
+        usual = float(np.median(stood)) if stood else usual
+    return usual
+
+
+def hangs(parting: list[float]) -> bool:
+    """Whether the rows have stopped parting."""
+    return len(parting) > 3 and float(np.mean(parting[-2:])) < 0.35 * standing(parting)
 
 
 def lift_without_touch(gripper: Gripper) -> None:
@@ -270,12 +295,88 @@ def lift_without_touch(gripper: Gripper) -> None:
         gripper.closed_mm += 0.02
         gripper.step(0.04)
     gripper.lift()
-DEBUG=True
-if __name__=="__main__":
-    import time,sys
-    meaning=Meaning(1)
-    rng=np.random.default_rng(1)
-    for n in range(9):
-        thing=draw(n,rng); t=time.time()
-        g=Gripper(thing,n); lift_by_touch(g,meaning)
-        print(thing.kind, round(1e3*thing.mass_kg),'g lifted',g.is_lifted,'ratio most',g.most_n/thing.needed_n,'end',g.true_n/thing.needed_n, 's',time.time()-t, 'sim',g.data.time,flush=True)
+
+
+# --- what is asked on the command line ---
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """What came of one object: whether each policy lifted it, and the force with which it held it, and at most pressed it, N."""
+
+    kind: str
+    mass_g: float
+    needed_n: float
+    lifted: bool
+    held_n: float
+    most_n: float
+    lifted_without_touch: bool
+    held_without_touch_n: float
+
+
+def grasp(thing: Thing, meaning: Meaning, seed: int) -> Grasp:
+    touching, blind = Gripper(thing, seed), Gripper(thing, seed)
+    lift_by_touch(touching, meaning)
+    lift_without_touch(blind)
+    return Grasp(
+        kind=thing.kind,
+        mass_g=round(1e3 * thing.mass_kg, 1),
+        needed_n=round(thing.needed_n, 3),
+        lifted=touching.is_lifted,
+        held_n=round(touching.true_n, 3),
+        most_n=round(touching.most_n, 3),
+        lifted_without_touch=blind.is_lifted,
+        held_without_touch_n=round(blind.true_n, 3),
+    )
+
+
+def plot(grasps: list[Grasp], path: str) -> None:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 4.5))
+    axes = figure.add_subplot()
+    needed_n = np.geomspace(0.1, 2.0, 50)
+    axes.plot(needed_n, needed_n, "k-", label="what friction needs")
+    axes.plot(needed_n, 2.0 * needed_n, "k--", label="twice as much")
+    for kind, marker in (("box", "s"), ("ball", "o"), ("cylinder", "^")):
+        own = [grasp for grasp in grasps if grasp.kind == kind and grasp.lifted]
+        axes.plot([grasp.needed_n for grasp in own], [grasp.held_n for grasp in own], marker, label=f"{kind}, by touch")
+    lost = [grasp for grasp in grasps if not grasp.lifted]
+    axes.plot([grasp.needed_n for grasp in lost], [grasp.held_n for grasp in lost], "rx", label="dropped, by touch")
+    axes.plot([grasp.needed_n for grasp in grasps], [grasp.held_without_touch_n for grasp in grasps], "+", color="gray", label="one force for all")
+    axes.set(xscale="log", yscale="log", xlabel="force of each finger that friction needs, N", ylabel="force of each finger, N")
+    axes.set_title("Objects that hang, simulated")
+    axes.legend()
+    figure.tight_layout()
+    figure.savefig(path, dpi=130)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--objects", type=int, default=20, help="how many to lift (default: 20)")
+    parser.add_argument("--seed", type=int, default=1, help="of all that is random (default: 1)")
+    parser.add_argument("--plot", metavar="FILE", help="draw the forces into a picture; needs matplotlib")
+    parser.add_argument("--json", action="store_true", help="print all as JSON")
+    asked = parser.parse_args()
+    meaning = Meaning(asked.seed)
+    rng = np.random.default_rng(asked.seed)
+    grasps = []
+    for number in range(asked.objects):
+        found = grasp(draw(number, rng), meaning, asked.seed + number)
+        grasps.append(found)
+        if not asked.json:
+            end = "lifted" if found.lifted else "dropped"
+            part, blind = found.held_n / found.needed_n, found.held_without_touch_n / found.needed_n
+            print(f"{found.kind:<9}{found.mass_g:6.1f} g: {end}, held with {part:.2f} of the force needed; without touch {blind:5.2f}", flush=True)
+    if asked.plot:
+        plot(grasps, asked.plot)
+    held = [found.held_n / found.needed_n for found in grasps]
+    if asked.json:
+        print(json.dumps({"provenance": "simulated", "seed": asked.seed, "grasps": [asdict(found) for found in grasps]}, indent=1))
+    else:
+        lifted = sum(found.lifted for found in grasps)
+        print(f"{lifted} of {len(grasps)} lifted by touch, with {min(held):.2f} to {max(held):.2f} of the force needed, simulated")
+
+
+if __name__ == "__main__":
+    main()

@@ -10,10 +10,10 @@ ROOT = Path(__file__).parents[2]
 DATA = ROOT / "crates/app/twintac/examples/data"
 
 
-def run_example(name: str, folder: Path) -> str:
+def run_example(name: str, folder: Path, *arguments: str) -> str:
     """Runs an example in a folder. What it prints."""
     example = ROOT / "python/examples" / name
-    ran = subprocess.run([sys.executable, example], cwd=folder, capture_output=True, text=True, check=False)
+    ran = subprocess.run([sys.executable, example, *arguments], cwd=folder, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
     return ran.stdout
 

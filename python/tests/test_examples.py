@@ -1,5 +1,6 @@
 """Every example runs."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from conftest import ROOT, run_example
 EXAMPLES = sorted(path.name for path in (ROOT / "python/examples").glob("*.py"))
 
 
-@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("press_a_ball.py", "train_from_csv.py")])
+@pytest.mark.parametrize("name", [name for name in EXAMPLES if name not in ("grasp_by_touch.py", "press_a_ball.py", "train_from_csv.py")])
 def test_example_prints(name: str, tmp_path: Path) -> None:
     last = run_example(name, tmp_path).splitlines()[-1]
     assert "emulated" in last or "simulated" in last
@@ -23,3 +24,12 @@ def test_a_ball_is_read_and_drawn(tmp_path: Path) -> None:
 def test_training_makes_a_model_and_a_report(trained: Path) -> None:
     assert (trained / "report.html").is_file()
     assert (trained / "model").is_dir()
+
+
+def test_objects_are_lifted_by_touch(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco", reason="MuJoCo 4 needs Python 3.11 or later")
+    printed = run_example("grasp_by_touch.py", tmp_path, "--objects", "3", "--seed", "2", "--json")
+    grasps = json.loads(printed)["grasps"]
+    assert [grasp["kind"] for grasp in grasps] == ["box", "ball", "cylinder"]
+    for grasp in grasps:
+        assert grasp["lifted"] and grasp["needed_n"] < grasp["held_n"] < 2.2 * grasp["needed_n"]

@@ -20,6 +20,10 @@ const DEEPEST_MM: f32 = 4.0;
 /// Height of the gel for which both are, mm: PhysTac's.
 const HEIGHT_MM: f32 = 8.5;
 
+/// Gaps up to which something may touch between points, and beyond which nothing does, in distances of points: an end with a radius of 2.5 mm, in the middle of four points
+/// of PhysTac's grid, has a gap of a fifth to them when it touches.
+const TOUCHED: [f32; 2] = [0.05, 0.25];
+
 /// Numbers for each point.
 pub(crate) const N_CHANNELS: usize = 3;
 
@@ -54,6 +58,18 @@ impl ContactPoints {
     /// Numbers that [`Self::fill`] writes.
     pub(crate) fn n_inputs(&self) -> usize {
         self.n_inputs
+    }
+
+    /// Whether something touches, by the point that is nearest to a body: 1 where it lies inside or nearly so, 0 where it lies so far outside that nothing reaches into the
+    /// gel between the points either.
+    pub(crate) fn touched(&self, inputs: &[f32]) -> f32 {
+        let nearest = inputs
+            .iter()
+            .step_by(N_CHANNELS)
+            .fold(0.0, |most: f32, own| most.max(*own));
+        let gap_mm = REACH_MM * (1.0 - nearest);
+        let [near_mm, far_mm] = TOUCHED.map(|part| part * self.grids[0].spacing_mm);
+        ((far_mm - gap_mm) / (far_mm - near_mm)).clamp(0.0, 1.0)
     }
 
     /// Writes, point by point and level by level, how much of the reach around a body is left, in units of the reach: 0 far away, 1 at its

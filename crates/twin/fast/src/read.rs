@@ -67,8 +67,9 @@ impl FastReader {
         assert_eq!(pressure_kpa.len(), self.n_taxels(), "a pressure for each taxel");
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
-        let wrench = std::slice::from_mut(wrench);
-        self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
+        let all = std::slice::from_mut(wrench);
+        self.engine.read(inputs, &mut self.scratch, pressure_kpa, all);
+        quieten(self.points.touched(inputs), pressure_kpa, wrench);
     }
 
     /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where it is farther from all that was taught than 99 of 100 contacts of the
@@ -129,8 +130,9 @@ impl FastReader {
         );
         assert_eq!(wrench.len(), n_sensors, "a wrench for each sensor");
         let (n_together, n_inputs) = (self.engine.n_together(), self.points.n_inputs());
+        let n_taxels = self.n_taxels().max(1);
         let numbers = pressure_kpa
-            .chunks_mut((n_together * self.n_taxels()).max(1))
+            .chunks_mut(n_together * n_taxels)
             .zip(wrench.chunks_mut(n_together));
         for (ends, (pressure_kpa, wrench)) in ends.chunks(n_together).zip(numbers) {
             for (end, inputs) in ends.iter().zip(self.inputs.chunks_exact_mut(n_inputs)) {
@@ -142,6 +144,19 @@ impl FastReader {
             }
             let inputs = &self.inputs[..ends.len() * n_inputs];
             self.engine.read(inputs, &mut self.scratch, pressure_kpa, wrench);
+            let sensors = pressure_kpa.chunks_exact_mut(n_taxels).zip(wrench.iter_mut());
+            for (inputs, (pressure_kpa, wrench)) in inputs.chunks_exact(n_inputs).zip(sensors) {
+                quieten(self.points.touched(inputs), pressure_kpa, wrench);
+            }
+        }
+    }
+}
+
+/// Leaves what is read only as far as something touches: networks are never quite silent.
+fn quieten(touched: f32, pressure_kpa: &mut [f32], wrench: &mut [f32; 6]) {
+    if touched < 1.0 {
+        for number in pressure_kpa.iter_mut().chain(wrench) {
+            *number *= touched;
         }
     }
 }

@@ -80,7 +80,10 @@ fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
     for (depth_mm, errors) in &found.by_depth_mm {
         print_group(&format!("  {depth_mm} to {} mm deep", depth_mm + 1), errors)?;
     }
-    print(&format!("{:<36} {:>8.2}", "  read while nothing touches", found.untouched_percent))?;
+    print(&format!(
+        "{:<36} {:>8.2}",
+        "  read while nothing touches", found.untouched_percent
+    ))?;
     for (novelty, errors) in &found.by_novelty {
         print_group(&format!("  {novelty} contacts"), errors)?;
     }
