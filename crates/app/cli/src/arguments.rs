@@ -1,6 +1,10 @@
 //! What can be typed.
 
+mod dataset;
+
 use std::path::PathBuf;
+
+pub(crate) use dataset::Dataset;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
@@ -32,6 +36,8 @@ pub(crate) enum Command {
     Mesh(Mesh),
     /// Press the simulated gel along a protocol.
     Simulate(Simulate),
+    /// Make many simulated presses to learn from, in shards for as many machines as there are.
+    Dataset(Dataset),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
     /// Measure a sensor's properties in recorded presses: sensitivity, noise, hysteresis, and more.

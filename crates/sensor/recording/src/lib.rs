@@ -14,4 +14,4 @@ pub use error::RecordingError;
 pub use import::{FileSummary, Import, ImportSummary};
 pub use press::{Control, Press, Recording};
 pub use provenance::Provenance;
-pub use store::{Column, FrameTable, TaxelCell};
+pub use store::{Column, FrameTable, RecordingWriter, TaxelCell};

@@ -35,19 +35,31 @@ impl FastTables {
         let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
         let fast = FastGel::from_bytes(&bytes)
             .map_err(|error| RunError::Input(format!("{}: {error}", path.display())))?;
+        Self::of(fast, sensor, &path.display().to_string())
+    }
+
+    /// A fast gel, which is called so in errors.
+    ///
+    /// # Errors
+    /// A fast gel whose ports are elsewhere than the sensor's.
+    pub(crate) fn of(fast: FastGel, sensor: &Sensor, name: &str) -> Result<Self, RunError> {
         let is_at = |(taxel, port_mm): (&twintac_sensor::Taxel, &glam::DVec2)| {
             taxel.position_mm.truncate().distance(*port_mm) < 1e-6
         };
         let ports_mm = fast.ports_mm();
         if sensor.taxels.len() != ports_mm.len() || !sensor.taxels.iter().zip(ports_mm).all(is_at) {
             return Err(RunError::Input(format!(
-                "{} is of the sensor `{}`, whose ports are elsewhere than those of `{}`: make one with `twintac fast train`",
-                path.display(),
+                "{name} is of the sensor `{}`, whose ports are elsewhere than those of `{}`: make one with `twintac fast train`",
                 fast.sensor(),
                 sensor.name
             )));
         }
         Ok(Self { fast })
+    }
+
+    /// The fast gel.
+    pub(crate) fn gel(&self) -> &FastGel {
+        &self.fast
     }
 
     /// The table at a place. Its stress features are zero: a fast gel does not know them.
