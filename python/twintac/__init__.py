@@ -10,6 +10,7 @@ from twintac._progress import Progress
 from twintac._twintac import (
     Body,
     Contact,
+    Dataset,
     FastBatch,
     FastGel,
     FastReader,
@@ -36,6 +37,7 @@ from twintac._twintac import (
 __all__ = [
     "Body",
     "Contact",
+    "Dataset",
     "Error",
     "FastBatch",
     "FastGel",

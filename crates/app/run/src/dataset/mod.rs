@@ -81,6 +81,12 @@ impl Dataset {
         self.n_presses
     }
 
+    /// What it is made from: the text of `dataset.toml`. Data sets of the same text are the same.
+    #[must_use]
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
     /// Makes one shard in a folder, with all threads that there are, unless it is complete there. It appears whole or not at all, whoever else works in the folder.
     ///
     /// # Errors

@@ -98,7 +98,7 @@ fn by_imperfect_sensor(
     let trajectory = plan.trajectory(described.readout.rate_hz);
     let (mut press, _) = unread_press(plan, &trajectory, source, n_taxels)?;
     let shape = inputs.gel.shape(&plan.indenter)?;
-    let bodies = [Body::new(shape, &described.surfaces)?];
+    let bodies = [Body::clone(&*fast.body(shape, described)?)];
     let twin = twin.map(|model| &model.twin);
     let mut sensor = SensorBatch::new(fast.gel(), twin, imperfection.clone(), [1, 1], number);
     let (mut readings_kpa, mut wrench) = (vec![0.0; n_taxels], [[0.0; 6]]);

@@ -1,12 +1,13 @@
 //! Tables over depth that a fast gel makes, where nothing is solved.
 
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use twintac_depth_table::{DepthTable, PressFrame, SolveQuality, SourceError};
 use twintac_fast::{Body, FastGel, FastReader};
 use twintac_sensor::Sensor;
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Shape, ShapeError};
 use twintac_simulate::{Gel, PressPlace};
 
 use crate::RunError;
@@ -15,15 +16,17 @@ use crate::RunError;
 const ASIDE_MM: f64 = 0.5;
 
 /// A fast gel of one sensor.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct FastTables {
     fast: FastGel,
+    /// Shapes that were asked for: sampling one takes longer than a press with it.
+    bodies: Mutex<Vec<(Shape, Arc<Body>)>>,
 }
 
 /// A fast gel that reads one body.
 struct Reading {
     reader: FastReader,
-    body: Body,
+    body: Arc<Body>,
 }
 
 impl FastTables {
@@ -54,12 +57,29 @@ impl FastTables {
                 sensor.name
             )));
         }
-        Ok(Self { fast })
+        Ok(Self {
+            fast,
+            bodies: Mutex::default(),
+        })
     }
 
     /// The fast gel.
     pub(crate) fn gel(&self) -> &FastGel {
         &self.fast
+    }
+
+    /// A shape as the fast gel feels it.
+    ///
+    /// # Errors
+    /// A shape that can't be.
+    pub(crate) fn body(&self, shape: &Shape, sensor: &Sensor) -> Result<Arc<Body>, ShapeError> {
+        let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, body)) = bodies.iter().find(|(known, _)| known == shape) {
+            return Ok(Arc::clone(body));
+        }
+        let body = Arc::new(Body::new(shape, &sensor.surfaces)?);
+        bodies.push((shape.clone(), Arc::clone(&body)));
+        Ok(body)
     }
 
     /// The table at a place. Its stress features are zero: a fast gel does not know them.
@@ -71,7 +91,7 @@ impl FastTables {
         let touch = gel.touch(&place.shape, &above)?;
         let mut reading = Reading {
             reader: self.fast.reader(),
-            body: Body::new(&place.shape, &gel.sensor().surfaces)?,
+            body: self.body(&place.shape, gel.sensor())?,
         };
         let mut frames = Vec::new();
         for keyframe in gel.depths(place) {

@@ -1,0 +1,44 @@
+"""A data set by a Ray cluster of two nodes, one of which is killed: the same bytes as those of one process."""
+
+import threading
+from pathlib import Path
+
+import pytest
+
+from twintac import Dataset
+from twintac.ray import make_dataset
+
+ray = pytest.importorskip("ray")
+
+N_SHARDS = 16
+OPTIONS = {"n_presses": 1600, "fast": True}
+
+
+def test_a_node_that_is_killed_costs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from ray.cluster_utils import Cluster
+
+    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
+    nodes = [cluster.add_node(num_cpus=1) for _ in range(2)]
+    ray.init(address=cluster.address)
+    killed: list[int] = []
+
+    def kill_one(work: str, done: int, total: int, state: str) -> None:
+        if done >= 3 and not killed:
+            killed.append(done)
+            threading.Thread(target=cluster.remove_node, args=(nodes[1], False)).start()  # SIGKILL to all of its processes
+
+    try:
+        manifests = make_dataset(tmp_path / "by-ray", N_SHARDS, progress=kill_one, **OPTIONS)
+        alive = [node for node in ray.nodes() if node["Alive"] and node["Resources"].get("CPU")]
+    finally:
+        ray.shutdown()
+        cluster.shutdown()
+    assert killed and killed[0] < N_SHARDS - 2, "a node was killed in the middle"
+    assert len(alive) == 1
+    assert [manifest["shard"] for manifest in manifests] == list(range(1, N_SHARDS + 1))
+    merged = Dataset.merge(tmp_path / "by-ray")
+    whole = Dataset(**OPTIONS).make(tmp_path / "whole")  # type: ignore[arg-type]
+    assert Path(merged["merged"]).read_bytes() == Path(whole["parquet"]).read_bytes()
+    with capsys.disabled():
+        print(f"
+Ray: killed after {killed[0]} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
