@@ -57,5 +57,4 @@ def test_workers_that_are_killed_cost_nothing(tmp_path: Path, capsys: pytest.Cap
     whole = Dataset(n_presses=1600, fast=True).make(tmp_path / "whole")
     assert Path(merged["merged"]).read_bytes() == Path(whole["parquet"]).read_bytes()
     with capsys.disabled():
-        print(f"
-HyperQueue: killed after {n_made} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
+        print(f"\nHyperQueue: killed after {n_made} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")

@@ -40,5 +40,4 @@ def test_a_node_that_is_killed_costs_nothing(tmp_path: Path, capsys: pytest.Capt
     whole = Dataset(**OPTIONS).make(tmp_path / "whole")  # type: ignore[arg-type]
     assert Path(merged["merged"]).read_bytes() == Path(whole["parquet"]).read_bytes()
     with capsys.disabled():
-        print(f"
-Ray: killed after {killed[0]} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
+        print(f"\nRay: killed after {killed[0]} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
