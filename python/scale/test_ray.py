@@ -2,6 +2,7 @@
 
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ from twintac.ray import make_dataset
 ray = pytest.importorskip("ray")
 
 N_SHARDS = 16
-OPTIONS = {"n_presses": 1600, "fast": True}
+OPTIONS: dict[str, Any] = {"n_presses": 1600, "fast": True}
 
 
 def test_a_node_that_is_killed_costs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -37,7 +38,7 @@ def test_a_node_that_is_killed_costs_nothing(tmp_path: Path, capsys: pytest.Capt
     assert len(alive) == 1
     assert [manifest["shard"] for manifest in manifests] == list(range(1, N_SHARDS + 1))
     merged = Dataset.merge(tmp_path / "by-ray")
-    whole = Dataset(**OPTIONS).make(tmp_path / "whole")  # type: ignore[arg-type]
+    whole = Dataset(**OPTIONS).make(tmp_path / "whole")
     assert Path(merged["merged"]).read_bytes() == Path(whole["parquet"]).read_bytes()
     with capsys.disabled():
         print(f"\nRay: killed after {killed[0]} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
