@@ -16,8 +16,8 @@ from twintac import Dataset
 
 pytest.importorskip("hyperqueue")
 
-N_SHARDS = 16
-OPTIONS = ["--presses", "1600", "--fast"]
+N_SHARDS = 8
+OPTIONS = ["--presses", "800", "--fast"]
 PROGRAM = Path(__file__).with_name("hyperqueue_dataset.py")
 
 
@@ -54,7 +54,7 @@ def test_workers_that_are_killed_cost_nothing(tmp_path: Path, capsys: pytest.Cap
     assert tasks and 3 <= n_made < N_SHARDS, "workers and tasks were killed in the middle"
     assert start(folder).wait(timeout=120) == 0
     merged = Dataset.merge(folder)
-    whole = Dataset(n_presses=1600, fast=True).make(tmp_path / "whole")
+    whole = Dataset(n_presses=800, fast=True).make(tmp_path / "whole")
     assert Path(merged["merged"]).read_bytes() == Path(whole["parquet"]).read_bytes()
     with capsys.disabled():
         print(f"\nHyperQueue: killed after {n_made} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
