@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use twintac_recording::{Provenance, Recording};
 
-use super::{MadeShard, Shard};
+use super::shard::Shard;
 use crate::files::{read_json, read_text, sha256, write_file, write_json};
 use crate::{RunError, sha256_of_file};
 
@@ -47,6 +47,20 @@ pub struct Manifest {
     pub presses: Vec<String>,
     /// Presses that could not be simulated.
     pub left_out: Vec<LeftOut>,
+}
+
+/// A shard that is complete.
+#[derive(Clone, Debug, Serialize)]
+pub struct MadeShard {
+    /// The Parquet file.
+    pub parquet: PathBuf,
+    /// The manifest's file.
+    pub manifest_file: PathBuf,
+    /// Whether it was there already.
+    pub was_kept: bool,
+    /// What it is made of.
+    #[serde(flatten)]
+    pub manifest: Manifest,
 }
 
 /// A folder of one data set.

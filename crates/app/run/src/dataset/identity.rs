@@ -12,7 +12,7 @@ use twintac_sensor::SensorFile;
 use twintac_sensors::Imperfection;
 use twintac_simulate::{Gel, SimulateSettings};
 
-use super::{DatasetPlan, FastSource};
+use super::plan::{DatasetPlan, FastSource};
 use crate::fast::tables::FastTables;
 use crate::files::{read_text, sha256};
 use crate::model::{gel_like, gel_of};

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use twintac_recording::{Provenance, Recording, RecordingWriter};
 
-use super::folder::{AT_WORK, DATASET, Manifest, files, shards};
-use super::{LeftOut, Shard};
+use super::folder::{AT_WORK, DATASET, LeftOut, Manifest, files, shards};
+use super::shard::Shard;
 use crate::files::read_json;
 use crate::progress::Work;
 use crate::{Progress, RunError, sha256_of_file};

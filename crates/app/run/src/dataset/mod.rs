@@ -17,10 +17,9 @@ mod plan;
 mod press;
 mod shard;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rayon::prelude::*;
-use serde::Serialize;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Press, Provenance, Recording};
 
@@ -30,7 +29,7 @@ use crate::{Progress, RunError};
 use folder::Folder;
 use identity::Inputs;
 
-pub use folder::{LeftOut, Manifest};
+pub use folder::{LeftOut, MadeShard, Manifest};
 pub use merge::{WholeDataset, check_dataset, merge_dataset};
 pub use plan::{DatasetPlan, FastSource};
 pub use shard::Shard;
@@ -42,20 +41,6 @@ pub struct Dataset {
     seed: u64,
     /// The text of `dataset.toml`.
     identity: String,
-}
-
-/// A shard that is complete.
-#[derive(Clone, Debug, Serialize)]
-pub struct MadeShard {
-    /// The Parquet file.
-    pub parquet: PathBuf,
-    /// The manifest's file.
-    pub manifest_file: PathBuf,
-    /// Whether it was there already.
-    pub was_kept: bool,
-    /// What it is made of.
-    #[serde(flatten)]
-    pub manifest: Manifest,
 }
 
 impl Dataset {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::LeRobotSummary;
+use super::episode::LeRobotSummary;
 use super::features::{Feature, Rate};
 use crate::{Provenance, Recording};
 

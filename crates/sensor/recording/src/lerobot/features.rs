@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::Episode;
 use super::columns::{LeRobotColumn, LeRobotValues};
+use super::episode::Episode;
 use crate::{Press, Recording};
 
 /// A rate that is so close to a whole number is that.

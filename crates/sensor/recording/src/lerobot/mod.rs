@@ -11,8 +11,11 @@
 
 mod card;
 mod columns;
+mod episode;
 mod features;
 mod statistics;
+
+pub use episode::LeRobotSummary;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,6 +24,7 @@ use serde_json::{Map, Value, json};
 
 use crate::{Press, Recording, RecordingError};
 use columns::{LeRobotColumn, LeRobotValues, write_table};
+use episode::Episode;
 use features::{Feature, features, frames_per_second};
 use statistics::{Statistics, statistics};
 
@@ -38,27 +42,6 @@ const DATA: &str = "data";
 
 /// Where episodes are.
 const EPISODES: &str = "meta/episodes";
-
-/// What was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct LeRobotSummary {
-    /// Presses.
-    pub episodes: usize,
-    /// Frames of all presses.
-    pub frames: usize,
-    /// Indenters.
-    pub tasks: usize,
-}
-
-/// A press as an episode.
-struct Episode<'a> {
-    press: &'a Press,
-    task: usize,
-    /// Number of its first frame.
-    first: usize,
-    /// Number of its file of frames.
-    file: usize,
-}
 
 impl Recording {
     /// Writes the recording as a LeRobot data set, version 3.0, into a folder that is not there yet: it appears whole or not at all. `how_made` is put into its
