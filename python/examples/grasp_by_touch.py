@@ -139,7 +139,8 @@ def lessons(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Arra
     poses[:, 1] -= 0.05
     nudged_kpa, nudged = sensors.step(1.0, poses, shape)
     stiffness_n_per_mm = (pressed[:, 1] - nudged[:, 1]).astype(float) / 0.05
-    parting_per_mm = (parting_kpa(nudged_kpa) - parting_kpa(pressed_kpa)) / np.maximum(pressed_kpa.sum(1), 0.2) / 0.05
+    parted_kpa = parting_kpa((nudged_kpa - pressed_kpa).astype(float))
+    parting_per_mm = parted_kpa / np.maximum(pressed_kpa.sum(1), 0.2) / 0.05
     poses[:, 1] -= rng.uniform(0.0, 0.6, n) * np.sqrt(depth_mm)
     readings_kpa, sheared = sensors.step(1.0, poses, shape)
     touching = sheared[:, 2] < -0.05
@@ -149,7 +150,8 @@ def lessons(n: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Arra
 
 def parting_kpa(readings_kpa: Array) -> Array:
     """How much more the lower row of each sensor reads than the upper one, kPa."""
-    return (readings_kpa[:, :4] - readings_kpa[:, 4:]).sum(1).astype(float)
+    parting: Array = (readings_kpa[:, :4] - readings_kpa[:, 4:]).sum(1)
+    return parting
 
 
 # --- the bench ---

@@ -3,6 +3,7 @@
 //! Each file binds the types of one of the library's files; nothing is computed here. Long calls work on a thread of their own ([`long_call`]).
 
 mod array;
+mod dataset;
 mod error;
 mod fast;
 mod friction;
@@ -27,6 +28,8 @@ use pyo3::prelude::*;
 /// Barometric touch sensors and their digital twin.
 #[pymodule]
 mod _twintac {
+    #[pymodule_export]
+    use crate::dataset::Dataset;
     #[pymodule_export]
     use crate::fast::{FastBatch, FastGel, FastReader};
     #[pymodule_export]

@@ -108,6 +108,19 @@ impl Recording {
         py.detach(|| self.recording.write_parquet(&path)).or_raise(py)
     }
 
+    /// Writes a LeRobot data set, version 3.0, into a folder that is not there yet: presses are episodes, indenters are tasks. `how_made` is put into its data card.
+    /// Returns the numbers of episodes, frames and tasks.
+    #[pyo3(signature = (folder, *, how_made=""))]
+    fn save_lerobot<'py>(
+        &self,
+        py: Python<'py>,
+        folder: PathBuf,
+        how_made: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let written = py.detach(|| self.recording.write_lerobot(&folder, how_made));
+        to_python(py, &written.or_raise(py)?)
+    }
+
     /// What the sensor does, as far as the presses tell: sensitivity, noise, hysteresis and more, as `twintac characterize --json` says it.
     /// With a folder, the report and the data sheet are written into it.
     #[pyo3(signature = (sensor, folder=None))]

@@ -14,6 +14,7 @@ __all__ = [
     "Body",
     "Contact",
     "Coupling",
+    "Dataset",
     "FastBatch",
     "FastGel",
     "FastReader",
@@ -138,8 +139,34 @@ class Recording:
     def to_pandas(self) -> pandas.DataFrame: ...
     def to_polars(self) -> polars.DataFrame: ...
     def save(self, path: _Path) -> None: ...
+    def save_lerobot(self, folder: _Path, *, how_made: str = "") -> dict[str, int]: ...
     def characterize(self, sensor: Sensor, folder: _Path | None = None) -> dict[str, Any]: ...
     def __len__(self) -> int: ...
+
+@final
+class Dataset:
+    def __new__(
+        cls,
+        *,
+        sensor: _Path | None = None,
+        protocol: _Path | None = None,
+        indenters: Sequence[str] = ...,
+        n_presses: int | None = None,
+        seed: int = 1,
+        fast: bool | _Path = ...,
+        twin: _Path | None = None,
+        imperfection: _Path | None = None,
+        settings: _Path | None = None,
+    ) -> Dataset: ...
+    @property
+    def n_presses(self) -> int: ...
+    @property
+    def identity(self) -> str: ...
+    def make(self, folder: _Path, shard: int = 1, of: int = 1, *, progress: Progress = None) -> dict[str, Any]: ...
+    @staticmethod
+    def check(folder: _Path, *, progress: Progress = None) -> dict[str, Any]: ...
+    @staticmethod
+    def merge(folder: _Path, file: _Path | None = None, *, progress: Progress = None) -> dict[str, Any]: ...
 
 @final
 class Twin:

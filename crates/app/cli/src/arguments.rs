@@ -1,6 +1,10 @@
 //! What can be typed.
 
+mod dataset;
+
 use std::path::PathBuf;
+
+pub(crate) use dataset::Dataset;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
@@ -32,6 +36,8 @@ pub(crate) enum Command {
     Mesh(Mesh),
     /// Press the simulated gel along a protocol.
     Simulate(Simulate),
+    /// Make many simulated presses to learn from, in shards for as many machines as there are.
+    Dataset(Dataset),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
     /// Measure a sensor's properties in recorded presses: sensitivity, noise, hysteresis, and more.
@@ -40,7 +46,7 @@ pub(crate) enum Command {
     Stream(Stream),
     /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
     Record(Record),
-    /// Write the frames of logs as Parquet tables; recover logs that were cut.
+    /// Write the frames of logs as Parquet tables, or recordings for LeRobot; recover logs that were cut.
     Export(Export),
     /// Read recordings of a real sensor.
     Import(Import),
@@ -362,12 +368,16 @@ pub(crate) struct Record {
 
 #[derive(Args, Debug)]
 pub(crate) struct Export {
-    /// Logs of `stream` or `record`: MCAP files, also cut ones (`.mcap.partial`), or patterns like 'runs/touch/*.mcap'.
+    /// Logs of `stream` or `record`: MCAP files, also cut ones (`.mcap.partial`), or patterns like 'runs/touch/*.mcap'. With --lerobot also
+    /// presses.parquet files.
     #[arg(value_name = "LOGS", num_args = 1.., required = true)]
     pub(crate) logs: Vec<String>,
     /// Folder of the tables [default: beside the logs].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Write recorded presses, of presses.parquet files or of logs, as one data set of LeRobot (version 3.0) into this folder, which must not be there yet.
+    #[arg(long, value_name = "DIR", conflicts_with = "out")]
+    pub(crate) lerobot: Option<PathBuf>,
     /// Print what was written as JSON, a line for each log.
     #[arg(long)]
     pub(crate) json: bool,

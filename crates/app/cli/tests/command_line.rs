@@ -34,6 +34,7 @@ fn help_on_each_command() {
         "sensor",
         "mesh",
         "simulate",
+        "dataset",
         "calibrate",
         "stream",
         "characterize",

@@ -4,8 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use twintac_log::{Ending, LogError, export_frames, recover};
+use twintac_recording::LeRobotSummary;
 
-use crate::RunError;
+use crate::characterization::Recorded;
+use crate::files::read_text;
+use crate::{Progress, RunError};
 
 /// What was written of a log.
 #[derive(Clone, Debug, Serialize)]
@@ -71,4 +74,30 @@ fn make_whole(log: &Path) -> Result<String, RunError> {
         Err(LogError::Exists { file }) => Ok(format!("{file} is there already")),
         Err(error) => Err(error.into()),
     }
+}
+
+/// Writes recorded presses, Parquet files and MCAP logs, as one LeRobot data set into a folder that is not there yet. Its card says from which files it is made, and of a data
+/// set of `twintac dataset` what that is made from.
+///
+/// # Errors
+/// A file that is neither, or cannot be read; recordings that do not belong together; a folder that is there already.
+pub fn export_lerobot(
+    files: &[PathBuf],
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<LeRobotSummary, RunError> {
+    let recording = Recorded::read(files, progress)?.recording;
+    let mut how_made = String::from("Written by `twintac export --lerobot` from:\n\n");
+    for file in files {
+        let name = file.file_name().unwrap_or_default();
+        how_made.push_str(&format!("- `{}`\n", name.display()));
+    }
+    let beside = files.first().map(|first| first.with_file_name("dataset.toml"));
+    if let Some(dataset) = beside.filter(|beside| beside.exists()) {
+        let text = read_text(&dataset)?;
+        how_made.push_str(&format!(
+            "\nThe presses were simulated by `twintac dataset`:\n\n```toml\n{text}```\n"
+        ));
+    }
+    Ok(recording.write_lerobot(folder, &how_made)?)
 }

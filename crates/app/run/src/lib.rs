@@ -36,7 +36,7 @@
 //! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`] hears. What is wrong is a [`RunError`].
 //!
 //! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`adapt_model`] adapts one to another sensor, a [`Predictor`] takes one along a path or a protocol, a [`Locator`] finds what touches by one, [`calibration`] fits a gel's material, [`characterization`] reads
-//! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
+//! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`dataset`] makes many presses in shards, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
 //! out, [`export`](mod@export) makes tables of logs.
 
 mod adaptation;
@@ -47,6 +47,7 @@ pub mod calibration;
 mod caller;
 pub mod characterization;
 mod cross_validation;
+pub mod dataset;
 mod demo;
 mod depth_tables;
 mod doubtful;

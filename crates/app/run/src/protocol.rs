@@ -48,7 +48,8 @@ impl Planned {
     }
 }
 
-fn target(sensor: &Sensor) -> Target {
+/// What a protocol must know of a sensor.
+pub(crate) fn target(sensor: &Sensor) -> Target {
     let indenters = sensor.indenters.iter().map(|indenter| indenter.name.clone());
     let taxels = sensor.taxels.iter();
     Target {

@@ -43,6 +43,7 @@
 //! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
 //! | [`SensorBatch`], [`Imperfection`], [`Coupling`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
+//! | [`Dataset`] | many simulated presses, made in shards by as many machines as there are | `run` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
 //! Lengths are in mm, forces in N, pressures in kPa, times in s, angles in radians. The gel's frame has z up and z = 0 at the board; presses go
@@ -198,6 +199,8 @@ pub use twintac_inverse::{
 pub use twintac_recording::{Column, Import, Provenance, Recording};
 #[cfg(feature = "run")]
 pub use twintac_run::characterization::Recorded;
+#[cfg(feature = "run")]
+pub use twintac_run::dataset::{Dataset, DatasetPlan, FastSource, Shard, check_dataset, merge_dataset};
 #[cfg(feature = "run")]
 pub use twintac_run::{
     Caller, Metrics, Outcome, Progress, Run, RunError, RunSettings, Silent, import_files, read_recordings,

@@ -52,6 +52,25 @@ pub(crate) fn name_of(part: &str, indenter: &str, number: u32) -> String {
     format!("{part}{dash}{indenter}#{number:03}")
 }
 
+/// The presses of one part with one indenter.
+pub(crate) struct Series<'a> {
+    part: &'a Part,
+    indenter: &'a str,
+    spots: Spots<'a>,
+}
+
+impl Series<'_> {
+    /// How many they are.
+    pub(crate) fn count(&self) -> u32 {
+        self.part.repeats * self.spots.count()
+    }
+
+    /// One of them, by its number from 0.
+    pub(crate) fn press(&self, number: u32, seed: u64) -> PressPlan {
+        self.part.press(self.indenter, &self.spots, number, seed)
+    }
+}
+
 impl Part {
     /// `within` is where the part's fields stand in the document.
     pub(crate) fn check<T>(&self, document: &Document<T>, within: &str) -> Result<(), ConfigError> {
@@ -88,16 +107,17 @@ impl Part {
         Ok(())
     }
 
-    /// The presses: for each indenter, the whole list of places as often as it is repeated.
-    pub(crate) fn plan(&self, target: &Target, seed: u64) -> Result<Vec<PressPlan>, PlanError> {
-        let spots = self.places.on(target)?;
-        let mut plans = Vec::new();
-        for indenter in self.indenters.named(target)? {
-            for number in 0..self.repeats * spots.count() {
-                plans.push(self.press(indenter, &spots, number, seed));
-            }
-        }
-        Ok(plans)
+    /// A list of presses for each indenter: the whole list of places as often as it is repeated.
+    pub(crate) fn series<'a>(&'a self, target: &'a Target) -> Result<Vec<Series<'a>>, PlanError> {
+        let indenters = self.indenters.named(target)?.iter();
+        let series = |indenter: &'a String| {
+            Ok(Series {
+                part: self,
+                indenter,
+                spots: self.places.on(target)?,
+            })
+        };
+        indenters.map(series).collect()
     }
 
     fn press(&self, indenter: &str, spots: &Spots<'_>, number: u32, seed: u64) -> PressPlan {

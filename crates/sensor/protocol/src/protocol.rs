@@ -1,8 +1,11 @@
 //! The protocol as people write it.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 use twintac_config::ConfigError;
 
+use crate::part::Series;
 use crate::{Load, LoadPlan, Part, Places, PlanError, PressPlan, Target};
 
 /// What is pressed, and what is put on the gel.
@@ -88,8 +91,50 @@ impl Protocol {
     /// # Errors
     /// An indenter or a taxel that the sensor does not have.
     pub fn plan(&self, target: &Target, seed: u64) -> Result<Vec<PressPlan>, PlanError> {
-        let plans: Result<Vec<_>, _> = self.parts.iter().map(|part| part.plan(target, seed)).collect();
-        Ok(plans?.concat())
+        let series = self.series(target)?;
+        let plans = series
+            .iter()
+            .flat_map(|series| (0..series.count()).map(|number| series.press(number, seed)));
+        Ok(plans.collect())
+    }
+
+    /// Some of the same presses, by their place in another order: the first press of each part and indenter, the second of each, and so on. Any stretch of that
+    /// order has a press of every indenter, and only the stretch is planned.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_in_turn(
+        &self,
+        target: &Target,
+        seed: u64,
+        stretch: Range<usize>,
+    ) -> Result<Vec<PressPlan>, PlanError> {
+        let series = self.series(target)?;
+        let most = series.iter().map(Series::count).max().unwrap_or(0);
+        let in_turn = (0..most).flat_map(|number| series.iter().map(move |series| (series, number)));
+        let planned = in_turn.filter(|(series, number)| *number < series.count());
+        Ok(planned
+            .skip(stretch.start)
+            .take(stretch.len())
+            .map(|(series, number)| series.press(number, seed))
+            .collect())
+    }
+
+    /// How many presses there are on a sensor.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn n_presses(&self, target: &Target) -> Result<usize, PlanError> {
+        let series = self.series(target)?;
+        Ok(series.iter().map(|series| series.count() as usize).sum())
+    }
+
+    fn series<'a>(&'a self, target: &'a Target) -> Result<Vec<Series<'a>>, PlanError> {
+        let mut all = Vec::new();
+        for part in &self.parts {
+            all.extend(part.series(target)?);
+        }
+        Ok(all)
     }
 
     /// The weights put on a sensor, in the same order.
@@ -179,6 +224,26 @@ mod tests {
         let ring = protocol.plan(&known(), 3).unwrap();
         assert_eq!(both[both.len() / 2..], ring[..]);
         assert_ne!(protocol.plan(&known(), 4).unwrap(), ring);
+    }
+
+    #[test]
+    fn presses_in_turn_are_the_same_presses_with_all_indenters_in_every_stretch() {
+        let protocol = Protocol::parse("shapes.toml", SHAPES)
+            .unwrap()
+            .with_random_places(3);
+        let target = known();
+        let n = protocol.n_presses(&target).unwrap();
+        assert_eq!(n, 3 * target.indenters.len());
+        let whole = protocol.plan_in_turn(&target, 5, 0..n).unwrap();
+        let pieces = [0..4, 4..n].map(|stretch| protocol.plan_in_turn(&target, 5, stretch).unwrap());
+        assert_eq!(whole, pieces.concat());
+        let first = whole[..target.indenters.len()].iter().map(|plan| &plan.indenter);
+        assert!(first.eq(&target.indenters));
+        let sorted = |mut plans: Vec<PressPlan>| {
+            plans.sort_by(|a, b| a.name.cmp(&b.name));
+            plans
+        };
+        assert_eq!(sorted(whole), sorted(protocol.plan(&target, 5).unwrap()));
     }
 
     #[test]

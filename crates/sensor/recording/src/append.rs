@@ -1,5 +1,7 @@
 //! Recordings of the same sensor as one.
 
+use std::collections::BTreeSet;
+
 use crate::{Recording, RecordingError};
 
 impl Recording {
@@ -10,14 +12,16 @@ impl Recording {
     /// [`RecordingError::Mixed`]: sensor, taxels or provenance differ. Nothing is added then.
     pub fn append(&mut self, next: Self) -> Result<(), RecordingError> {
         self.expect_alike(&next)?;
+        let names = self.presses.iter().map(|press| press.name.clone());
+        let mut taken: BTreeSet<String> = names.collect();
         for mut press in next.presses {
-            let is_taken = |name: &String| self.presses.iter().any(|other| other.name == *name);
-            if is_taken(&press.name) {
-                let numbered = (2..).map(|number| format!("{} ({number})", press.name));
-                if let Some(free) = numbered.into_iter().find(|name| !is_taken(name)) {
+            if taken.contains(&press.name) {
+                let mut numbered = (2..).map(|number| format!("{} ({number})", press.name));
+                if let Some(free) = numbered.find(|name| !taken.contains(name)) {
                     press.name = free;
                 }
             }
+            taken.insert(press.name.clone());
             self.presses.push(press);
         }
         Ok(())

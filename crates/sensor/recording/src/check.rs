@@ -35,7 +35,7 @@ impl Recording {
 }
 
 impl Press {
-    fn check(&self, taxels: usize) -> Result<(), RecordingError> {
+    pub(crate) fn check(&self, taxels: usize) -> Result<(), RecordingError> {
         let frames = self.time_s.len();
         let lengths = [
             ("gel_from_indenter", self.gel_from_indenter.len()),

@@ -6,12 +6,14 @@ mod append;
 mod check;
 mod error;
 mod import;
+mod lerobot;
 mod press;
 mod provenance;
 mod store;
 
 pub use error::RecordingError;
 pub use import::{FileSummary, Import, ImportSummary};
+pub use lerobot::LeRobotSummary;
 pub use press::{Control, Press, Recording};
 pub use provenance::Provenance;
-pub use store::{Column, FrameTable, TaxelCell};
+pub use store::{Column, FrameTable, RecordingWriter, TaxelCell};

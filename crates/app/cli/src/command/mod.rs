@@ -4,6 +4,7 @@ mod adapt;
 mod calibrate;
 mod characterize;
 mod cross_validate;
+mod dataset;
 mod demo;
 mod export;
 mod fast;
@@ -36,6 +37,7 @@ pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
         Command::Sensor(SensorCommand::Show(arguments)) => sensor::show(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments, program),
+        Command::Dataset(arguments) => dataset::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Characterize(arguments) => characterize::run(&arguments),
         Command::Stream(arguments) => stream::run(&arguments),

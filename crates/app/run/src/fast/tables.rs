@@ -1,12 +1,13 @@
 //! Tables over depth that a fast gel makes, where nothing is solved.
 
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use twintac_depth_table::{DepthTable, PressFrame, SolveQuality, SourceError};
 use twintac_fast::{Body, FastGel, FastReader};
 use twintac_sensor::Sensor;
-use twintac_shape::Pose;
+use twintac_shape::{Pose, Shape, ShapeError};
 use twintac_simulate::{Gel, PressPlace};
 
 use crate::RunError;
@@ -15,15 +16,17 @@ use crate::RunError;
 const ASIDE_MM: f64 = 0.5;
 
 /// A fast gel of one sensor.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct FastTables {
     fast: FastGel,
+    /// Shapes that were asked for: sampling one takes longer than a press with it.
+    bodies: Mutex<Vec<(Shape, Arc<Body>)>>,
 }
 
 /// A fast gel that reads one body.
 struct Reading {
     reader: FastReader,
-    body: Body,
+    body: Arc<Body>,
 }
 
 impl FastTables {
@@ -35,19 +38,48 @@ impl FastTables {
         let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
         let fast = FastGel::from_bytes(&bytes)
             .map_err(|error| RunError::Input(format!("{}: {error}", path.display())))?;
+        Self::of(fast, sensor, &path.display().to_string())
+    }
+
+    /// A fast gel, which is called so in errors.
+    ///
+    /// # Errors
+    /// A fast gel whose ports are elsewhere than the sensor's.
+    pub(crate) fn of(fast: FastGel, sensor: &Sensor, name: &str) -> Result<Self, RunError> {
         let is_at = |(taxel, port_mm): (&twintac_sensor::Taxel, &glam::DVec2)| {
             taxel.position_mm.truncate().distance(*port_mm) < 1e-6
         };
         let ports_mm = fast.ports_mm();
         if sensor.taxels.len() != ports_mm.len() || !sensor.taxels.iter().zip(ports_mm).all(is_at) {
             return Err(RunError::Input(format!(
-                "{} is of the sensor `{}`, whose ports are elsewhere than those of `{}`: make one with `twintac fast train`",
-                path.display(),
+                "{name} is of the sensor `{}`, whose ports are elsewhere than those of `{}`: make one with `twintac fast train`",
                 fast.sensor(),
                 sensor.name
             )));
         }
-        Ok(Self { fast })
+        Ok(Self {
+            fast,
+            bodies: Mutex::default(),
+        })
+    }
+
+    /// The fast gel.
+    pub(crate) fn gel(&self) -> &FastGel {
+        &self.fast
+    }
+
+    /// A shape as the fast gel feels it.
+    ///
+    /// # Errors
+    /// A shape that can't be.
+    pub(crate) fn body(&self, shape: &Shape, sensor: &Sensor) -> Result<Arc<Body>, ShapeError> {
+        let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, body)) = bodies.iter().find(|(known, _)| known == shape) {
+            return Ok(Arc::clone(body));
+        }
+        let body = Arc::new(Body::new(shape, &sensor.surfaces)?);
+        bodies.push((shape.clone(), Arc::clone(&body)));
+        Ok(body)
     }
 
     /// The table at a place. Its stress features are zero: a fast gel does not know them.
@@ -59,7 +91,7 @@ impl FastTables {
         let touch = gel.touch(&place.shape, &above)?;
         let mut reading = Reading {
             reader: self.fast.reader(),
-            body: Body::new(&place.shape, &gel.sensor().surfaces)?,
+            body: self.body(&place.shape, gel.sensor())?,
         };
         let mut frames = Vec::new();
         for keyframe in gel.depths(place) {

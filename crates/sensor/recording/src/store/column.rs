@@ -30,6 +30,11 @@ impl Columns {
         Ok(Self { reader, names })
     }
 
+    #[cfg(test)]
+    pub(super) fn n_row_groups(&self) -> usize {
+        self.reader.num_row_groups()
+    }
+
     /// Value of a key in the file's metadata.
     pub(super) fn metadata(&self, key: &str) -> Result<String, String> {
         let pairs = self.reader.metadata().file_metadata().key_value_metadata();

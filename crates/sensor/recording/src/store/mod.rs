@@ -10,6 +10,7 @@ mod write;
 
 pub use frames::{FrameTable, TaxelCell};
 pub use table::Column;
+pub use write::RecordingWriter;
 
 #[cfg(test)]
 mod tests;

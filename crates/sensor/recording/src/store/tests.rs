@@ -107,3 +107,21 @@ fn no_altered_byte_makes_the_reader_panic() {
         }
     }
 }
+
+#[test]
+fn a_long_recording_has_several_row_groups_and_reads_back() {
+    let mut long = recording();
+    for press in &mut long.presses {
+        let n = 140_000;
+        press.time_s = (0..n).map(|frame| f64::from(frame) / 64.0).collect();
+        press.gel_from_indenter = vec![press.gel_from_indenter[0]; n as usize];
+        press.force_n = Some(vec![7.0; n as usize]);
+        press.taxels_kpa = (0..n).map(|frame| vec![f64::from(frame)]).collect();
+        press.taxels_raw = press.taxels_kpa.clone();
+        press.valid = vec![vec![true]; n as usize];
+    }
+    let bytes = long.to_parquet(schema::MOUNTING).unwrap();
+    let columns = super::column::Columns::open(bytes.clone()).unwrap();
+    assert_eq!(columns.n_row_groups(), 2);
+    assert_eq!(read(&bytes).unwrap(), long);
+}

@@ -1,7 +1,8 @@
 //! Writes recordings.
 
-use std::io::Write;
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use parquet::basic::Compression;
@@ -11,9 +12,14 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::ColumnPath;
+use twintac_files::PartialFile;
 
-use super::{Column, schema, seal, table};
-use crate::{Recording, RecordingError};
+use super::seal::Sealing;
+use super::{Column, schema, table};
+use crate::{Press, Provenance, Recording, RecordingError};
+
+/// A row group ends with the press that brings it to so many rows: about forty minutes of a sensor, some 30 MB.
+const ROWS: usize = 131_072;
 
 impl Recording {
     /// Writes a Parquet file with one row per frame, through a temporary name. The same recording gives the same bytes.
@@ -27,14 +33,120 @@ impl Recording {
     /// The recording is inconsistent ([`check`](Self::check)), or the file cannot be written.
     pub fn write_parquet(&self, path: &Path) -> Result<(), RecordingError> {
         self.check()?;
-        let problem = |e: ParquetError| RecordingError::write(path, std::io::Error::other(e));
-        let bytes = self.to_parquet(schema::MOUNTING).map_err(problem)?;
-        let bytes = seal::seal(bytes).map_err(|e| RecordingError::write(path, std::io::Error::other(e)))?;
-        twintac_files::write_whole(path, &bytes).map_err(|source| RecordingError::write(path, source))
+        let mut writer = RecordingWriter::create(path, &self.sensor, self.provenance, &self.taxels)?;
+        for press in &self.presses {
+            writer.push(press.clone())?;
+        }
+        writer.finish()?;
+        Ok(())
     }
 
     /// The bytes of a file, without a seal; `mounting` is what the column of the mounting is called.
-    pub(super) fn to_parquet(&self, mounting: &str) -> Result<Vec<u8>, ParquetError> {
+    #[cfg(test)]
+    pub(super) fn to_parquet(&self, mounting: &'static str) -> Result<Vec<u8>, ParquetError> {
+        let empty = Self {
+            presses: Vec::new(),
+            ..self.clone()
+        };
+        let mut encoder = Encoder::new(Vec::new(), empty, mounting)?;
+        for press in &self.presses {
+            encoder.push(press.clone())?;
+        }
+        encoder.put_group()?;
+        encoder.writer.into_inner()
+    }
+}
+
+/// Writes presses as they come into a file like that of [`Recording::write_parquet`], in little memory however many they are. The file has
+/// its name once it is whole. The same presses give the same bytes.
+#[derive(Debug)]
+pub struct RecordingWriter {
+    encoder: Encoder<Sealing<BufWriter<PartialFile>>>,
+    path: PathBuf,
+    names: BTreeSet<String>,
+    n_rows: u64,
+}
+
+impl RecordingWriter {
+    /// Begins a file of presses of one sensor.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`].
+    pub fn create(
+        path: &Path,
+        sensor: &str,
+        provenance: Provenance,
+        taxels: &[String],
+    ) -> Result<Self, RecordingError> {
+        let file = PartialFile::create(path).map_err(|source| RecordingError::write(path, source))?;
+        let empty = Recording {
+            sensor: sensor.to_owned(),
+            provenance,
+            taxels: taxels.to_vec(),
+            presses: Vec::new(),
+        };
+        let sink = Sealing::new(BufWriter::new(file));
+        let encoder = Encoder::new(sink, empty, schema::MOUNTING);
+        Ok(Self {
+            encoder: encoder.map_err(|error| problem(path, error))?,
+            path: path.to_owned(),
+            names: BTreeSet::new(),
+            n_rows: 0,
+        })
+    }
+
+    /// Adds a press.
+    ///
+    /// # Errors
+    /// A press that is inconsistent ([`Recording::check`]) or whose name was there before; a file that cannot be written.
+    pub fn push(&mut self, press: Press) -> Result<(), RecordingError> {
+        press.check(self.encoder.waiting.taxels.len())?;
+        if !self.names.insert(press.name.clone()) {
+            return Err(RecordingError::Inconsistent {
+                place: self.path.display().to_string(),
+                problem: format!("press name `{}` is there twice", press.name),
+            });
+        }
+        self.n_rows += press.time_s.len() as u64;
+        self.encoder
+            .push(press)
+            .map_err(|error| problem(&self.path, error))
+    }
+
+    /// Writes what waits, and gives the file its name. How many rows it has.
+    ///
+    /// # Errors
+    /// [`RecordingError::Write`].
+    pub fn finish(self) -> Result<u64, RecordingError> {
+        let whole = |encoder: Encoder<Sealing<BufWriter<PartialFile>>>| -> io::Result<()> {
+            let file = encoder.finish()?.finish()?;
+            file.into_inner()
+                .map_err(io::IntoInnerError::into_error)?
+                .finish()
+        };
+        whole(self.encoder).map_err(|source| RecordingError::write(&self.path, source))?;
+        Ok(self.n_rows)
+    }
+}
+
+fn problem(path: &Path, error: ParquetError) -> RecordingError {
+    RecordingError::write(path, io::Error::other(error))
+}
+
+/// Presses as row groups.
+struct Encoder<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    /// The presses that wait for their row group.
+    waiting: Recording,
+    n_waiting_rows: usize,
+    /// Presses that were written.
+    n_written: i32,
+    /// What the column of the mounting is called.
+    mounting: &'static str,
+}
+
+impl<W: Write + Send> Encoder<W> {
+    fn new(sink: W, empty: Recording, mounting: &'static str) -> Result<Self, ParquetError> {
         let pair = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::UNCOMPRESSED)
@@ -42,49 +154,100 @@ impl Recording {
             .set_statistics_enabled(EnabledStatistics::Chunk)
             .set_key_value_metadata(Some(vec![
                 pair(schema::VERSION_KEY, schema::VERSION.to_owned()),
-                pair(schema::SENSOR_KEY, self.sensor.clone()),
-                pair(schema::PROVENANCE_KEY, self.provenance.to_string()),
+                pair(schema::SENSOR_KEY, empty.sensor.clone()),
+                pair(schema::PROVENANCE_KEY, empty.provenance.to_string()),
             ]));
         for name in schema::TEXTS {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
-        let properties = Arc::new(properties.build());
-        let mut columns = self.columns();
-        for (name, _) in &mut columns {
-            if name == schema::MOUNTING {
-                mounting.clone_into(name);
-            }
-        }
-        let mut writer = SerializedFileWriter::new(Vec::new(), table::types(&columns)?, properties)?;
-        let mut group = writer.next_row_group()?;
-        for (_, column) in &columns {
-            self.put(&mut group, column)?;
-        }
-        group.close()?;
-        writer.into_inner()
+        let types = table::types(&columns(&empty, 0, mounting))?;
+        Ok(Self {
+            writer: SerializedFileWriter::new(sink, types, Arc::new(properties.build()))?,
+            waiting: empty,
+            n_waiting_rows: 0,
+            n_written: 0,
+            mounting,
+        })
     }
 
-    fn put(
-        &self,
-        group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
-        column: &Column,
-    ) -> Result<(), ParquetError> {
-        match column {
-            Column::Index(numbers) => put_column::<Int32Type, _>(group, numbers, None),
-            Column::Number(numbers) => put_column::<DoubleType, _>(group, numbers, None),
-            Column::Flag(flags) => put_column::<BoolType, _>(group, flags, None),
-            Column::Known(numbers) => {
-                let present: Vec<i16> = numbers.iter().map(|number| i16::from(number.is_some())).collect();
-                let known: Vec<f64> = numbers.iter().copied().flatten().collect();
-                put_column::<DoubleType, _>(group, &known, Some(&present))
-            }
-            Column::Text(texts) => {
-                let rows = texts.iter().zip(&self.presses).flat_map(|(text, press)| {
-                    let text = ByteArray::from(text.as_bytes().to_vec());
-                    std::iter::repeat_n(text, press.time_s.len())
-                });
-                put_column::<ByteArrayType, _>(group, &rows.collect::<Vec<_>>(), None)
-            }
+    fn push(&mut self, press: Press) -> Result<(), ParquetError> {
+        self.n_waiting_rows += press.time_s.len();
+        self.waiting.presses.push(press);
+        if self.n_waiting_rows >= ROWS {
+            self.put_group()?;
+        }
+        Ok(())
+    }
+
+    /// Writes the presses that wait. A file has a row group, be it empty.
+    fn put_group(&mut self) -> Result<(), ParquetError> {
+        if self.waiting.presses.is_empty() && self.n_written > 0 {
+            return Ok(());
+        }
+        let mut group = self.writer.next_row_group()?;
+        for (_, column) in columns(&self.waiting, self.n_written, self.mounting) {
+            put(&mut group, &column, &self.waiting.presses)?;
+        }
+        group.close()?;
+        self.n_written += i32::try_from(self.waiting.presses.len()).unwrap_or(i32::MAX);
+        self.waiting.presses.clear();
+        self.n_waiting_rows = 0;
+        Ok(())
+    }
+}
+
+impl<W: Write + Send> Encoder<Sealing<W>> {
+    /// Writes what waits, and the footer, which the sink holds back for its seal.
+    fn finish(mut self) -> io::Result<Sealing<W>> {
+        self.put_group().map_err(io::Error::other)?;
+        self.writer.flush()?;
+        self.writer.inner_mut().hold();
+        self.writer.into_inner().map_err(io::Error::other)
+    }
+}
+
+impl<W: Write + Send> std::fmt::Debug for Encoder<W> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Encoder")
+            .field("n_written", &self.n_written)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A recording's columns, with presses numbered on from `first`.
+fn columns(recording: &Recording, first: i32, mounting: &str) -> Vec<(String, Column)> {
+    let mut columns = recording.columns();
+    for (name, column) in &mut columns {
+        if name == schema::MOUNTING {
+            mounting.clone_into(name);
+        }
+        if let Column::Index(numbers) = column {
+            numbers.iter_mut().for_each(|number| *number += first);
+        }
+    }
+    columns
+}
+
+fn put<W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &Column,
+    presses: &[Press],
+) -> Result<(), ParquetError> {
+    match column {
+        Column::Index(numbers) => put_column::<Int32Type, _>(group, numbers, None),
+        Column::Number(numbers) => put_column::<DoubleType, _>(group, numbers, None),
+        Column::Flag(flags) => put_column::<BoolType, _>(group, flags, None),
+        Column::Known(numbers) => {
+            let present: Vec<i16> = numbers.iter().map(|number| i16::from(number.is_some())).collect();
+            let known: Vec<f64> = numbers.iter().copied().flatten().collect();
+            put_column::<DoubleType, _>(group, &known, Some(&present))
+        }
+        Column::Text(texts) => {
+            let rows = texts.iter().zip(presses).flat_map(|(text, press)| {
+                let text = ByteArray::from(text.as_bytes().to_vec());
+                std::iter::repeat_n(text, press.time_s.len())
+            });
+            put_column::<ByteArrayType, _>(group, &rows.collect::<Vec<_>>(), None)
         }
     }
 }

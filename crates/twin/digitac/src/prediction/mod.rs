@@ -8,6 +8,6 @@ mod tests;
 mod undo;
 
 pub use at_place::TwinAtPlace;
-pub use planned::{Prediction, at_place, predict, simulated_recording};
+pub use planned::{Prediction, at_place, predict, simulated_recording, unread_press};
 pub use state::TwinState;
 pub use undo::WithoutMemory;

@@ -59,8 +59,9 @@ fn unread(
     rate_hz: f64,
 ) -> Result<Recording, DigitacError> {
     let n_taxels = twin.taxels().len();
-    let made = |plan: &PressPlan| made(plan, &plan.trajectory(rate_hz), source, n_taxels);
-    Ok(recording(twin, plans.iter().map(made).collect::<Result<_, _>>()?))
+    let made = |plan: &PressPlan| Ok(unread_press(plan, &plan.trajectory(rate_hz), source, n_taxels)?.0);
+    let made: Result<_, DigitacError> = plans.iter().map(made).collect();
+    Ok(recording(twin, made?))
 }
 
 /// Steps a twin along the presses of a recording, which are those of `plans`.
@@ -150,7 +151,7 @@ pub fn at_place(
     source: &dyn DepthTableSource,
     plan: &PressPlan,
 ) -> Result<TwinAtPlace, DigitacError> {
-    let deepest = made(plan, &[(0.0, plan.depth_mm)], source, twin.taxels().len())?;
+    let (deepest, _) = unread_press(plan, &[(0.0, plan.depth_mm)], source, twin.taxels().len())?;
     let (places, tables) = simulate(&recording(twin, vec![deepest]), bench, source)?;
     let table = tables.first().ok_or(DigitacError::DepthTableCount {
         expected: 1,
@@ -185,13 +186,16 @@ fn recording(twin: &Twin, presses: Vec<Press>) -> Recording {
     }
 }
 
-/// A planned press as one that was made, without readings. `trajectory` is time, s, and depth below first touch, mm.
-fn made(
+/// A planned press as one that was made, without readings, and the indenter where it touches first. `trajectory` is time, s, and depth below first touch, mm.
+///
+/// # Errors
+/// An indenter that the source does not know; a place where it misses the gel.
+pub fn unread_press(
     plan: &PressPlan,
     trajectory: &[(f64, f64)],
     source: &dyn DepthTableSource,
     n_taxels: usize,
-) -> Result<Press, DigitacError> {
+) -> Result<(Press, Pose), DigitacError> {
     let above = Pose {
         position_mm: DVec3::new(plan.x_mm, plan.y_mm, 0.0),
         rotation: plan.rotation,
@@ -204,7 +208,7 @@ fn made(
         ..touch
     };
     let unread = vec![vec![0.0; n_taxels]; trajectory.len()];
-    Ok(Press {
+    let press = Press {
         name: plan.name.clone(),
         mounting: plan.indenter.clone(),
         indenter: plan.indenter.clone(),
@@ -215,5 +219,6 @@ fn made(
         taxels_kpa: unread.clone(),
         taxels_raw: unread,
         valid: vec![vec![false; n_taxels]; trajectory.len()],
-    })
+    };
+    Ok((press, touch))
 }

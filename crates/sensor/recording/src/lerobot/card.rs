@@ -1,0 +1,85 @@
+//! The data card: what a person needs to know who finds the data set.
+
+use std::fmt::Write as _;
+
+use super::episode::LeRobotSummary;
+use super::features::{Feature, Rate};
+use crate::{Provenance, Recording};
+
+/// Frames that are no farther from evenly spaced count as evenly spaced, s.
+const EVEN_S: f64 = 1e-4;
+
+/// `README.md`.
+pub(super) fn card(
+    recording: &Recording,
+    features: &[Feature],
+    summary: &LeRobotSummary,
+    rate: &Rate,
+    how_made: &str,
+) -> String {
+    let (sensor, provenance) = (&recording.sensor, recording.provenance);
+    let meaning = match provenance {
+        Provenance::Real => "measured on hardware",
+        Provenance::Emulated => "read from an emulated bench in software, not from hardware",
+        Provenance::Simulated => "computed by a simulation, not measured",
+    };
+    let LeRobotSummary {
+        episodes,
+        frames,
+        tasks,
+    } = summary;
+    let mut card = format!(
+        "---\ntags:\n- LeRobot\n- tactile\ntask_categories:\n- robotics\nconfigs:\n- config_name: default\n  data_files: data/*/*.parquet\n---\n\n\
+         # Presses of the barometric touch sensor {sensor}\n\n\
+         - Provenance: `{provenance}`: every number is {meaning}.\n\
+         - {episodes} episodes (presses), {frames} frames, {tasks} tasks (indenters), {} frames a second; LeRobot format v3.0.\n\
+         - Licence: to be filled in by whoever publishes this.\n\n\
+         ```python\nfrom lerobot.datasets.lerobot_dataset import LeRobotDataset\n\ndataset = LeRobotDataset(\"twintac/{sensor}\", root=\".\")\n```\n\n\
+         ## Features\n\n| feature | type | numbers | meaning |\n|---|---|---|---|\n",
+        rate.value
+    );
+    for feature in features {
+        let meaning = meaning_of(&feature.name);
+        let _ = writeln!(
+            card,
+            "| `{}` | {} | {} | {meaning} |",
+            feature.name,
+            feature.dtype(),
+            feature.names()
+        );
+    }
+    card.push_str(
+        "\nLengths are in mm, forces in N, pressures in kPa, times in s. The gel's frame has z up and z = 0 at the board; an indenter's origin is its point of first \
+         touch on a flat gel. Quaternions are (x, y, z, w).\n",
+    );
+    if rate.uneven_s > EVEN_S {
+        let _ = writeln!(
+            card,
+            "\nFrames are not evenly spaced: `timestamp` is the time of each frame, up to {:.1} ms from its number over the rate.",
+            1e3 * rate.uneven_s
+        );
+    }
+    if !features.iter().any(|feature| feature.name == "observation.force") {
+        card.push_str("\nThere is no force: not all presses have one.\n");
+    }
+    let _ = writeln!(card, "\n## How it was made\n\n{}", how_made.trim());
+    card
+}
+
+fn meaning_of(feature: &str) -> &'static str {
+    match feature {
+        "observation.state" => "pose of the indenter in the gel's frame",
+        "observation.tactile" => "readings above the unloaded baseline, kPa",
+        "observation.force" => "force of the indenter on the gel along -z, N",
+        "action" => "pose of the next frame; the last frame's is its own",
+        "tactile_valid" => {
+            "whether each reading can be used: not clipped, not missing, not beyond what was simulated"
+        }
+        "timestamp" => "time since the press began, s",
+        "frame_index" => "number of the frame in its press",
+        "episode_index" => "number of the press",
+        "index" => "number of the frame among all",
+        "task_index" => "number of the task, see `meta/tasks.parquet`",
+        _ => "",
+    }
+}

@@ -1,0 +1,210 @@
+//! What each frame of an episode has.
+
+use serde_json::{Value, json};
+
+use super::columns::{LeRobotColumn, LeRobotValues};
+use super::episode::Episode;
+use crate::{Press, Recording};
+
+/// A rate that is so close to a whole number is that.
+const WHOLE: f64 = 1e-3;
+
+/// Names of a pose's numbers.
+const POSE: [&str; 7] = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];
+
+/// How a feature's numbers are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Single,
+    Whole,
+    Flag,
+}
+
+/// One feature of every frame.
+pub(super) struct Feature {
+    pub(super) name: String,
+    kind: Kind,
+    /// What its numbers are called; none has a single number without a name.
+    names: Vec<String>,
+    /// Its numbers in a frame of an episode, which has this number itself.
+    #[expect(clippy::type_complexity)]
+    value: Box<dyn Fn(&Episode, usize, usize) -> Vec<f64>>,
+}
+
+/// The features of a recording, in the order of the columns.
+pub(super) fn features(recording: &Recording) -> Vec<Feature> {
+    let mut features = vec![
+        Feature {
+            name: "observation.state".to_owned(),
+            kind: Kind::Single,
+            names: POSE.map(str::to_owned).to_vec(),
+            value: Box::new(|episode, _, frame| pose(episode.press, frame)),
+        },
+        Feature {
+            name: "observation.tactile".to_owned(),
+            kind: Kind::Single,
+            names: recording
+                .taxels
+                .iter()
+                .map(|taxel| format!("{taxel}_kpa"))
+                .collect(),
+            value: Box::new(|episode, _, frame| episode.press.taxels_kpa[frame].clone()),
+        },
+    ];
+    if recording.presses.iter().all(|press| press.force_n.is_some()) {
+        features.push(Feature {
+            name: "observation.force".to_owned(),
+            kind: Kind::Single,
+            names: vec!["force_n".to_owned()],
+            value: Box::new(|episode, _, frame| {
+                let force_n = episode.press.force_n.as_ref();
+                vec![force_n.map_or(0.0, |force_n| force_n[frame])]
+            }),
+        });
+    }
+    features.push(Feature {
+        name: "action".to_owned(),
+        kind: Kind::Single,
+        names: POSE.map(str::to_owned).to_vec(),
+        value: Box::new(|episode, _, frame| {
+            let last = episode.press.time_s.len() - 1;
+            pose(episode.press, (frame + 1).min(last))
+        }),
+    });
+    features.push(Feature {
+        name: "tactile_valid".to_owned(),
+        kind: Kind::Flag,
+        names: recording
+            .taxels
+            .iter()
+            .map(|taxel| format!("{taxel}_valid"))
+            .collect(),
+        value: Box::new(|episode, _, frame| {
+            let flags = episode.press.valid[frame].iter();
+            flags.map(|flag| f64::from(u8::from(*flag))).collect()
+        }),
+    });
+    features.push(Feature {
+        name: "timestamp".to_owned(),
+        kind: Kind::Single,
+        names: Vec::new(),
+        value: Box::new(|episode, _, frame| {
+            let time_s = &episode.press.time_s;
+            vec![time_s[frame] - time_s[0]]
+        }),
+    });
+    features.extend([
+        whole("frame_index", |_, _, frame| frame),
+        whole("episode_index", |_, index, _| index),
+        whole("index", |episode, _, frame| episode.first + frame),
+        whole("task_index", |episode, _, _| episode.task),
+    ]);
+    features
+}
+
+fn whole(name: &str, value: impl Fn(&Episode, usize, usize) -> usize + 'static) -> Feature {
+    Feature {
+        name: name.to_owned(),
+        kind: Kind::Whole,
+        names: Vec::new(),
+        value: Box::new(move |episode, index, frame| vec![value(episode, index, frame) as f64]),
+    }
+}
+
+fn pose(press: &Press, frame: usize) -> Vec<f64> {
+    let pose = &press.gel_from_indenter[frame];
+    let place_mm = pose.position_mm.to_array();
+    place_mm.into_iter().chain(pose.rotation.to_array()).collect()
+}
+
+impl Feature {
+    /// Its numbers in every frame of an episode, which has a number itself.
+    pub(super) fn rows<'a>(
+        &'a self,
+        episode: &'a Episode,
+        index: usize,
+    ) -> impl Iterator<Item = Vec<f64>> + 'a {
+        (0..episode.press.time_s.len()).map(move |frame| (self.value)(episode, index, frame))
+    }
+
+    /// How many numbers it has in a frame.
+    fn width(&self) -> usize {
+        self.names.len().max(1)
+    }
+
+    /// How many bytes it has in a frame.
+    pub(super) fn bytes(&self) -> u64 {
+        let of_one = match self.kind {
+            Kind::Single => 4,
+            Kind::Whole => 8,
+            Kind::Flag => 1,
+        };
+        of_one * self.width() as u64
+    }
+
+    /// What `info.json` says of it.
+    pub(super) fn info(&self) -> Value {
+        let names = (!self.names.is_empty()).then_some(&self.names);
+        json!({"dtype": self.dtype(), "shape": [self.width()], "names": names})
+    }
+
+    /// The type of its numbers, as NumPy calls it.
+    pub(super) fn dtype(&self) -> &'static str {
+        match self.kind {
+            Kind::Single => "float32",
+            Kind::Whole => "int64",
+            Kind::Flag => "bool",
+        }
+    }
+
+    /// The names of its numbers, as text.
+    pub(super) fn names(&self) -> String {
+        self.names.join(", ")
+    }
+
+    /// Its column: lists where it has more than one number.
+    pub(super) fn column(&self, rows: impl Iterator<Item = Vec<f64>>) -> LeRobotColumn {
+        let typed = |numbers: Vec<f64>| match self.kind {
+            Kind::Single => LeRobotValues::Single(numbers.into_iter().map(|number| number as f32).collect()),
+            Kind::Whole => LeRobotValues::Whole(numbers.into_iter().map(|number| number as i64).collect()),
+            Kind::Flag => LeRobotValues::Flag(numbers.into_iter().map(|number| number > 0.0).collect()),
+        };
+        if self.width() > 1 {
+            return LeRobotColumn::lists(&self.name, rows.map(typed));
+        }
+        LeRobotColumn::single(&self.name, typed(rows.flatten().collect()))
+    }
+}
+
+/// Frames a second.
+pub(super) struct Rate {
+    /// A whole number where it is one.
+    pub(super) value: Value,
+    /// How far frames are from evenly spaced at that rate, s.
+    pub(super) uneven_s: f64,
+}
+
+/// The rate of a recording: that of the median time between frames.
+pub(super) fn frames_per_second(recording: &Recording) -> Rate {
+    let times_s = || recording.presses.iter().map(|press| &press.time_s);
+    let mut steps_s: Vec<f64> = times_s()
+        .flat_map(|time_s| time_s.windows(2).map(|pair| pair[1] - pair[0]))
+        .collect();
+    steps_s.sort_unstable_by(f64::total_cmp);
+    let rate_hz = steps_s.get(steps_s.len() / 2).map_or(1.0, |step_s| 1.0 / step_s);
+    let is_whole = rate_hz.round() >= 1.0 && (rate_hz / rate_hz.round() - 1.0).abs() < WHOLE;
+    let rate_hz = if is_whole { rate_hz.round() } else { rate_hz };
+    let off_s = |time_s: &Vec<f64>| {
+        let frames = time_s.iter().enumerate();
+        let off_s = frames.map(|(frame, at_s)| (at_s - time_s[0] - frame as f64 / rate_hz).abs());
+        off_s.fold(0.0, f64::max)
+    };
+    Rate {
+        value: if is_whole {
+            (rate_hz as u64).into()
+        } else {
+            rate_hz.into()
+        },
+        uneven_s: times_s().map(off_s).fold(0.0, f64::max),
+    }
+}

@@ -1,0 +1,60 @@
+"""A data set by HyperQueue, whose workers are killed: the same bytes as those of one process.
+
+The package `hyperqueue` runs its server and its workers in one process, so all of them are killed at once; the same command goes on.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from twintac import Dataset
+
+pytest.importorskip("hyperqueue")
+
+N_SHARDS = 8
+OPTIONS = ["--presses", "800", "--fast"]
+PROGRAM = Path(__file__).with_name("hyperqueue_dataset.py")
+
+
+def start(folder: Path) -> "subprocess.Popen[bytes]":
+    words = [sys.executable, str(PROGRAM), str(folder), str(N_SHARDS), *OPTIONS]
+    return subprocess.Popen(words, start_new_session=True)
+
+
+def children(parent: int) -> list[int]:
+    """Processes below a process."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            status = (folder / "stat").read_text()
+        except OSError:
+            continue  # it has ended
+        if int(status.rsplit(")", 1)[1].split()[1]) == parent:
+            number = int(folder.name)
+            found += [number, *children(number)]
+    return found
+
+
+def test_workers_that_are_killed_cost_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "by-hyperqueue"
+    running = start(folder)
+    until = time.monotonic() + 60
+    while len(list(folder.glob("shard-*.json"))) < 3 and time.monotonic() < until:
+        time.sleep(0.05)
+    tasks = children(running.pid)
+    for process in (running.pid, *tasks):
+        os.kill(process, signal.SIGKILL)
+    running.wait()
+    n_made = len(list(folder.glob("shard-*.json")))
+    assert tasks and 3 <= n_made < N_SHARDS, "workers and tasks were killed in the middle"
+    assert start(folder).wait(timeout=120) == 0
+    merged = Dataset.merge(folder)
+    whole = Dataset(n_presses=800, fast=True).make(tmp_path / "whole")
+    assert Path(merged["merged"]).read_bytes() == Path(whole["parquet"]).read_bytes()
+    with capsys.disabled():
+        print(f"\nHyperQueue: killed after {n_made} of {N_SHARDS} shards; merged {whole['parquet_sha256']}")
