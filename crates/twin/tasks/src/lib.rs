@@ -1,0 +1,24 @@
+//! Tasks of touch for reinforcement learning.
+//!
+//! A [`Tasks`] holds many environments of one [`Task`]: in each, a sensor with imperfections of its own touches something that nobody sees. One call steps all
+//! of them: from actions to poses, through the fast gel and the sensor's imperfections to readings, rewards and the next observations. All of it is simulated.
+//!
+//! Everything moves slowly enough that the gel is in balance in every frame. Nothing turns or tilts; there is no friction. Places are seen from the gel: x and y along
+//! its sides, z out of it, as if the sensor lay still and the object were moved over it; the robot may as well hold the sensor.
+
+mod batch;
+mod chunk;
+mod environment;
+mod explore_shape;
+mod follow_edge;
+mod hold_force;
+mod kind;
+mod outline;
+mod picture;
+mod task;
+
+pub use batch::{Answers, Autoreset, Tasks};
+pub use environment::Sensors;
+pub use hold_force::{HoldForce, Spot};
+pub use kind::{Kind, TaskError};
+pub use picture::PICTURE_PX;
