@@ -2,7 +2,7 @@
 //!
 //! Under the sensor is a body on a spring. The robot moves the sensor down; the spring and the gel share the way, so that both carry the same force: `F(d) = k (u - d)`,
 //! with `u` how far the robot has moved beyond first touch, `d` how deep the body is in the gel. Each frame takes one step of Newton's method from the frame before, with the
-//! slope of the force between the last two frames: at the robot's speeds, it is off by some hundredths of a newton.
+//! slope of the force between the last two frames. At the robot's speeds that is off by 0.07 N at most, and by 0.13 N in the first two frames of a contact.
 
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
@@ -22,7 +22,7 @@ const N_SAME: usize = 55;
 const N_WANTED: usize = N_STEPS / N_SAME;
 
 /// Forces that are wanted, N.
-const WANTED_N: [f64; 2] = [0.5, 5.0];
+const WANTED_N: [f64; 2] = [0.3, 3.0];
 
 /// Stiffnesses of the springs, N/mm, evenly drawn in their logarithm.
 const STIFFNESS_N_PER_MM: [f64; 2] = [1.0, 10.0];
@@ -32,8 +32,10 @@ const SPEED_MM_S: f64 = 10.0;
 const START_MM: f64 = -0.5;
 const TRAVEL_MM: [f64; 2] = [-1.0, 9.0];
 
-/// The force at which the robot stops for good, N.
-const LIMIT_N: f64 = 12.0;
+/// The force, N, or the depth in the gel, mm, at which the robot stops for good; and what each step costs that is left then, N: as much as not to touch at all.
+const LIMIT_N: f64 = 10.0;
+const LIMIT_MM: f64 = 4.8;
+const COST_N: f64 = WANTED_N[1];
 
 /// The stiffest that a gel is taken for, N/mm, and how far it has to move before its stiffness is measured, mm.
 const STIFFEST_N_PER_MM: f64 = 50.0;
@@ -44,7 +46,7 @@ const PLACE_MM: DVec2 = DVec2::new(8.0, 3.0);
 
 /// Units of observations.
 const TRAVEL_UNIT_MM: f64 = 5.0;
-const FORCE_UNIT_N: f64 = 5.0;
+const FORCE_UNIT_N: f64 = 3.0;
 
 /// Holding a force: what may be pressed, and where.
 pub struct HoldForce {
@@ -93,7 +95,7 @@ impl Episode {
 impl HoldForce {
     /// Balls, a cylinder and a cube, anywhere within 8 mm along x and 3 mm along y of the gel's middle.
     pub(crate) fn on(gel: &FastGel) -> Result<Self, ShapeError> {
-        let balls = [5.0, 8.0, 12.5].map(|radius_mm| Shape::Sphere { radius_mm });
+        let balls = [8.0, 10.0, 12.5].map(|radius_mm| Shape::Sphere { radius_mm });
         let cylinder = Shape::Cylinder {
             radius_mm: 5.0,
             height_mm: 10.0,
@@ -193,21 +195,27 @@ impl Task for HoldForce {
     }
 
     fn feel(&self, episode: &mut Episode, felt: &Felt<'_>) -> Outcome {
+        // Where nothing touches, the fast gel's force is a little beside zero.
+        let force_n = if episode.depth_mm > 0.0 {
+            felt.force_n.max(0.0)
+        } else {
+            0.0
+        };
         let [measured_mm, measured_n] = episode.measured;
         let moved_mm = episode.depth_mm - measured_mm;
         if moved_mm.abs() > LEAST_MOVE_MM {
-            let slope = (felt.force_n - measured_n) / moved_mm;
+            let slope = (force_n - measured_n) / moved_mm;
             episode.slope_n_per_mm = slope.clamp(0.0, STIFFEST_N_PER_MM);
-            episode.measured = [episode.depth_mm, felt.force_n];
+            episode.measured = [episode.depth_mm, force_n];
         }
-        episode.force_n = felt.force_n;
+        episode.force_n = force_n;
         let wanted_n = episode.wanted_n();
         episode.n_steps += 1;
         let n_left = N_STEPS - episode.n_steps.min(N_STEPS);
-        let terminated = felt.force_n > LIMIT_N;
-        let off_n = (felt.force_n - wanted_n).abs();
+        let terminated = force_n > LIMIT_N || episode.depth_mm > LIMIT_MM;
+        let off_n = (force_n - wanted_n).abs();
         Outcome {
-            reward: -off_n - if terminated { LIMIT_N * n_left as f64 } else { 0.0 },
+            reward: -off_n - if terminated { COST_N * n_left as f64 } else { 0.0 },
             terminated,
             truncated: n_left == 0 && !terminated,
         }
@@ -261,17 +269,18 @@ mod tests {
     use super::*;
     use twintac_random::stream;
 
-    /// Moves to and fro on many springs. The largest difference between what the gel and what the spring carries, N, and the largest force.
-    fn imbalance(most_speed: f32) -> [f64; 2] {
+    /// Moves to and fro on many springs. The largest difference between what the gel and what the spring carries, N, in the first two frames of a contact and later; and the
+    /// largest force.
+    fn imbalance(most_speed: f32) -> [f64; 3] {
         let gel = FastGel::phystac().unwrap();
         let task = HoldForce::on(&gel).unwrap();
         let mut reader = gel.reader();
-        let (mut worst_n, mut most_n) = (0.0_f64, 0.0_f64);
+        let (mut first_n, mut worst_n, mut most_n) = (0.0_f64, 0.0_f64, 0.0_f64);
         for number in 0..20 {
             let mut random = stream(number, "imbalance");
             let mut episode = task.begin(8, &mut random);
             let (mut pressure_kpa, mut wrench) = ([0.0; 8], [0.0; 6]);
-            let mut way = 1.0;
+            let (mut way, mut n_felt) = (1.0, 0);
             for step in 0..N_STEPS {
                 if step % 30 == 0 {
                     way = if random.random_bool(0.6) { 1.0 } else { -1.0 };
@@ -280,29 +289,35 @@ mod tests {
                 let touch = task.touch(&episode);
                 let body = &task.bodies[touch.body as usize];
                 reader.read(&[(body, touch.gel_from_body)], &mut pressure_kpa, &mut wrench);
-                let force_n = -f64::from(wrench[2]);
+                let gel_n = -f64::from(wrench[2]);
                 let felt = Felt {
                     readings_kpa: &pressure_kpa,
                     before_kpa: &pressure_kpa,
-                    force_n,
+                    force_n: gel_n,
                 };
                 if task.feel(&mut episode, &felt).terminated {
                     break;
                 }
+                let force_n = episode.force_n;
                 let spring_n = episode.stiffness_n_per_mm * (episode.travel_mm - episode.depth_mm);
-                worst_n = worst_n.max((spring_n - force_n).abs());
+                n_felt = if force_n > 0.0 { n_felt + 1 } else { 0 };
+                let worst_n = if n_felt > 2 { &mut worst_n } else { &mut first_n };
+                *worst_n = worst_n.max((spring_n - force_n).abs());
                 most_n = most_n.max(force_n);
             }
         }
-        [worst_n, most_n]
+        [first_n, worst_n, most_n]
     }
 
     #[test]
     fn spring_and_gel_carry_the_same_force() {
-        let [worst_n, most_n] = imbalance(0.3);
-        assert!(most_n > 2.0, "nothing is pressed: {most_n}");
-        assert!(worst_n < 0.05, "{worst_n} N at 3 mm/s");
-        let [worst_n, _] = imbalance(1.0);
-        assert!(worst_n < 0.4, "{worst_n} N at full speed");
+        for (most_speed, limits_n) in [(0.3, [0.1, 0.03]), (1.0, [0.13, 0.07])] {
+            let [first_n, worst_n, most_n] = imbalance(most_speed);
+            assert!(most_n > 2.0, "nothing is pressed: {most_n}");
+            assert!(
+                first_n < limits_n[0] && worst_n < limits_n[1],
+                "{first_n} and {worst_n} N"
+            );
+        }
     }
 }
