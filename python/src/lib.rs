@@ -19,6 +19,7 @@ mod sensor;
 mod sensors;
 mod settings;
 mod shape;
+mod tasks;
 mod touches;
 mod twin;
 
@@ -53,6 +54,8 @@ mod _twintac {
     use crate::sensors::{Imperfection, SensorBatch};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
+    #[pymodule_export]
+    use crate::tasks::Tasks;
     #[pymodule_export]
     use crate::twin::{Prediction, Twin, TwinAtPlace, TwinState};
 }

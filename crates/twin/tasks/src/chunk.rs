@@ -11,7 +11,7 @@ use crate::picture::{Shown, pixels};
 use crate::task::{Felt, Task};
 
 /// Environments of any task.
-pub(crate) trait Steps: Send {
+pub(crate) trait Steps: Send + Sync {
     fn n_environments(&self) -> usize;
     /// From which seed on an environment draws its next episodes.
     fn seed(&mut self, environment: usize, seed: u64);

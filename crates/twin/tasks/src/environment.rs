@@ -7,7 +7,7 @@ use twintac_sensors::SensorBatch;
 use crate::task::Task;
 
 /// Sensors of the environments of one thread: from what touches to what is read. Those of a [`SensorBatch`], or of a bench.
-pub trait Sensors: Send {
+pub trait Sensors: Send + Sync {
     /// Number of sensors, and of the taxels of each.
     fn sizes(&self) -> [usize; 2];
 

@@ -16,9 +16,11 @@ mod kind;
 mod outline;
 mod picture;
 mod task;
+mod usual;
 
 pub use batch::{Answers, Autoreset, Tasks};
 pub use environment::Sensors;
 pub use hold_force::{HoldForce, Spot};
 pub use kind::{Kind, TaskError};
 pub use picture::PICTURE_PX;
+pub use usual::usual_imperfection;

@@ -207,9 +207,9 @@ fn a_seed_repeats_its_episodes() {
     assert_ne!(first, begin(&mut driven, Some(8)));
 }
 
-/// Pressed on, the force grows, the soft spring yields and the robot stops for good at last.
+/// Pressed on, the force grows, and the readings with it.
 #[test]
-fn a_body_that_is_pressed_on_is_felt_until_the_robot_stops() {
+fn a_body_that_is_pressed_on_is_felt_more_and_more() {
     let perfect = Imperfection::default();
     let mut driven = Driven::new(Kind::HoldForce, &perfect, [1, 1], Autoreset::Disabled);
     let (mut before_n, mut most_kpa) = (0.0, 0.0_f32);
