@@ -18,8 +18,8 @@ HoldForce: to press with a wanted force on a ball, a cylinder or a cube that sit
 
 FollowEdge: to take the gel's middle along the edge of a disc, box or triangle (13 to 25 mm) that nobody sees, in a wanted sense. A step is 1/55 s; an episode has 330.
 
-- Action `[3]`: speed along x and y, times 20 mm/s, and down, times 5 mm/s.
-- Observation `[2 n + 7]`: readings; changes; place since the start along x and y, times 10 mm; depth since the start, times 2 mm; the three speeds as in the action; the sense, 1 if the object's middle
+- Action `[3]`: velocity along x and y, times 20 mm/s (a longer one counts as one of 20 mm/s), and speed down, times 5 mm/s.
+- Observation `[2 n + 7]`: readings; changes; place since the start along x and y, times 10 mm; depth since the start, times 2 mm; the three speeds, as they were; the sense, 1 if the object's middle
   stays on the left and -1 if on the right.
 - Reward: mm of edge that were passed in the wanted sense, times `1 - (beside / 3 mm)²`, if the force is 0.3 to 6 N; minus 0.1 mm for each newton beyond.
 - Terminated at more than 15 N, or more than 8 mm beside the edge: minus 5 mm.

@@ -69,8 +69,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         which: _Bool | None = (options or {}).get("reset_mask")
         observed, figures = self._tasks.reset(which)
         if which is not None:
-            self._observed[which] = observed[which]
-            observed = self._observed.copy()
+            observed = np.where(which[:, None], observed, self._observed)
         self._observed = observed
         return observed, self._infos(figures, np.ones(self.num_envs, np.bool_) if which is None else which)
 

@@ -20,7 +20,7 @@ const STEP_S: f64 = 1.0 / RATE_HZ;
 /// Steps of an episode: six seconds.
 const N_STEPS: usize = 330;
 
-/// The robot's largest speeds, mm/s: along x and y, and down.
+/// The robot's largest speeds, mm/s: along the surface, and down.
 const SPEED_MM_S: f64 = 20.0;
 const DOWN_MM_S: f64 = 5.0;
 
@@ -230,8 +230,9 @@ impl Task for FollowEdge {
     }
 
     fn act(&self, episode: &mut Episode, actions: &[f32]) {
-        episode.velocity = DVec3::new(part(actions[0]), part(actions[1]), part(actions[2]));
-        let by_mm = SPEED_MM_S * STEP_S * episode.velocity.truncate();
+        let along = DVec2::new(part(actions[0]), part(actions[1])).clamp_length_max(1.0);
+        episode.velocity = along.extend(part(actions[2]));
+        let by_mm = SPEED_MM_S * STEP_S * along;
         episode.at_mm += by_mm;
         episode.moved_mm = by_mm.length();
         let depth_mm = episode.depth_mm + DOWN_MM_S * STEP_S * episode.velocity.z;
