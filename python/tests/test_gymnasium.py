@@ -120,8 +120,8 @@ def test_a_picture_shows_the_contact(kind: str) -> None:
 
 @pytest.mark.skipif(importlib.util.find_spec("stable_baselines3") is None, reason="stable-baselines3 is not installed")
 def test_stable_baselines_finds_nothing_wrong_and_learns() -> None:
-    from stable_baselines3 import PPO
-    from stable_baselines3.common import env_checker
+    from stable_baselines3 import PPO  # type: ignore[import-not-found, unused-ignore]
+    from stable_baselines3.common import env_checker  # type: ignore[import-not-found, unused-ignore]
 
     from twintac.gymnasium.sb3 import TouchVecEnv
 

@@ -3,7 +3,7 @@
 pip install 'twintac[rl]' stable-baselines3 matplotlib
 python python/examples/rl/train.py --task HoldForce --seed 1 --out runs/rl
 
-It writes `HoldForce.csv` (the learning curve), `HoldForce.png` and `HoldForce.zip` (the policy) into a folder.
+It writes `HoldForce-1.csv` (the learning curve), `HoldForce-1.png`, `HoldForce-1.zip` (the policy) and `HoldForce-1.pkl` (what it scales observations by) into a folder.
 """
 
 import argparse
@@ -13,13 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
-from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.vec_env import VecNormalize
+import numpy.typing as npt
+import torch  # type: ignore[import-not-found, unused-ignore]
+from stable_baselines3 import PPO  # type: ignore[import-not-found, unused-ignore]
+from stable_baselines3.common.callbacks import BaseCallback  # type: ignore[import-not-found, unused-ignore]
+from stable_baselines3.common.vec_env import VecNormalize  # type: ignore[import-not-found, unused-ignore]
 
 from twintac import Imperfection, Tasks
-from twintac.gymnasium.policies import Policy, Single, random_policy, returns, scripted_policy
+from twintac.gymnasium.policies import Policy, random_policy, returns, scripted_policy
 from twintac.gymnasium.sb3 import TouchVecEnv
 
 N_JUDGED = 512
@@ -27,44 +28,57 @@ FIRST_JUDGED = 10**9
 UNIT = {"HoldForce": "N of all frames", "FollowEdge": "mm of edge", "ExploreShape": "nats"}
 
 SETTINGS: dict[str, dict[str, Any]] = {
-    "HoldForce": {"n_envs": 128, "n_steps": 110, "gamma": 0.9, "gae_lambda": 0.9, "steps": 3_000_000},
-    "FollowEdge": {"n_envs": 128, "n_steps": 110, "gamma": 0.97, "gae_lambda": 0.95, "steps": 3_000_000},
-    "ExploreShape": {"n_envs": 1024, "n_steps": 20, "gamma": 0.9, "gae_lambda": 0.9, "steps": 8_000_000},
+    "HoldForce": {"n_envs": 128, "n_steps": 110, "gamma": 0.9, "gae_lambda": 0.9, "steps": 800_000},
+    "FollowEdge": {"n_envs": 128, "n_steps": 110, "gamma": 0.97, "gae_lambda": 0.95, "steps": 2_000_000},
+    "ExploreShape": {"n_envs": 512, "n_steps": 20, "gamma": 0.8, "gae_lambda": 0.9, "steps": 4_000_000},
 }
 
 
-def judge(kind: str, policy: Policy) -> tuple[float, float]:
-    """Mean return of episodes that no training has, on sensors as imperfect as usual; and its standard error."""
+def judge(kind: str, policy: Policy) -> npt.NDArray[np.float64]:
+    """Returns of episodes that no training has, on sensors as imperfect as usual; the same ones for every policy."""
     tasks = Tasks(kind, N_JUDGED, autoreset="Disabled")
     tasks.seed([FIRST_JUDGED + number for number in range(N_JUDGED)])
-    found = returns(policy, tasks)
-    return float(found.mean()), float(found.std() / np.sqrt(len(found)))
+    return returns(policy, tasks)
 
 
-def trained_policy(model: PPO) -> Policy:
-    """What the network does without chance; it was trained on observations that were brought to a deviation of one."""
-    scale = model.get_vec_normalize_env()
-    assert scale is not None
+def mean_and_error(returns: npt.NDArray[np.float64]) -> tuple[float, float]:
+    """The mean, and its standard error."""
+    return float(returns.mean()), float(returns.std(ddof=1) / np.sqrt(len(returns)))
 
-    def act(observed: Single) -> Single:
+
+def load(folder: Path, name: str, seed: int) -> tuple[PPO, VecNormalize]:
+    """A trained policy, and how its observations are brought to a deviation of one."""
+    kind = name.split("-")[0]
+    scale = VecNormalize.load(str(folder / f"{name}-{seed}.pkl"), TouchVecEnv(kind, 1))
+    return PPO.load(folder / f"{name}-{seed}.zip", device="cpu"), scale
+
+
+def trained_policy(model: PPO, scale: VecNormalize) -> Policy:
+    """What the network does without chance."""
+
+    def act(observed: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         return np.asarray(model.predict(scale.normalize_obs(observed), deterministic=True)[0], np.float32)
 
     return act
 
 
-class Curve(BaseCallback):
+class Curve(BaseCallback):  # type: ignore[misc, unused-ignore]
     """Judges the policy now and then."""
 
     def __init__(self, kind: str, every: int) -> None:
         super().__init__()
         self.kind, self.every, self.next = kind, every, 0
         self.rows: list[tuple[int, float, float, float]] = []
+        self.returns = np.zeros(N_JUDGED)
         self.started = time.monotonic()
 
     def judge(self) -> None:
         """Adds a row."""
         assert isinstance(self.model, PPO)
-        mean, error = judge(self.kind, trained_policy(self.model))
+        scale = self.model.get_vec_normalize_env()
+        assert scale is not None
+        self.returns = judge(self.kind, trained_policy(self.model, scale))
+        mean, error = mean_and_error(self.returns)
         seconds = time.monotonic() - self.started
         self.rows.append((self.num_timesteps, seconds, mean, error))
         print(f"{self.num_timesteps:9d} steps, {seconds:4.0f} s: {mean:.2f} ± {error:.2f} {UNIT[self.kind]}, simulated", flush=True)
@@ -102,13 +116,13 @@ def train(kind: str, seed: int, imperfection: Imperfection | None, steps: int | 
     return model, curve
 
 
-def write(folder: Path, name: str, kind: str, curve: Curve, others: dict[str, tuple[float, float]]) -> None:
-    """The learning curve as a table and as a picture."""
+def write(folder: Path, name: str, kind: str, curve: Curve, others: dict[str, tuple[float, float]], better: tuple[float, float]) -> None:
+    """The learning curve as a table and as a picture; `better` is by how much it is better than the script in the same episodes."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / f"{name}.csv").open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["policy", "steps", "seconds", "mean_return", "standard_error", "unit", "provenance"])
-        for policy, (mean, error) in others.items():
+        for policy, (mean, error) in {**others, "trained minus script": better}.items():
             table.writerow([policy, "", "", f"{mean:.4f}", f"{error:.4f}", UNIT[kind], "simulated"])
         for done, seconds, mean, error in curve.rows:
             table.writerow(["trained", done, f"{seconds:.1f}", f"{mean:.4f}", f"{error:.4f}", UNIT[kind], "simulated"])
@@ -117,10 +131,10 @@ def write(folder: Path, name: str, kind: str, curve: Curve, others: dict[str, tu
 
 def draw(path: Path, kind: str, curve: Curve, others: dict[str, tuple[float, float]]) -> None:
     """Return over steps."""
-    import matplotlib
+    import matplotlib  # type: ignore[import-not-found, unused-ignore]
 
     matplotlib.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import pyplot  # type: ignore[import-not-found, unused-ignore]
 
     figure, axes = pyplot.subplots(figsize=(6, 3.6), layout="constrained")
     steps, _, means, _ = zip(*curve.rows)
@@ -147,14 +161,20 @@ def main() -> None:
     given = arguments.parse_args()
     torch.set_num_threads(1)
     kind = given.task
-    others = {"script": judge(kind, scripted_policy(kind)), "chance": judge(kind, random_policy(kind))}
+    script = judge(kind, scripted_policy(kind))
+    others = {"script": mean_and_error(script), "chance": mean_and_error(judge(kind, random_policy(kind)))}
     for policy, (mean, error) in others.items():
         print(f"{policy}: {mean:.2f} ± {error:.2f} {UNIT[kind]}, simulated", flush=True)
     model, curve = train(kind, given.seed, Imperfection() if given.perfect else None, given.steps)
-    name = f"{kind}-perfect" if given.perfect else kind
-    write(given.out, name, kind, curve, others)
+    better = mean_and_error(curve.returns - script)
+    print(f"better than the script in the same episodes by {better[0]:.2f} ± {better[1]:.2f} {UNIT[kind]}, simulated")
+    name = f"{kind}{'-perfect' if given.perfect else ''}-{given.seed}"
+    write(given.out, name, kind, curve, others, better)
     model.save(given.out / f"{name}.zip")
-    print(f"wrote {name}.csv, {name}.png and {name}.zip into {given.out}")
+    scale = model.get_vec_normalize_env()
+    assert scale is not None
+    scale.save(str(given.out / f"{name}.pkl"))
+    print(f"wrote {name}.csv, .png, .zip and .pkl into {given.out}")
 
 
 if __name__ == "__main__":

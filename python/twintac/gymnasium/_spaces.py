@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -29,9 +29,10 @@ def require_gymnasium() -> None:
         raise ImportError("twintac.gymnasium needs the package gymnasium: pip install 'twintac[rl]'")
 
 
-def spaces(tasks: Tasks) -> tuple[gym.spaces.Box, gym.spaces.Box]:
+def spaces(tasks: Tasks) -> tuple[gym.Space[Single], gym.Space[Single]]:
     """What one environment observes, and its actions."""
     from gymnasium.spaces import Box
 
-    observation = Box(-10.0, 10.0, (tasks.n_observed,), np.float32)
-    return observation, Box(-1.0, 1.0, (tasks.n_actions,), np.float32)
+    observation: gym.Space[Any] = Box(-10.0, 10.0, (tasks.n_observed,), np.float32)
+    action: gym.Space[Any] = Box(-1.0, 1.0, (tasks.n_actions,), np.float32)
+    return observation, action

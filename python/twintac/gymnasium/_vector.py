@@ -55,6 +55,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         self.metadata = {**self.metadata, "autoreset_mode": mode, "render_fps": FRAMES_PER_S[kind]}
         self.render_mode = render_mode
         self._is_seeded = False
+        self._observed: Single = np.zeros(self.observation_space.shape or (), np.float32)
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None

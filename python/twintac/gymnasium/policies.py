@@ -16,6 +16,9 @@ from twintac.gymnasium._spaces import Single
 
 Policy: TypeAlias = Callable[[Single], Single]
 
+_Double: TypeAlias = npt.NDArray[np.float64]
+_Integers: TypeAlias = npt.NDArray[np.int64]
+
 _N_TAXELS = 8
 _HEIGHT_MM = 8.5
 
@@ -37,7 +40,7 @@ def scripted_policy(kind: str, seed: int = 0) -> Policy:
     return scripts[kind](np.random.default_rng(seed))
 
 
-def returns(policy: Policy, tasks: Tasks) -> npt.NDArray[np.float64]:
+def returns(policy: Policy, tasks: Tasks) -> _Double:
     """Sum of the rewards of one episode of each environment. Environments must not begin anew by themselves (`autoreset="Disabled"`)."""
     observed, _ = tasks.reset()
     total, is_going = np.zeros(len(tasks)), np.ones(len(tasks), np.bool_)
@@ -49,7 +52,7 @@ def returns(policy: Policy, tasks: Tasks) -> npt.NDArray[np.float64]:
 
 
 def _contacts(
-    shapes: list[Shape], number: Single, place_mm: Single, spin_rad: Single, depth_mm: Single
+    shapes: list[Shape], number: _Integers, place_mm: _Double, spin_rad: _Double, depth_mm: _Double
 ) -> tuple[Single, Single]:
     """What perfect sensors read, kPa, and the force, N, of shapes at places."""
     batch = FastGel.phystac().batch([Body(shape) for shape in shapes])
@@ -57,7 +60,7 @@ def _contacts(
     pose = np.stack(
         [*place_mm.T, _HEIGHT_MM - depth_mm, zero, zero, np.sin(0.5 * spin_rad), np.cos(0.5 * spin_rad)], axis=1
     )
-    readings_kpa, wrench = batch.read(pose, body=number.astype(np.int64))
+    readings_kpa, wrench = batch.read(pose, body=number)
     return readings_kpa, -wrench[:, 2]
 
 
@@ -125,7 +128,7 @@ def _explore_shape(random: np.random.Generator) -> Policy:
     observed, figures = tasks.reset()
     shape = figures[:, 0].astype(np.int64)
 
-    def presses(observed: Single) -> Single:
+    def presses(observed: Single) -> _Double:
         step = observed[:, -(n_presses + 1) :].argmax(axis=1)
         where = places[np.minimum(step, n_presses - 1)]
         return np.concatenate([where, np.ones((len(observed), 1))], axis=1)
@@ -136,7 +139,7 @@ def _explore_shape(random: np.random.Generator) -> Policy:
         observed, *_ = tasks.step(np.concatenate([presses(observed), nothing], axis=1))
         libraries.append(observed)
 
-    def scores(observed: Single) -> Single:
+    def scores(observed: Single) -> _Double:
         found = np.zeros((len(observed), n_shapes))
         step = observed[:, -(n_presses + 1) :].argmax(axis=1)
         for pressed in range(1, n_presses + 1):

@@ -11,13 +11,13 @@ if importlib.util.find_spec("stable_baselines3") is None:
 
 import numpy as np
 import numpy.typing as npt
-from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env import VecEnv  # type: ignore[import-not-found, unused-ignore]
 
 from twintac import FastGel, Imperfection, Tasks
 from twintac.gymnasium._spaces import Single, spaces
 
 
-class TouchVecEnv(VecEnv):
+class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     """Many environments of a task. Episodes that end begin anew in the same step, as Stable-Baselines3 expects."""
 
     def __init__(
@@ -40,7 +40,7 @@ class TouchVecEnv(VecEnv):
         self._returns = np.zeros(num_envs)
         self._lengths = np.zeros(num_envs, np.int64)
 
-    def reset(self) -> Single:  # type: ignore[override]
+    def reset(self) -> Single:  # type: ignore[override, unused-ignore]
         """Begins the next episode of every environment."""
         self.tasks.seed(self._seeds)
         self._reset_seeds()
@@ -53,7 +53,7 @@ class TouchVecEnv(VecEnv):
         """Takes the actions of the next step."""
         self._actions = actions
 
-    def step_wait(self) -> tuple[Single, npt.NDArray[np.float64], npt.NDArray[np.bool_], list[dict[str, Any]]]:  # type: ignore[override]
+    def step_wait(self) -> tuple[Single, npt.NDArray[np.float64], npt.NDArray[np.bool_], list[dict[str, Any]]]:  # type: ignore[override, unused-ignore]
         """Makes the step. Only episodes that ended have an info."""
         observed, rewards, terminated, truncated, _, last = self.tasks.step(self._actions)
         self._returns += rewards
@@ -62,7 +62,7 @@ class TouchVecEnv(VecEnv):
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         if last is not None:
             for number in np.flatnonzero(ended):
-                info = dict(zip(self._figures, map(float, last[1][number])))
+                info: dict[str, Any] = dict(zip(self._figures, map(float, last[1][number])))
                 info["terminal_observation"] = last[0][number]
                 info["TimeLimit.truncated"] = bool(truncated[number])
                 info["episode"] = {"r": float(self._returns[number]), "l": int(self._lengths[number]), "t": 0.0}
