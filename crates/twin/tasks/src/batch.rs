@@ -6,43 +6,14 @@ use rayon::prelude::*;
 use twintac_fast::FastGel;
 use twintac_sensors::{Imperfection, SensorBatch};
 
+use crate::answers::{Answers, Autoreset};
 use crate::chunk::{Chunk, Steps};
-use crate::environment::Sensors;
 use crate::explore_shape::ExploreShape;
 use crate::follow_edge::FollowEdge;
 use crate::hold_force::HoldForce;
 use crate::picture::Shown;
 use crate::task::Task;
 use crate::{Kind, TaskError};
-
-/// When an environment whose episode is over begins the next one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Autoreset {
-    /// In the next step, which ignores its action and has a reward of zero.
-    NextStep,
-    /// In the same step: what was observed last is handed out beside the new observation.
-    SameStep,
-    /// When [`Tasks::reset`] is called.
-    Disabled,
-}
-
-/// What a step answers.
-pub struct Answers<'a> {
-    /// What each robot knows. `[n_environments * n_observed]`
-    pub observed: &'a mut [f32],
-    /// `[n_environments]`
-    pub rewards: &'a mut [f64],
-    /// The task is over. `[n_environments]`
-    pub terminated: &'a mut [bool],
-    /// Time is over. `[n_environments]`
-    pub truncated: &'a mut [bool],
-    /// What is true beside it, see [`Tasks::figures`]. `[n_environments * n_figures]`
-    pub figures: &'a mut [f32],
-    /// What was observed last in episodes that ended: written by [`Autoreset::SameStep`], for these environments alone. `[n_environments * n_observed]`
-    pub last_observed: &'a mut [f32],
-    /// Figures of the same. `[n_environments * n_figures]`
-    pub last_figures: &'a mut [f32],
-}
 
 /// Many environments of one task, with the memory that steps need.
 pub struct Tasks {
@@ -71,8 +42,7 @@ impl Tasks {
         autoreset: Autoreset,
     ) -> Result<Self, TaskError> {
         let batch = SensorBatch::new(gel, None, imperfection.clone(), [n_environments, n_threads], 0);
-        let sensors = batch.into_parts().into_iter();
-        let sensors = sensors.map(|part| Box::new(part) as Box<dyn Sensors>).collect();
+        let sensors = batch.into_parts();
         match kind {
             Kind::ExploreShape => Self::of(ExploreShape::on(gel)?, gel, sensors, autoreset),
             Kind::HoldForce => Self::of(HoldForce::on(gel)?, gel, sensors, autoreset),
@@ -80,27 +50,14 @@ impl Tasks {
         }
     }
 
-    /// To hold forces with other sensors than the fast gel's: those of a bench. The seeds of the environments are 0, 1, and so on.
-    ///
-    /// # Errors
-    /// A pressure map that cannot be made.
-    pub fn hold_force(
-        task: HoldForce,
-        gel: &FastGel,
-        sensors: Box<dyn Sensors>,
-        autoreset: Autoreset,
-    ) -> Result<Self, TaskError> {
-        Self::of(task, gel, vec![sensors], autoreset)
-    }
-
     fn of<T: Task>(
         task: T,
         gel: &FastGel,
-        sensors: Vec<Box<dyn Sensors>>,
+        sensors: Vec<SensorBatch>,
         autoreset: Autoreset,
     ) -> Result<Self, TaskError> {
         let task = Arc::new(task);
-        let of_chunk = sensors.first().map_or(1, |sensors| sensors.sizes()[0]).max(1);
+        let of_chunk = sensors.first().map_or(1, SensorBatch::n_sensors).max(1);
         let first_seeds = (0..).step_by(of_chunk);
         let chunks: Vec<Box<dyn Steps>> = sensors
             .into_iter()

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use twintac_fast::Touch;
+use twintac_sensors::SensorBatch;
 
 use crate::TaskError;
-use crate::batch::{Answers, Autoreset};
-use crate::environment::{Environment, Sensors, draw};
+use crate::answers::{Answers, Autoreset};
+use crate::environment::{Environment, draw};
 use crate::picture::{Shown, pixels};
 use crate::task::{Felt, Task};
 
@@ -26,7 +27,7 @@ pub(crate) trait Steps: Send + Sync {
 /// Environments of one task, side by side.
 pub(crate) struct Chunk<T: Task> {
     task: Arc<T>,
-    sensors: Box<dyn Sensors>,
+    sensors: SensorBatch,
     n_taxels: usize,
     environments: Vec<Environment<T::Episode>>,
     touches: Vec<Touch>,
@@ -39,8 +40,8 @@ pub(crate) struct Chunk<T: Task> {
 
 impl<T: Task> Chunk<T> {
     /// As many environments as there are sensors; the seed of the first is given, the others follow.
-    pub(crate) fn new(task: &Arc<T>, sensors: Box<dyn Sensors>, first_seed: u64) -> Self {
-        let [n, n_taxels] = sensors.sizes();
+    pub(crate) fn new(task: &Arc<T>, sensors: SensorBatch, first_seed: u64) -> Self {
+        let (n, n_taxels) = (sensors.n_sensors(), sensors.n_taxels());
         let mut chunk = Self {
             environments: (0..n as u64)
                 .map(|number| Environment {

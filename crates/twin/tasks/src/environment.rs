@@ -1,59 +1,8 @@
-//! One environment, and the sensors of several.
+//! One environment.
 
-use twintac_fast::{Body, Touch};
 use twintac_random::stream;
-use twintac_sensors::SensorBatch;
 
 use crate::task::Task;
-
-/// Sensors of the environments of one thread: from what touches to what is read. Those of a [`SensorBatch`], or of a bench.
-pub trait Sensors: Send + Sync {
-    /// Number of sensors, and of the taxels of each.
-    fn sizes(&self) -> [usize; 2];
-
-    /// One more moment of every sensor, as [`SensorBatch::step`].
-    fn step(
-        &mut self,
-        since_previous_s: f64,
-        bodies: &[Body],
-        touches: &[Touch],
-        ends: &[usize],
-        readings_kpa: &mut [f32],
-        wrench: &mut [[f32; 6]],
-    );
-
-    /// Lets the gel of one sensor rest.
-    fn rest(&mut self, sensor: usize);
-
-    /// Puts the sensor of a number in the place of one.
-    fn replace(&mut self, sensor: usize, number: u64);
-}
-
-impl Sensors for SensorBatch {
-    fn sizes(&self) -> [usize; 2] {
-        [self.n_sensors(), self.n_taxels()]
-    }
-
-    fn step(
-        &mut self,
-        since_previous_s: f64,
-        bodies: &[Body],
-        touches: &[Touch],
-        ends: &[usize],
-        readings_kpa: &mut [f32],
-        wrench: &mut [[f32; 6]],
-    ) {
-        self.step(since_previous_s, bodies, touches, ends, readings_kpa, wrench);
-    }
-
-    fn rest(&mut self, sensor: usize) {
-        self.rest(sensor);
-    }
-
-    fn replace(&mut self, sensor: usize, number: u64) {
-        self.replace(sensor, number);
-    }
-}
 
 /// One environment: its seed, which of its episodes it is in, and that.
 #[derive(Clone, Debug)]

@@ -48,30 +48,19 @@ const PLACE_MM: DVec2 = DVec2::new(8.0, 3.0);
 const TRAVEL_UNIT_MM: f64 = 5.0;
 const FORCE_UNIT_N: f64 = 3.0;
 
-/// Holding a force: what may be pressed, and where.
-pub struct HoldForce {
+/// Holding a force.
+pub(crate) struct HoldForce {
     shapes: Vec<Shape>,
     bodies: Vec<Body>,
-    /// All that is pressed; anything anywhere if there are none.
-    spots: Vec<Spot>,
     height_mm: f64,
-}
-
-/// Which of the shapes is pressed, where and how it is turned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
-    /// Number of the shape.
-    pub shape: u32,
-    /// Where it is in the gel's plane, mm.
-    pub place_mm: DVec2,
-    /// How it is turned about the upright axis, radians.
-    pub spin_rad: f64,
 }
 
 /// What is true in an environment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Episode {
-    spot: Spot,
+    body: u32,
+    place_mm: DVec2,
+    spin_rad: f64,
     stiffness_n_per_mm: f64,
     wanted_n: [f64; N_WANTED],
     n_steps: usize,
@@ -105,36 +94,13 @@ impl HoldForce {
             size_mm: [10.0; 3],
             edge_radius_mm: 0.8,
         };
-        let shapes = balls.into_iter().chain([cylinder, cube]).collect();
-        Self::at(gel, shapes, Vec::new())
-    }
-
-    /// Shapes that are pressed at given spots alone, or anywhere if there are none.
-    ///
-    /// # Errors
-    /// A shape that can't be.
-    pub fn at(gel: &FastGel, shapes: Vec<Shape>, spots: Vec<Spot>) -> Result<Self, ShapeError> {
+        let shapes: Vec<Shape> = balls.into_iter().chain([cylinder, cube]).collect();
         let bodies = shapes.iter().map(|shape| Body::new(shape, &Surfaces::new()));
         Ok(Self {
             bodies: bodies.collect::<Result<_, _>>()?,
             shapes,
-            spots,
             height_mm: gel.height_mm_at(DVec2::ZERO),
         })
-    }
-
-    fn spot(&self, random: &mut RandomStream) -> Spot {
-        if !self.spots.is_empty() {
-            return self.spots[random.random_range(0..self.spots.len())];
-        }
-        let mut within = |most: f64| random.random_range(-most..most);
-        let place_mm = DVec2::new(within(PLACE_MM.x), within(PLACE_MM.y));
-        let spin_rad = within(std::f64::consts::PI);
-        Spot {
-            shape: random.random_range(0..self.bodies.len() as u32),
-            place_mm,
-            spin_rad,
-        }
     }
 }
 
@@ -154,10 +120,15 @@ impl Task for HoldForce {
     }
 
     fn begin(&self, _: usize, random: &mut RandomStream) -> Episode {
-        let spot = self.spot(random);
+        let mut within = |most: f64| random.random_range(-most..most);
+        let place_mm = DVec2::new(within(PLACE_MM.x), within(PLACE_MM.y));
+        let spin_rad = within(std::f64::consts::PI);
+        let body = random.random_range(0..self.bodies.len() as u32);
         let [low, high] = STIFFNESS_N_PER_MM.map(f64::ln);
         Episode {
-            spot,
+            body,
+            place_mm,
+            spin_rad,
             stiffness_n_per_mm: random.random_range(low..high).exp(),
             wanted_n: std::array::from_fn(|_| random.random_range(WANTED_N[0]..WANTED_N[1])),
             n_steps: 0,
@@ -184,12 +155,11 @@ impl Task for HoldForce {
     }
 
     fn touch(&self, episode: &Episode) -> Touch {
-        let place_mm = episode.spot.place_mm;
         Touch {
-            body: episode.spot.shape,
+            body: episode.body,
             gel_from_body: Pose {
-                position_mm: place_mm.extend(self.height_mm - episode.depth_mm),
-                rotation: DQuat::from_axis_angle(DVec3::Z, episode.spot.spin_rad),
+                position_mm: episode.place_mm.extend(self.height_mm - episode.depth_mm),
+                rotation: DQuat::from_axis_angle(DVec3::Z, episode.spin_rad),
             },
         }
     }
@@ -249,7 +219,7 @@ impl Task for HoldForce {
     fn look(&self, episode: &Episode) -> Look {
         let pose = self.touch(episode).gel_from_body;
         Look {
-            outlines_mm: outline_mm(&self.shapes[episode.spot.shape as usize], &pose),
+            outlines_mm: outline_mm(&self.shapes[episode.body as usize], &pose),
             places_mm: Vec::new(),
             lines: vec![
                 format!(

@@ -6,6 +6,7 @@
 //! Everything moves slowly enough that the gel is in balance in every frame. Nothing turns or tilts; there is no friction. Places are seen from the gel: x and y along
 //! its sides, z out of it, as if the sensor lay still and the object were moved over it; the robot may as well hold the sensor.
 
+mod answers;
 mod batch;
 mod chunk;
 mod environment;
@@ -18,9 +19,8 @@ mod picture;
 mod task;
 mod usual;
 
-pub use batch::{Answers, Autoreset, Tasks};
-pub use environment::Sensors;
-pub use hold_force::{HoldForce, Spot};
+pub use answers::{Answers, Autoreset};
+pub use batch::Tasks;
 pub use kind::{Kind, TaskError};
 pub use picture::PICTURE_PX;
 pub use usual::usual_imperfection;
