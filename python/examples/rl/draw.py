@@ -14,8 +14,8 @@ for kind, n_steps, seed in (("ExploreShape", 3, 5), ("HoldForce", 100, 1), ("Fol
     env = gym.make(f"TwinTac/{kind}-v0", render_mode="rgb_array")
     observed, _ = env.reset(seed=seed)
     script = scripted_policy(kind)
-    for _ in range(n_steps):
-        observed, *_ = env.step(script(observed[None])[0])
+    for _step in range(n_steps):
+        observed = env.step(script(observed[None])[0])[0]
     pictures.append(np.asarray(env.render()))
 matplotlib.image.imsave(sys.argv[1], np.concatenate(pictures))
 print(f"wrote {sys.argv[1]}, {twintac.gymnasium.TouchEnv.provenance}")

@@ -11,6 +11,7 @@ use twintac_fast::{Body, FastGel, Touch};
 use twintac_random::RandomStream;
 use twintac_shape::{Pose, Shape, ShapeError, Surfaces};
 
+use crate::edge::{Edge, Nearest};
 use crate::outline::outline_mm;
 use crate::task::{Felt, Look, Outcome, RATE_HZ, Task, limited, part};
 
@@ -57,22 +58,6 @@ pub(crate) struct FollowEdge {
     height_mm: f64,
 }
 
-/// A closed line, counterclockwise.
-struct Edge {
-    corners_mm: Vec<DVec2>,
-    /// How far along the line each corner is, mm; and the whole. `[n_corners + 1]`
-    along_mm: Vec<f64>,
-}
-
-/// The nearest point of an edge.
-#[derive(Clone, Copy, Debug, Default)]
-struct Nearest {
-    /// How far along the edge it is, mm.
-    along_mm: f64,
-    /// How far away, mm; negative over the face.
-    beside_mm: f64,
-}
-
 /// What is true in an environment.
 #[derive(Clone, Debug)]
 pub(crate) struct Episode {
@@ -92,55 +77,6 @@ pub(crate) struct Episode {
     force_n: f64,
     followed_mm: f64,
     n_steps: usize,
-}
-
-impl Edge {
-    fn of(corners_mm: Vec<DVec2>) -> Self {
-        let mut along_mm = vec![0.0];
-        for (number, corner) in corners_mm.iter().enumerate() {
-            let next = corners_mm[(number + 1) % corners_mm.len()];
-            along_mm.push(along_mm[number] + corner.distance(next));
-        }
-        Self { corners_mm, along_mm }
-    }
-
-    fn length_mm(&self) -> f64 {
-        self.along_mm[self.corners_mm.len()]
-    }
-
-    fn nearest(&self, at_mm: DVec2) -> Nearest {
-        let n = self.corners_mm.len();
-        let mut best = (f64::INFINITY, 0.0);
-        let mut is_inside = true;
-        for number in 0..n {
-            let (from, to) = (self.corners_mm[number], self.corners_mm[(number + 1) % n]);
-            let side = to - from;
-            let part = ((at_mm - from).dot(side) / side.length_squared()).clamp(0.0, 1.0);
-            let far = at_mm.distance_squared(from + part * side);
-            if far < best.0 {
-                best = (far, self.along_mm[number] + part * side.length());
-            }
-            is_inside &= side.perp_dot(at_mm - from) >= 0.0;
-        }
-        let (far, along_mm) = best;
-        Nearest {
-            along_mm,
-            beside_mm: if is_inside { -far.sqrt() } else { far.sqrt() },
-        }
-    }
-
-    /// The point of the edge at a part of its length, and the way out there.
-    fn at(&self, part: f64) -> (DVec2, DVec2) {
-        let along_mm = part * self.length_mm();
-        let n = self.corners_mm.len();
-        let side = (1..n)
-            .find(|number| along_mm < self.along_mm[*number])
-            .unwrap_or(n)
-            - 1;
-        let (from, to) = (self.corners_mm[side], self.corners_mm[(side + 1) % n]);
-        let way = (to - from).normalize();
-        (from + (along_mm - self.along_mm[side]) * way, -way.perp())
-    }
 }
 
 impl FollowEdge {
@@ -323,70 +259,4 @@ impl Task for FollowEdge {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn task() -> FollowEdge {
-        FollowEdge::on(&FastGel::phystac().unwrap()).unwrap()
-    }
-
-    #[test]
-    fn once_around_a_disc_is_its_circumference() {
-        let task = task();
-        let mut episode = task.begin(8, &mut twintac_random::stream(1, "disc"));
-        (episode.body, episode.spin_rad, episode.sense) = (1, 0.7, -1.0);
-        episode.object_mm = DVec2::new(2.0, -1.0);
-        let on_edge = |part: f64| 9.5 * DVec2::from_angle(-2.0 * PI * part);
-        episode.at_mm = episode.object_mm + on_edge(0.0);
-        episode.nearest = task.nearest(&episode);
-        let mut reward_mm = 0.0;
-        for step in 1..=300 {
-            let at_mm = episode.object_mm + on_edge(f64::from(step) / 300.0);
-            episode.moved_mm = at_mm.distance(episode.at_mm);
-            episode.at_mm = at_mm;
-            let felt = Felt {
-                readings_kpa: &[],
-                before_kpa: &[],
-                force_n: 2.0,
-            };
-            reward_mm += task.feel(&mut episode, &felt).reward;
-        }
-        let around_mm = 2.0 * PI * 9.5;
-        assert!(
-            (reward_mm - around_mm).abs() < 0.01 * around_mm,
-            "{reward_mm} of {around_mm}"
-        );
-    }
-
-    #[test]
-    fn the_force_has_to_be_moderate_and_the_edge_near() {
-        let task = task();
-        let start = task.begin(8, &mut twintac_random::stream(2, "edge"));
-        let reward = |beside_mm: f64, force_n: f64| {
-            let mut episode = start.clone();
-            let (edge_mm, outward) = task.edges[start.body as usize].at(0.3);
-            let turned = |at: DVec2| start.object_mm + DVec2::from_angle(start.spin_rad).rotate(at);
-            let way = -start.sense * outward.perp() * -1.0;
-            episode.at_mm = turned(edge_mm + beside_mm * outward);
-            episode.nearest = task.nearest(&episode);
-            episode.at_mm = turned(edge_mm + beside_mm * outward + 0.2 * way);
-            episode.moved_mm = 0.2;
-            let felt = Felt {
-                readings_kpa: &[],
-                before_kpa: &[],
-                force_n,
-            };
-            task.feel(&mut episode, &felt)
-        };
-        assert!(
-            (reward(0.0, 2.0).reward - 0.2).abs() < 0.01,
-            "{:?}",
-            reward(0.0, 2.0)
-        );
-        assert!(reward(1.5, 2.0).reward < 0.8 * reward(0.0, 2.0).reward);
-        assert_eq!(reward(3.5, 2.0).reward, 0.0);
-        assert_eq!(reward(0.0, 0.0).reward, 0.0);
-        assert!(reward(0.0, 8.0).reward < 0.0);
-        assert!(reward(0.0, 16.0).terminated && reward(9.0, 2.0).terminated);
-    }
-}
+mod tests;

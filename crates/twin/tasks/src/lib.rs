@@ -9,6 +9,7 @@
 mod answers;
 mod batch;
 mod chunk;
+mod edge;
 mod environment;
 mod explore_shape;
 mod follow_edge;
