@@ -20,6 +20,7 @@ mod sensor;
 mod sensors;
 mod settings;
 mod shape;
+mod tasks;
 mod touches;
 mod twin;
 
@@ -56,6 +57,8 @@ mod _twintac {
     use crate::sensors::{Coupling, Imperfection, SensorBatch};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
+    #[pymodule_export]
+    use crate::tasks::Tasks;
     #[pymodule_export]
     use crate::twin::{Prediction, Twin, TwinAtPlace, TwinState};
 }

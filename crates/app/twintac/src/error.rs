@@ -57,6 +57,10 @@ pub enum Error {
     #[cfg(feature = "fast")]
     #[error(transparent)]
     Inverse(#[from] twintac_inverse::InverseError),
+    /// A task cannot be.
+    #[cfg(feature = "tasks")]
+    #[error(transparent)]
+    Task(#[from] twintac_tasks::TaskError),
 }
 
 /// Where an error stands, as far as that is known.

@@ -42,6 +42,7 @@
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
 //! | [`SensorBatch`], [`Imperfection`], [`Coupling`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
+//! | [`Tasks`], [`Kind`] | many environments of a task for reinforcement learning | `tasks` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Dataset`] | many simulated presses, made in shards by as many machines as there are | `run` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
@@ -154,6 +155,7 @@
 //! |---|---|
 //! | `fast` | touch for learning, without finite elements, and back from readings to contacts |
 //! | `sensors` | many imperfect sensors stepped in one call; brings `fast` and `twin` |
+//! | `tasks` | tasks of touch for reinforcement learning; brings `map` and `sensors` |
 //! | `map` | pressure maps and pictures |
 //! | `recording` | recorded presses: Parquet, CSV |
 //! | `live` | reading a sensor; brings `recording` |
@@ -211,3 +213,5 @@ pub use twintac_sensor::SensorFile;
 pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
 pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
 pub use twintac_simulate::SimulateSettings;
+#[cfg(feature = "tasks")]
+pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};

@@ -32,6 +32,6 @@ pub use color::{Ink, PALETTE, viridis};
 pub use error::PlotError;
 pub use font::text_width;
 pub use number::{fixed, short};
-pub use raster::png;
+pub use raster::{pixels, png};
 pub use scene::{Anchor, Mark, SMALL, Scene};
 pub use svg::svg;

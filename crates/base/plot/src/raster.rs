@@ -17,28 +17,54 @@ use crate::scene::{Anchor, MARGIN, Mark, Scene};
 /// # Errors
 /// [`PlotError::Raster`] if the size is zero or too large for memory.
 pub fn png(scene: &Scene, scale: f64) -> Result<Vec<u8>, PlotError> {
-    let [[x0, y0], [x1, y1]] = scene.painted(MARGIN);
-    let is_empty = !(scene.width > 0.0 && scene.height > 0.0);
-    let [width_px, height_px] = [x1 - x0, y1 - y0].map(|side| (side * scale).ceil());
-    let failed = |reason: String| PlotError::Raster {
+    let painted = scene.painted(MARGIN);
+    let size_px = size_px(painted, scale);
+    let pixmap = paint(scene, painted, scale)?;
+    pixmap
+        .encode_png()
+        .map_err(|error| failed(size_px, error.to_string()))
+}
+
+/// The scene on white paper as large as it is, without a margin: red, green and blue of each pixel, row by row from the top. What is beyond is cut off.
+///
+/// # Errors
+/// [`PlotError::Raster`] if the size is zero or too large for memory.
+pub fn pixels(scene: &Scene) -> Result<Vec<u8>, PlotError> {
+    let pixmap = paint(scene, [[0.0, 0.0], [scene.width, scene.height]], 1.0)?;
+    let colors = pixmap.pixels().iter();
+    Ok(colors
+        .flat_map(|color| [color.red(), color.green(), color.blue()])
+        .collect())
+}
+
+fn size_px([[x0, y0], [x1, y1]]: [[f64; 2]; 2], scale: f64) -> [f64; 2] {
+    [x1 - x0, y1 - y0].map(|side| (side * scale).ceil())
+}
+
+fn failed([width_px, height_px]: [f64; 2], reason: String) -> PlotError {
+    PlotError::Raster {
         width_px,
         height_px,
         reason,
-    };
-    let pixmap = Pixmap::new(width_px as u32, height_px as u32).filter(|_| !is_empty);
+    }
+}
+
+/// A rectangle of the scene, painted.
+fn paint(scene: &Scene, rectangle: [[f64; 2]; 2], scale: f64) -> Result<Pixmap, PlotError> {
+    let [x0, y0] = rectangle[0];
+    let is_empty = !(scene.width > 0.0 && scene.height > 0.0);
+    let size_px = size_px(rectangle, scale);
+    let pixmap = Pixmap::new(size_px[0] as u32, size_px[1] as u32).filter(|_| !is_empty);
     let mut canvas = Canvas {
-        pixmap: pixmap.ok_or_else(|| failed("the size is not possible".into()))?,
+        pixmap: pixmap.ok_or_else(|| failed(size_px, "the size is not possible".into()))?,
         transform: Transform::from_translate(-x0 as f32, -y0 as f32).post_scale(scale as f32, scale as f32),
-        face: font::face().ok_or_else(|| failed("the embedded font is damaged".into()))?,
+        face: font::face().ok_or_else(|| failed(size_px, "the embedded font is damaged".into()))?,
     };
     canvas.pixmap.fill(Color::WHITE);
     for mark in &scene.marks {
         canvas.paint(mark);
     }
-    canvas
-        .pixmap
-        .encode_png()
-        .map_err(|error| failed(error.to_string()))
+    Ok(canvas.pixmap)
 }
 
 struct Canvas {

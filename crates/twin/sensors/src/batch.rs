@@ -123,6 +123,25 @@ impl SensorBatch {
         self.chunks.iter().map(|chunk| chunk.sensors.len()).sum()
     }
 
+    /// Number of taxels of a sensor.
+    #[must_use]
+    pub fn n_taxels(&self) -> usize {
+        self.n_taxels
+    }
+
+    /// The sensors of each thread as a batch of its own, for a caller that steps them on threads of its own. They go on as they would have; what they share is not copied.
+    #[must_use]
+    pub fn into_parts(self) -> Vec<Self> {
+        let part = |chunk: Chunk| Self {
+            imperfection: self.imperfection.clone(),
+            seed: self.seed,
+            n_taxels: self.n_taxels,
+            of_chunk: self.of_chunk,
+            chunks: vec![chunk],
+        };
+        self.chunks.into_iter().map(part).collect()
+    }
+
     /// One more moment of every sensor.
     ///
     /// - `since_previous_s`: time since the last step, s, not negative.

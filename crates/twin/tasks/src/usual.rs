@@ -1,0 +1,27 @@
+//! How imperfect sensors are, unless said otherwise.
+
+use twintac_sensors::Imperfection;
+
+/// Imperfections of sensors that work. Gains, port laws, noise, steps and rate are those that `twintac fast imperfection` found on the emulated PhysTac
+/// (`imperfections/phystac.toml`); a tenth of a kPa of drift since the tare, hysteresis, mounting and faults are assumed.
+#[must_use]
+pub fn usual_imperfection() -> Imperfection {
+    Imperfection {
+        gain_deviation: 0.18,
+        growth_deviation_per_kpa: 0.001_12,
+        offset_deviation_kpa: 0.1,
+        noise_deviation_kpa: 0.0153,
+        quantum_kpa: 0.01,
+        hysteresis: 0.03,
+        dead_chance: 0.005,
+        stuck_chance: 0.005,
+        late_chance: 0.02,
+        rate_hz: 55.0,
+        jitter: 0.0391,
+        height_deviation_mm: 0.05,
+        place_deviation_mm: 0.2,
+        turn_deviation_rad: 0.01,
+        tilt_deviation_rad: 0.01,
+        ..Imperfection::default()
+    }
+}

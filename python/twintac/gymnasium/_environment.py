@@ -1,0 +1,58 @@
+"""One environment."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from twintac import FastGel, Imperfection, Tasks
+from twintac.gymnasium._spaces import FRAMES_PER_S, Single, spaces
+
+
+class TouchEnv(gym.Env[Single, Single]):
+    """One environment of a task. It is the same as that of a vector environment under the same seed."""
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 55}
+    provenance: ClassVar[str] = "simulated"
+
+    def __init__(
+        self,
+        kind: str,
+        *,
+        imperfection: Imperfection | None = None,
+        gel: FastGel | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        self._tasks = Tasks(kind, 1, gel=gel, imperfection=imperfection, autoreset="Disabled", n_threads=1)
+        self._figures = self._tasks.figures
+        self.observation_space, self.action_space = spaces(self._tasks)
+        self.metadata = {**self.metadata, "render_fps": FRAMES_PER_S[kind]}
+        self.render_mode = render_mode
+        self._is_seeded = False
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Single, dict[str, Any]]:
+        """Begins the next episode, or the first one of a seed."""
+        super().reset(seed=seed)
+        if seed is None and not self._is_seeded:
+            seed = int(self.np_random.integers(2**63))
+        if seed is not None:
+            self._tasks.seed([seed])
+            self._is_seeded = True
+        observed, figures = self._tasks.reset()
+        return observed[0], self._info(figures[0])
+
+    def step(self, action: Single) -> tuple[Single, float, bool, bool, dict[str, Any]]:
+        """One step."""
+        actions = np.asarray(action, np.float32).reshape(1, -1)
+        observed, rewards, terminated, truncated, figures, _ = self._tasks.step(actions)
+        return observed[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info(figures[0])
+
+    def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
+        """What is there from above, and what the sensor reads: `[240, 600, 3]`."""
+        return self._tasks.picture(0) if self.render_mode == "rgb_array" else None
+
+    def _info(self, figures: Single) -> dict[str, Any]:
+        return dict(zip(self._figures, map(float, figures)))

@@ -1,0 +1,105 @@
+"""Many environments, stepped in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from twintac import FastGel, Imperfection, Tasks
+from twintac.gymnasium._spaces import FRAMES_PER_S, Single, spaces
+
+_Bool = npt.NDArray[np.bool_]
+
+
+class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
+    """Many environments of a task. Environment `i` of a seed is that of a single environment under `seed + i`, whatever others there are."""
+
+    metadata: dict[str, Any] = {
+        "render_modes": ["rgb_array"],
+        "render_fps": 55,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
+    provenance: ClassVar[str] = "simulated"
+
+    def __init__(
+        self,
+        kind: str,
+        num_envs: int = 1,
+        *,
+        imperfection: Imperfection | None = None,
+        gel: FastGel | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        n_threads: int | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        mode = AutoresetMode(autoreset_mode)
+        self._tasks = Tasks(
+            kind,
+            num_envs,
+            gel=gel,
+            imperfection=imperfection,
+            autoreset=mode.value,
+            n_threads=n_threads,
+        )
+        self._figures = self._tasks.figures
+        self.num_envs = num_envs
+        self.single_observation_space, self.single_action_space = spaces(self._tasks)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.metadata = {**self.metadata, "autoreset_mode": mode, "render_fps": FRAMES_PER_S[kind]}
+        self.render_mode = render_mode
+        self._is_seeded = False
+        self._observed: Single = np.zeros(self.observation_space.shape or (), np.float32)
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Single, dict[str, Any]]:
+        """Begins the next episode of each environment, or of those that `options["reset_mask"]` has."""
+        if seed is None and not self._is_seeded:
+            seed = int(self.np_random.integers(2**62))
+        if seed is not None:
+            seeds = [seed + number for number in range(self.num_envs)] if isinstance(seed, int) else list(seed)
+            self._tasks.seed(seeds)
+            self._is_seeded = True
+        which: _Bool | None = (options or {}).get("reset_mask")
+        observed, figures = self._tasks.reset(which)
+        if which is not None:
+            observed = np.where(which[:, None], observed, self._observed)
+        self._observed = observed
+        return observed, self._infos(figures, np.ones(self.num_envs, np.bool_) if which is None else which)
+
+    def step(self, actions: Single) -> tuple[Single, npt.NDArray[np.float64], _Bool, _Bool, dict[str, Any]]:
+        """One step of every environment."""
+        observed, rewards, terminated, truncated, figures, last = self._tasks.step(actions)
+        self._observed = observed
+        infos = self._infos(figures, np.ones(self.num_envs, np.bool_))
+        if last is not None:
+            self._tell_ends(infos, terminated | truncated, *last)
+        return observed, rewards, terminated, truncated, infos
+
+    def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:  # type: ignore[override]
+        """A picture of each environment, `[240, 600, 3]`."""
+        if self.render_mode != "rgb_array":
+            return None
+        return tuple(self._tasks.picture(number) for number in range(self.num_envs))
+
+    def _infos(self, figures: Single, which: _Bool) -> dict[str, Any]:
+        infos: dict[str, Any] = {}
+        for name, values in zip(self._figures, figures.T):
+            infos[name] = values
+            infos[f"_{name}"] = which
+        return infos
+
+    def _tell_ends(self, infos: dict[str, Any], ended: _Bool, observed: Single, figures: Single) -> None:
+        """What was observed last in episodes that ended in this step, as Gymnasium's own vector environments tell it."""
+        last = np.full(self.num_envs, None, dtype=object)
+        for number in np.flatnonzero(ended):
+            last[number] = observed[number]
+        infos["final_obs"], infos["_final_obs"] = last, ended
+        infos["final_info"], infos["_final_info"] = self._infos(figures, ended), ended

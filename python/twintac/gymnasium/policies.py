@@ -1,0 +1,160 @@
+"""Policies that nobody trained: by chance, and scripts such as a laboratory would write.
+
+A policy is a function from observations, `[n, n_observed]`, to actions, `[n, n_actions]`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from twintac import Body, FastGel, Shape, Tasks
+from twintac.gymnasium._spaces import Single
+
+Policy: TypeAlias = Callable[[Single], Single]
+
+_Double: TypeAlias = npt.NDArray[np.float64]
+_Integers: TypeAlias = npt.NDArray[np.int64]
+
+_N_TAXELS = 8
+_HEIGHT_MM = 8.5
+
+
+def random_policy(kind: str, seed: int = 0) -> Policy:
+    """Actions by chance, evenly from -1 to 1."""
+    n_actions = Tasks(kind, 1).n_actions
+    random = np.random.default_rng(seed)
+
+    def act(observed: Single) -> Single:
+        return random.uniform(-1.0, 1.0, (len(observed), n_actions)).astype(np.float32)
+
+    return act
+
+
+def scripted_policy(kind: str, seed: int = 0) -> Policy:
+    """The script for a task, for PhysTac. What it is calibrated with are perfect sensors; the shapes that may be there are known to it."""
+    scripts = {"HoldForce": _hold_force, "FollowEdge": _follow_edge, "ExploreShape": _explore_shape}
+    return scripts[kind](np.random.default_rng(seed))
+
+
+def returns(policy: Policy, tasks: Tasks) -> _Double:
+    """Sum of the rewards of one episode of each environment. Environments must not begin anew by themselves (`autoreset="Disabled"`)."""
+    observed, _ = tasks.reset()
+    total, is_going = np.zeros(len(tasks)), np.ones(len(tasks), np.bool_)
+    while is_going.any():
+        observed, rewards, terminated, truncated, _, _ = tasks.step(policy(observed))
+        total[is_going] += rewards[is_going]
+        is_going &= ~(terminated | truncated)
+    return total
+
+
+def _contacts(
+    shapes: list[Shape], number: _Integers, place_mm: _Double, spin_rad: _Double, depth_mm: _Double
+) -> tuple[Single, Single]:
+    """What perfect sensors read, kPa, and the force, N, of shapes at places."""
+    batch = FastGel.phystac().batch([Body(shape) for shape in shapes])
+    zero = np.zeros_like(spin_rad)
+    pose = np.stack(
+        [*place_mm.T, _HEIGHT_MM - depth_mm, zero, zero, np.sin(0.5 * spin_rad), np.cos(0.5 * spin_rad)], axis=1
+    )
+    readings_kpa, wrench = batch.read(pose, body=number)
+    return readings_kpa, -wrench[:, 2]
+
+
+def _hold_force(random: np.random.Generator) -> Policy:
+    """The force is a weighted sum of the readings, by least squares; the speed is in proportion to what is missing."""
+    n = 2000
+    balls = [Shape.sphere(radius_mm) for radius_mm in (8.0, 10.0, 12.5)]
+    shapes = [*balls, Shape.cylinder(5.0, 10.0, 0.8), Shape.box((10.0, 10.0, 10.0), 0.8)]
+    place_mm = random.uniform(-1.0, 1.0, (n, 2)) * (8.0, 3.0)
+    spin_rad, depth_mm = random.uniform(-np.pi, np.pi, n), random.uniform(0.0, 3.5, n)
+    readings_kpa, force_n = _contacts(shapes, random.integers(len(shapes), size=n), place_mm, spin_rad, depth_mm)
+    weights, *_ = np.linalg.lstsq(readings_kpa[force_n < 3.5], force_n[force_n < 3.5], rcond=None)
+    speed_per_n = 3.0  # the best of 0.5, 0.8, 1.2, 1.6, 2 and 3
+
+    def act(observed: Single) -> Single:
+        felt_n = 10.0 * observed[:, :_N_TAXELS] @ weights
+        missing_n = 3.0 * observed[:, 2 * _N_TAXELS + 2] - felt_n
+        return np.clip(speed_per_n * missing_n, -1.0, 1.0)[:, None].astype(np.float32)
+
+    return act
+
+
+def _follow_edge(random: np.random.Generator) -> Policy:
+    """The way out of the face, how far the edge is and the force are weighted sums, by least squares; each speed is in proportion to what is off."""
+    n = 4000
+    shapes = [Shape.cylinder(radius_mm, 10.0, 0.8) for radius_mm in (8.0, 9.5, 11.0)]
+    radius_mm = np.array([8.0, 9.5, 11.0])
+    number = random.integers(len(shapes), size=n)
+    way_out = random.uniform(-np.pi, np.pi, n)
+    outward = np.stack([np.cos(way_out), np.sin(way_out)], axis=1)
+    beside_mm, depth_mm = random.uniform(-3.0, 3.0, n), random.uniform(0.5, 1.5, n)
+    # The gel's middle is beside the edge: the disc's middle is inwards of it.
+    place_mm = -(radius_mm[number] + beside_mm)[:, None] * outward
+    readings_kpa, force_n = _contacts(shapes, number, place_mm, np.zeros(n), depth_mm)
+
+    def features(readings_kpa: Single) -> Single:
+        parts = readings_kpa / np.maximum(readings_kpa.sum(axis=1, keepdims=True), 0.5)
+        return np.concatenate([parts, parts**2, np.ones((len(parts), 1))], axis=1)
+
+    told = np.concatenate([outward, beside_mm[:, None]], axis=1)
+    weights, *_ = np.linalg.lstsq(features(readings_kpa), told, rcond=None)
+    force_weights, *_ = np.linalg.lstsq(readings_kpa, force_n, rcond=None)
+    # The best of some twenty combinations.
+    wanted_n, deeper_per_n, back_per_mm, ahead = 3.0, 0.5, 0.5, 1.0
+
+    def act(observed: Single) -> Single:
+        readings_kpa = 10.0 * observed[:, :_N_TAXELS]
+        found = features(readings_kpa) @ weights
+        outward = found[:, :2] / np.maximum(np.linalg.norm(found[:, :2], axis=1, keepdims=True), 1e-6)
+        along = np.stack([-outward[:, 1], outward[:, 0]], axis=1) * observed[:, -1:]
+        missing_n = wanted_n - readings_kpa @ force_weights
+        is_touching = (readings_kpa @ force_weights > 0.5)[:, None]
+        plane = np.where(is_touching, ahead * along - back_per_mm * found[:, 2:] * outward, 0.0)
+        return np.clip(np.concatenate([plane, deeper_per_n * missing_n[:, None]], axis=1), -1.0, 1.0).astype(np.float32)
+
+    return act
+
+
+def _explore_shape(random: np.random.Generator) -> Policy:
+    """Four presses at fixed places, as deep as it goes; each shape is as probable as its part of the 25 nearest of 10,000 presses that were made in advance."""
+    n, n_presses, n_shapes, nearest = 10_000, 4, 5, 25
+    places = np.array([[0.0, 0.0], [0.35, 0.0], [-0.35, 0.0], [0.0, 0.5]])
+    tasks = Tasks("ExploreShape", n, autoreset="Disabled")
+    tasks.seed([int(seed) for seed in random.integers(2**40, 2**62, n)])
+    observed, figures = tasks.reset()
+    shape = figures[:, 0].astype(np.int64)
+
+    def presses(observed: Single) -> _Double:
+        step = observed[:, -(n_presses + 1) :].argmax(axis=1)
+        where = places[np.minimum(step, n_presses - 1)]
+        return np.concatenate([where, np.ones((len(observed), 1))], axis=1)
+
+    libraries = []
+    for _ in range(n_presses):
+        nothing = np.zeros((n, n_shapes))
+        observed, *_ = tasks.step(np.concatenate([presses(observed), nothing], axis=1))
+        libraries.append(observed)
+
+    def scores(observed: Single) -> _Double:
+        found = np.zeros((len(observed), n_shapes))
+        step = observed[:, -(n_presses + 1) :].argmax(axis=1)
+        for pressed in range(1, n_presses + 1):
+            own = np.flatnonzero(step == pressed)
+            if len(own) == 0:
+                continue
+            library = libraries[pressed - 1][:, : -(n_presses + 1)]
+            felt = observed[own, : -(n_presses + 1)]
+            far = (felt**2).sum(axis=1)[:, None] - 2.0 * felt @ library.T + (library**2).sum(axis=1)
+            close = shape[np.argpartition(far, nearest, axis=1)[:, :nearest]]
+            part = (close[:, :, None] == np.arange(n_shapes)).sum(axis=1) + 0.5
+            found[own] = 1.0 + np.log(part / part.max(axis=1, keepdims=True)) / 5.0
+        return found
+
+    def act(observed: Single) -> Single:
+        return np.clip(np.concatenate([presses(observed), scores(observed)], axis=1), -1.0, 1.0).astype(np.float32)
+
+    return act

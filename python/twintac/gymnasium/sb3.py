@@ -1,0 +1,98 @@
+"""The vector environments for Stable-Baselines3: `TouchVecEnv("HoldForce", 256)` is a `VecEnv`."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Sequence
+from typing import Any
+
+if importlib.util.find_spec("stable_baselines3") is None:
+    raise ImportError("twintac.gymnasium.sb3 needs the package stable-baselines3: pip install stable-baselines3")
+
+import numpy as np
+import numpy.typing as npt
+from stable_baselines3.common.vec_env import VecEnv  # type: ignore[import-not-found, unused-ignore]
+
+from twintac import FastGel, Imperfection, Tasks
+from twintac.gymnasium._spaces import Single, spaces
+
+
+class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
+    """Many environments of a task. Episodes that end begin anew in the same step, as Stable-Baselines3 expects."""
+
+    def __init__(
+        self,
+        kind: str,
+        num_envs: int,
+        *,
+        imperfection: Imperfection | None = None,
+        gel: FastGel | None = None,
+        n_threads: int | None = None,
+        seed: int = 0,
+    ) -> None:
+        self.tasks = Tasks(
+            kind, num_envs, gel=gel, imperfection=imperfection, autoreset="SameStep", n_threads=n_threads
+        )
+        self.tasks.seed([seed + number for number in range(num_envs)])
+        self.render_mode = None
+        super().__init__(num_envs, *spaces(self.tasks))
+        self._figures = self.tasks.figures
+        self._returns = np.zeros(num_envs)
+        self._lengths = np.zeros(num_envs, np.int64)
+
+    def reset(self) -> Single:  # type: ignore[override, unused-ignore]
+        """Begins the next episode of every environment."""
+        self.tasks.seed(self._seeds)
+        self._reset_seeds()
+        self._reset_options()
+        self._returns[:] = 0.0
+        self._lengths[:] = 0
+        return self.tasks.reset()[0]
+
+    def step_async(self, actions: npt.NDArray[Any]) -> None:
+        """Takes the actions of the next step."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[Single, npt.NDArray[np.float64], npt.NDArray[np.bool_], list[dict[str, Any]]]:  # type: ignore[override, unused-ignore]
+        """Makes the step. Only episodes that ended have an info."""
+        observed, rewards, terminated, truncated, _, last = self.tasks.step(self._actions)
+        self._returns += rewards
+        self._lengths += 1
+        ended = terminated | truncated
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        if last is not None:
+            for number in np.flatnonzero(ended):
+                info: dict[str, Any] = dict(zip(self._figures, map(float, last[1][number])))
+                info["terminal_observation"] = last[0][number]
+                info["TimeLimit.truncated"] = bool(truncated[number])
+                info["episode"] = {"r": float(self._returns[number]), "l": int(self._lengths[number]), "t": 0.0}
+                infos[number] = info
+            self._returns[ended] = 0.0
+            self._lengths[ended] = 0
+        return observed, rewards, ended, infos
+
+    def close(self) -> None:
+        """Nothing has to be closed."""
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """An attribute of this object, for each environment."""
+        return [getattr(self, attr_name)] * len(self._numbers(indices))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Environments have no attributes of their own."""
+        raise AttributeError(f"environments of {type(self).__name__} have no attribute of their own to set: {attr_name}")
+
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+        """Environments have no methods of their own."""
+        raise AttributeError(f"environments of {type(self).__name__} have no method of their own: {method_name}")
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+        """Nothing is wrapped."""
+        return [False] * len(self._numbers(indices))
+
+    def get_images(self) -> Sequence[npt.NDArray[np.uint8]]:
+        """A picture of each environment."""
+        return [self.tasks.picture(number) for number in range(self.num_envs)]
+
+    def _numbers(self, indices: Any) -> list[int]:
+        return list(self._get_indices(indices))
