@@ -133,6 +133,7 @@ impl SensorBatch {
     #[must_use]
     pub fn into_parts(self) -> Vec<Self> {
         let part = |chunk: Chunk| Self {
+            coupling: self.coupling.clone(),
             imperfection: self.imperfection.clone(),
             seed: self.seed,
             n_taxels: self.n_taxels,
