@@ -35,7 +35,7 @@ def random_policy(kind: str, seed: int = 0) -> Policy:
 
 
 def scripted_policy(kind: str, seed: int = 0) -> Policy:
-    """The script for a task, for PhysTac. What it is calibrated with are perfect sensors; the shapes that may be there are known to it."""
+    """The script for a task, for PhysTac. HoldForce's is calibrated on the task's shapes and FollowEdge's on its discs, both with perfect sensors; ExploreShape's on imperfect ones."""
     scripts = {"HoldForce": _hold_force, "FollowEdge": _follow_edge, "ExploreShape": _explore_shape}
     return scripts[kind](np.random.default_rng(seed))
 
