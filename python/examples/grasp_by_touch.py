@@ -24,7 +24,7 @@ Array = npt.NDArray[np.float64]
 FRICTION = 0.8
 GRAVITY_M_PER_S2 = 9.81
 FIRST_N = 0.17  # a light touch
-MARGIN = 1.2  # of what friction needs
+MARGIN = 1.35  # of what friction needs
 FIXED_N = 3.0  # of the gripper without touch: lifts the heaviest
 FIRST_RISE_MM = 0.03  # of a step
 RISE_N, RISE_PART = 0.025, 0.12  # that a step should load the gel with, and of what it carries already
@@ -172,10 +172,13 @@ class Gripper:
         self.step(0.1)
         self.start_m = self.height_m
 
-    def step(self, seconds: float) -> Array:
-        """Goes on for a while; returns the mean of each sensor's last readings, kPa, `[2, 8]`."""
+    def step(self, seconds: float, rise_mm: float = 0.0) -> Array:
+        """Goes on for a while, and rises evenly in the first half of it; returns the mean of each sensor's last readings, kPa, `[2, 8]`."""
         readings_kpa = []
-        for number in range(round(seconds / self.model.opt.timestep)):
+        n_steps = round(seconds / self.model.opt.timestep)
+        for number in range(n_steps):
+            if 2 * number < n_steps:
+                self.risen_mm += 2.0 * rise_mm / n_steps
             mujoco.mj_step1(self.model, self.data)
             self.touch.update(self.data)
             self.data.ctrl[:] = 1e-3 * np.array([self.closed_mm, self.closed_mm, self.risen_mm])
@@ -187,9 +190,7 @@ class Gripper:
         return mean
 
     def lift(self) -> None:
-        for _ in range(100):
-            self.risen_mm += LIFT_MM / 100
-            self.step(0.02)
+        self.step(4.0, LIFT_MM)
 
     @property
     def height_m(self) -> float:
@@ -261,8 +262,7 @@ def lift_by_touch(gripper: Gripper, meaning: Meaning) -> None:
     carried_n, rise_mm = 0.0, FIRST_RISE_MM
     while gripper.risen_mm < LIFT_MM and not hangs(parting):
         before_kpa = readings_kpa
-        gripper.risen_mm += rise_mm
-        readings_kpa = gripper.step(0.25)
+        readings_kpa = gripper.step(0.4, rise_mm)
         parting.append(float((parting_kpa(readings_kpa) - parting_kpa(before_kpa)).mean()) / rise_mm)
         usual = standing(parting)
         per_mm = usual / readings_kpa.sum(1).mean()
