@@ -281,7 +281,8 @@ mod tests {
 
     #[test]
     fn spring_and_gel_carry_the_same_force() {
-        for (most_speed, limits_n) in [(0.3, [0.15, 0.03]), (1.0, [0.15, 0.07])] {
+        // Under a flat end that just touches, the fast gel has a tenth of a newton at once, which the spring follows a frame later.
+        for (most_speed, limits_n) in [(0.3, [0.2, 0.03]), (1.0, [0.2, 0.07])] {
             let [first_n, worst_n, most_n] = imbalance(most_speed);
             assert!(most_n > 2.0, "nothing is pressed: {most_n}");
             assert!(
