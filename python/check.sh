@@ -5,7 +5,8 @@ python=$(realpath --no-symlinks "${1:?usage: python/check.sh VENV/bin/python}")
 cd "$(dirname "$0")/tests" # where `twintac` is the installed one
 export CARGO_TARGET_DIR="$PWD/../../target" # what the workspace has built is not built again
 "$python" -m pip install --quiet --disable-pip-version-check '..[test]'
-"$python" -m mypy --config-file ../pyproject.toml ../twintac/mujoco ../examples ../benchmarks .
+"$python" -m mypy --config-file ../pyproject.toml ../twintac/mujoco
+"$python" -m mypy --config-file ../pyproject.toml ../examples ../benchmarks .
 echo 'twintac\.gymnasium\.sb3' > ../../target/not-imported # where Stable-Baselines3 is not installed
 "$python" -m mypy.stubtest twintac --allowlist ../../target/not-imported --ignore-unused-allowlist
 PYO3_PYTHON=$python cargo clippy --manifest-path ../Cargo.toml --release --quiet -- --deny warnings
