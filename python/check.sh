@@ -8,6 +8,6 @@ export CARGO_TARGET_DIR="$PWD/../../target" # what the workspace has built is no
 "$python" -m mypy --config-file ../pyproject.toml ../twintac/mujoco
 "$python" -m mypy --config-file ../pyproject.toml ../examples ../benchmarks .
 echo 'twintac\.gymnasium\.sb3' > ../../target/not-imported # where Stable-Baselines3 is not installed
-"$python" -m mypy.stubtest twintac --allowlist ../../target/not-imported --ignore-unused-allowlist
+"$python" -m mypy.stubtest twintac --mypy-config-file ../pyproject.toml --allowlist ../../target/not-imported --ignore-unused-allowlist
 PYO3_PYTHON=$python cargo clippy --manifest-path ../Cargo.toml --release --quiet -- --deny warnings
 "$python" -m pytest --quiet

@@ -14,7 +14,7 @@ from ._poses import multiply, rotate, turned_back
 from ._shapes import body_of, key_of
 
 _Array = npt.NDArray[np.float64]
-_Data: TypeAlias = "mujoco.MjData | mujoco.batch.Batch"
+_Data: TypeAlias = mujoco.MjData | mujoco.batch.Batch
 _PLANE = int(mujoco.mjtGeom.mjGEOM_PLANE)
 # Bodies push when they are this close, mm.
 _REACH_MM = 2.0
