@@ -101,8 +101,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_waves_press_as_a_thin_layer_does() {
-        // The formula in first order of the wave number.
+    fn long_waves_press_in_proportion_to_their_number() {
+        // The limit of the formula by hand: a slip of the pen in its hyperbolic terms would not have it. Solved gels judge the rest (`friction`).
         let (wave, poissons_ratio) = (1e-3, 0.4);
         let expected = (1.0 + poissons_ratio) / (3.0 * (1.0 - poissons_ratio)) * wave;
         assert!((floor_pressure(wave, poissons_ratio) / expected - 1.0).abs() < 1e-3);

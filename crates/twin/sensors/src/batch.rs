@@ -290,17 +290,9 @@ impl Chunk {
             );
             let described_from_actual = sensor.actual_from_described.rotation.inverse().as_quat();
             for wrench in apart {
-                let [fx, fy, fz, tx, ty, tz] = *wrench;
-                let force_n = described_from_actual * Vec3::new(fx, fy, fz);
-                let torque_n_mm = described_from_actual * Vec3::new(tx, ty, tz);
-                *wrench = [
-                    force_n.x,
-                    force_n.y,
-                    force_n.z,
-                    torque_n_mm.x,
-                    torque_n_mm.y,
-                    torque_n_mm.z,
-                ];
+                for part in wrench.as_chunks_mut::<3>().0 {
+                    *part = (described_from_actual * Vec3::from_array(*part)).to_array();
+                }
             }
         }
     }
