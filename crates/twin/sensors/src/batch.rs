@@ -198,6 +198,30 @@ impl SensorBatch {
         });
     }
 
+    /// One more moment in which everything stays where it was in the last step, as a step with the same touches would have it: gels are not read anew.
+    ///
+    /// - `since_previous_s`, `readings_kpa`: as [`Self::step`] takes them.
+    ///
+    /// # Panics
+    /// Readings of another length; sensors with a [`Coupling`], whose gels go on to give way.
+    pub fn stay(&mut self, since_previous_s: f64, readings_kpa: &mut [f32]) {
+        assert_eq!(
+            readings_kpa.len(),
+            self.n_sensors() * self.n_taxels,
+            "a reading for each taxel of each sensor"
+        );
+        assert!(self.coupling.is_none(), "sensors that hold nothing");
+        let imperfection = &self.imperfection;
+        if let [chunk] = self.chunks.as_mut_slice() {
+            // Nobody has to be woken.
+            chunk.sense(imperfection, since_previous_s, readings_kpa);
+            return;
+        }
+        let readings = readings_kpa.par_chunks_mut(self.of_chunk * self.n_taxels);
+        let work = self.chunks.par_iter_mut().zip(readings);
+        work.for_each(|(chunk, readings_kpa)| chunk.sense(imperfection, since_previous_s, readings_kpa));
+    }
+
     /// What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of the gel's middle, N mm, in the
     /// frame in which the sensor should be. Sensors without a [`Coupling`] have none.
     pub fn wrench_of_touches(&self) -> impl Iterator<Item = &[f32; 6]> {
@@ -239,12 +263,17 @@ impl Chunk {
         if let Some(coupling) = moment.coupling {
             self.hold(moment, coupling, wrench);
         }
+        self.sense(moment.imperfection, moment.since_previous_s, readings_kpa);
+    }
+
+    /// What sensors deliver of what their gels show.
+    fn sense(&mut self, imperfection: &Imperfection, since_previous_s: f64, readings_kpa: &mut [f32]) {
         for (seen, pressure_kpa) in self.seen.iter_mut().zip(&self.pressure_kpa) {
             *seen = f64::from(*pressure_kpa);
         }
         let true_kpa = match &mut self.twin {
             Some(twin) => {
-                twin.step(moment.since_previous_s, &self.seen, &mut self.true_kpa);
+                twin.step(since_previous_s, &self.seen, &mut self.true_kpa);
                 &self.true_kpa
             }
             None => &self.seen,
@@ -254,12 +283,7 @@ impl Chunk {
             .chunks_exact(n_taxels)
             .zip(readings_kpa.chunks_exact_mut(n_taxels));
         for (sensor, (true_kpa, readings_kpa)) in self.sensors.iter_mut().zip(taxels) {
-            sensor.step(
-                moment.imperfection,
-                moment.since_previous_s,
-                true_kpa,
-                readings_kpa,
-            );
+            sensor.step(imperfection, since_previous_s, true_kpa, readings_kpa);
         }
     }
 

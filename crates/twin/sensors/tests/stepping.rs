@@ -249,3 +249,24 @@ fn a_replaced_sensor_is_the_one_of_its_number() {
         step(&mut other)[7 * N_TAXELS..]
     );
 }
+
+#[test]
+fn to_stay_is_to_be_touched_in_the_same_way() {
+    let gel = FastGel::phystac().unwrap();
+    let (bodies, touches, ends) = (ball(), vec![touch(2.0, 1.5); 3], [1, 2, 3]);
+    let stepped = |n_threads: usize, stays: bool| {
+        let mut batch = SensorBatch::new(&gel, None, all_imperfections(), [3, n_threads], 5);
+        let (mut readings_kpa, mut wrench) = (vec![0.0; 3 * N_TAXELS], vec![[0.0; 6]; 3]);
+        batch.step(0.01, &bodies, &touches, &ends, &mut readings_kpa, &mut wrench);
+        for _ in 0..4 {
+            if stays {
+                batch.stay(0.02, &mut readings_kpa);
+            } else {
+                batch.step(0.02, &bodies, &touches, &ends, &mut readings_kpa, &mut wrench);
+            }
+        }
+        readings_kpa
+    };
+    assert_eq!(stepped(1, true), stepped(1, false));
+    assert_eq!(stepped(2, true), stepped(1, false));
+}

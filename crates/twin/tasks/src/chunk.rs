@@ -114,15 +114,19 @@ impl<T: Task> Chunk<T> {
                 self.sensors.rest(number);
             }
         }
-        for since_previous_s in T::FRAMES_S {
-            self.sensors.step(
-                *since_previous_s,
-                self.task.bodies(),
-                &self.touches,
-                &self.ends,
-                &mut self.readings_kpa,
-                &mut self.wrench,
-            );
+        let [first_s, others_s @ ..] = T::FRAMES_S else {
+            return;
+        };
+        self.sensors.step(
+            *first_s,
+            self.task.bodies(),
+            &self.touches,
+            &self.ends,
+            &mut self.readings_kpa,
+            &mut self.wrench,
+        );
+        for since_previous_s in others_s {
+            self.sensors.stay(*since_previous_s, &mut self.readings_kpa);
         }
     }
 
