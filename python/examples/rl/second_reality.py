@@ -6,7 +6,8 @@ python python/examples/rl/train.py --task HoldForce --seed 1 --perfect --out run
 python python/examples/rl/second_reality.py --recording runs/hold-force/recordings/presses.parquet --policies runs/rl --seeds 1
 
 Each recorded press gives force and readings over depth, of its slow way in; a spring in series shares the way as in the task. Noise and steps of readings are those of the bench. As on any
-bench, readings are first divided by the sensor's common gain, in kPa for each newton, which one press of the ball with a force sensor tells.
+bench, readings are first divided by the sensor's common gain, in kPa for each newton, which one press of the ball with a force sensor tells. Every policy is judged twice: on the bench's
+sensor as it is, and on one of which a taxel is dead, another in each episode.
 """
 
 import argparse
@@ -64,13 +65,14 @@ class Bench:
         here = self.readings_kpa[0].sum(axis=0)[there] / self.force_n[0][there]
         return float(np.median(here) / np.median(fast))
 
-    def returns(self, policy: Policy, seed: int) -> Double:
-        """Sums of rewards, N, of episodes of every press: the same springs, forces and noise for every policy."""
+    def returns(self, policy: Policy, has_dead_taxel: bool, seed: int) -> Double:
+        """Sums of rewards, N, of episodes of every press: the same springs, forces, noise and dead taxels for every policy."""
         random = np.random.default_rng(seed)
         press = np.repeat(np.arange(len(self.force_n)), EPISODES_A_PRESS)
         n, every = len(press), np.arange(len(press))
         stiffness = np.exp(random.uniform(0.0, np.log(10.0), n))
         wanted_n = random.uniform(0.3, 3.0, (n, N_STEPS // N_SAME))
+        dead = random.integers(0, 8, n)
         shared_mm = DEPTHS_MM + self.force_n[press] / stiffness[:, None]
         travel_mm, before, total = np.full(n, -0.5), np.zeros((n, 8)), np.zeros(n)
         readings, speed = np.zeros((n, 8)), np.zeros(n)
@@ -90,6 +92,8 @@ class Bench:
             clean = (1.0 - part)[:, None] * self.readings_kpa[press, :, at] + part[:, None] * self.readings_kpa[press, :, at + 1]
             noisy = clean + random.normal(0.0, NOISE_KPA, clean.shape)
             before, readings = readings, np.round(noisy / QUANTUM_KPA) * QUANTUM_KPA / self.gain
+            if has_dead_taxel:
+                readings[every, dead] = 0.0
             total -= np.abs(force_n - now)
         raise AssertionError("the last step returns")
 
@@ -109,22 +113,25 @@ def main() -> None:
     for seed in given.seeds:
         policies[f"randomized, seed {seed}"] = trained_policy(*load(given.policies, "HoldForce", seed))
         policies[f"perfect sensors, seed {seed}"] = trained_policy(*load(given.policies, "HoldForce-perfect", seed))
-    # Episodes of one press have the same place and shape: presses are what is independent.
-    errors_n = {
-        name: -bench.returns(policy, seed=1).reshape(-1, EPISODES_A_PRESS).mean(axis=1) / N_STEPS
-        for name, policy in policies.items()
-    }
-    for seed in given.seeds:
-        difference = errors_n[f"perfect sensors, seed {seed}"] - errors_n[f"randomized, seed {seed}"]
-        errors_n[f"perfect sensors minus randomized, seed {seed}"] = difference
     rows: list[list[str]] = []
-    for name, error_n in errors_n.items():
-        deviation = error_n.std(ddof=1) / np.sqrt(len(error_n))
-        rows.append([name, f"{error_n.mean():.4f}", f"{deviation:.4f}", "N", recording.provenance])
-        print(f"{name}: {error_n.mean():.3f} ± {deviation:.3f} N, {recording.provenance}")
+    for sensor, has_dead_taxel in (("as it is", False), ("one taxel dead", True)):
+        # Episodes of one press have the same place and shape: presses are what is independent.
+        errors_n = {
+            name: -bench.returns(policy, has_dead_taxel, seed=1).reshape(-1, EPISODES_A_PRESS).mean(axis=1) / N_STEPS
+            for name, policy in policies.items()
+        }
+        gains_n = [
+            errors_n[f"perfect sensors, seed {seed}"].mean() - errors_n[f"randomized, seed {seed}"].mean()
+            for seed in given.seeds
+        ]
+        errors_n["gain from randomizing, over seeds"] = np.array(gains_n)
+        for name, error_n in errors_n.items():
+            deviation = error_n.std(ddof=1) / np.sqrt(len(error_n)) if len(error_n) > 1 else np.nan
+            rows.append([sensor, name, f"{error_n.mean():.4f}", f"{deviation:.4f}", "N", recording.provenance])
+            print(f"{sensor}, {name}: {error_n.mean():.3f} ± {deviation:.3f} N, {recording.provenance}")
     with given.out.open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(["policy", "mean_error", "standard_error", "unit", "provenance"])
+        table.writerow(["sensor", "policy", "mean_error", "standard_error", "unit", "provenance"])
         table.writerows(rows)
 
 

@@ -1,10 +1,15 @@
 //! What a sensor consists of.
 
-use glam::DVec3;
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use twintac_shape::{Shape, Solid, Surfaces};
 
 use crate::GelMaterial;
+
+/// Points of a port's rim.
+const RIM_POINTS: u32 = 16;
 
 /// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole.
 #[derive(Clone, Debug)]
@@ -42,6 +47,19 @@ impl Sensor {
     #[must_use]
     pub fn indenter(&self, name: &str) -> Option<&Indenter> {
         self.indenters.iter().find(|indenter| indenter.name == name)
+    }
+
+    /// Whether a port reaches out of the gel, over its side: it feels what gel there is below it.
+    #[must_use]
+    pub fn has_port_at_side(&self) -> bool {
+        self.taxels.iter().any(|taxel| {
+            let rim = (0..RIM_POINTS).map(|point| TAU * f64::from(point) / f64::from(RIM_POINTS));
+            let mut rim = rim.map(|angle| taxel.port_radius_mm * DVec2::from_angle(angle));
+            rim.any(|aside_mm| {
+                let at = taxel.position_mm + aside_mm.extend(0.0);
+                !self.gel.solid.contains(at, 1e-6, &self.surfaces)
+            })
+        })
     }
 }
 

@@ -8,8 +8,17 @@ use crate::contact::N_CHANNELS;
 use crate::network::{Patch, Surroundings, Turn};
 use crate::surface::SurfaceGrid;
 
-/// Length of edges about which the networks are told, mm.
-const EDGE_MM: f32 = 0.6;
+/// Height of the gel for which edges have these lengths, mm: PhysTac's.
+const HEIGHT_MM: f64 = 8.5;
+
+/// The shortest edges under a shape, mm. The networks are told how much longer they are, and read as if they were not.
+const FINEST_MM: f64 = 0.6;
+
+/// Length of the shortest edges of the meshes that networks are taught with, mm, of a gel of some height, mm.
+#[must_use]
+pub fn finest_edge_mm(height_mm: f64) -> f64 {
+    height_mm / HEIGHT_MM * FINEST_MM
+}
 
 /// How what touches is laid out for the networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,6 +74,12 @@ impl Layout {
         })
     }
 
+    /// How much longer edges are than the shortest, mm on a gel as high as PhysTac's.
+    fn coarseness(&self, edge_mm: f32) -> f32 {
+        let finest_mm = finest_edge_mm(self.surroundings.height_mm());
+        (FINEST_MM * (f64::from(edge_mm) / finest_mm - 1.0)) as f32
+    }
+
     /// Appends the inputs of the network of pressures for a place on a grid.
     pub(crate) fn put_patch(
         &self,
@@ -84,7 +99,7 @@ impl Layout {
             }
         }
         self.surroundings.describe(grid, at, turn, inputs);
-        inputs.push(edge_mm - EDGE_MM);
+        inputs.push(self.coarseness(edge_mm));
     }
 
     /// Appends the inputs of the network of forces, mirrored across x and across y.
@@ -98,6 +113,6 @@ impl Layout {
                 inputs.extend(&field[point * N_CHANNELS..(point + 1) * N_CHANNELS]);
             }
         }
-        inputs.push(edge_mm - EDGE_MM);
+        inputs.push(self.coarseness(edge_mm));
     }
 }

@@ -53,7 +53,13 @@ pub fn lesson_places_mm(sensor: &Sensor) -> Vec<DVec2> {
     let mut places_mm: Vec<DVec2> = taxels.collect();
     if sensor.inclusions.is_empty() {
         let grids = SurfaceGrid::all(sensor);
-        places_mm.extend(grids[0].floor(sensor, sensor.taxels[0].port_radius_mm));
+        if sensor.has_port_at_side() {
+            // What a port feels over the gel's side is felt nowhere else: the more places there, the better.
+            let places = grids.iter().flat_map(|grid| grid.floor(sensor, 0.0));
+            places_mm.extend(places);
+        } else {
+            places_mm.extend(grids[0].floor(sensor, sensor.taxels[0].port_radius_mm));
+        }
     }
     places_mm
 }

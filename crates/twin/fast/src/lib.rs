@@ -25,6 +25,7 @@ pub use distance::Body;
 pub use file::FastFileError;
 pub use friction::Friction;
 pub use judge::{GroupErrors, Judgement};
+pub use layout::finest_edge_mm;
 pub use lesson::{Lesson, LessonFrame, lesson_places_mm};
 pub use model::FastGel;
 pub use read::FastReader;

@@ -11,6 +11,9 @@ use crate::networks::Networks;
 use crate::novelty::Novelty;
 use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
+/// What part of the places that are shown is the taxels', where some reach over the gel's side: what they feel there is felt in few other places.
+const PART_AT_SIDE: f64 = 0.5;
+
 /// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FastGel {
@@ -43,7 +46,13 @@ impl FastGel {
         let layout = Layout::of(sensor);
         let center_mm = (0.5 * (low + high)).with_z(high.z);
         let places_mm = lesson_places_mm(sensor);
-        let frames = Frames::of(lessons, &layout, (&places_mm, sensor.taxels.len()), center_mm)?;
+        let part_of_taxels = if sensor.has_port_at_side() {
+            PART_AT_SIDE
+        } else {
+            0.0
+        };
+        let places = (&places_mm[..], sensor.taxels.len());
+        let frames = Frames::of(lessons, &layout, places, part_of_taxels, center_mm)?;
         let is_symmetric = matches!(sensor.gel.solid, Solid::Block { .. }) && layout.is_symmetric(center_mm);
         let course = Course {
             frames: &frames,

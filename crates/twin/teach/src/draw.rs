@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
+use twintac_fast::finest_edge_mm;
 use twintac_sensor::Sensor;
 use twintac_shape::{Part, Pose, Shape};
 
@@ -27,17 +28,12 @@ const DEEPEST: f64 = 0.6;
 /// The deepest frame of a press is at least so deep, as part of that. The frames before it show what is less deep.
 const SHALLOWEST: f64 = 0.35;
 
-/// Height of the gel for which meshes have the edges below, mm: PhysTac's.
-const HEIGHT_MM: f64 = 8.5;
-
-/// The shortest edges under a shape, mm.
-const FINEST_MM: f64 = 0.6;
+/// Edges under a shape, over the shortest: of meshes that are right, and of those that are cheap.
+const FINE: [f64; 2] = [1.0, 4.0 / 3.0];
+const COARSE: [f64; 2] = [4.0 / 3.0, 1.75];
 
 /// Edges away from the shape, over the gel's height.
 const EDGES_PER_HEIGHT: f64 = 7.0;
-
-/// Points of a port's rim.
-const RIM_POINTS: u32 = 16;
 
 /// A press to teach with.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +76,7 @@ const OWN_SIZES: [f64; 2] = [0.6, 1.6];
 /// A press with one of the sensor's own indenters, no farther from the ports than the gel is high; none for a sensor without indenters.
 pub(crate) fn own(sensor: &Sensor, random: &mut impl Rng) -> Option<Draw> {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-    let height_mm = high.z - low.z;
+    let height_mm = height_mm(sensor);
     let ports_mm = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
     let first_mm = ports_mm.clone().fold(DVec2::INFINITY, DVec2::min) - height_mm;
     let last_mm = ports_mm.fold(DVec2::NEG_INFINITY, DVec2::max) + height_mm;
@@ -104,9 +100,14 @@ pub(crate) fn own(sensor: &Sensor, random: &mut impl Rng) -> Option<Draw> {
 
 /// How deep presses go at most, mm.
 pub(crate) fn deepest_mm(sensor: &Sensor) -> f64 {
-    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let limit_mm = sensor.limits.map_or(f64::INFINITY, |limits| limits.depth_mm);
-    limit_mm.min(DEEPEST * (high.z - low.z))
+    limit_mm.min(DEEPEST * height_mm(sensor))
+}
+
+/// Height of the gel, mm.
+fn height_mm(sensor: &Sensor) -> f64 {
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    high.z - low.z
 }
 
 /// By how much shapes are larger than the sizes below.
@@ -119,28 +120,11 @@ pub(crate) fn scale(sensor: &Sensor) -> f64 {
 /// of the gel meets the floor, pressure grows without end the closer it is looked at: what a port there reads depends on the edges. With such a port, all
 /// edges of all meshes are alike.
 pub(crate) fn edges(sensor: &Sensor, edge_mm: f64) -> (f64, f64) {
-    if has_port_at_side(sensor) {
-        return (HEIGHT_MM / FINEST_MM, finest_mm(sensor));
+    if sensor.has_port_at_side() {
+        let finest_mm = finest_edge_mm(height_mm(sensor));
+        return (height_mm(sensor) / finest_mm, finest_mm);
     }
     (EDGES_PER_HEIGHT, edge_mm)
-}
-
-/// The shortest edges under a shape, mm.
-fn finest_mm(sensor: &Sensor) -> f64 {
-    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-    (high.z - low.z) / HEIGHT_MM * FINEST_MM
-}
-
-/// Whether a port reaches out of the gel.
-fn has_port_at_side(sensor: &Sensor) -> bool {
-    sensor.taxels.iter().any(|taxel| {
-        let rim = (0..RIM_POINTS).map(|point| TAU * f64::from(point) / f64::from(RIM_POINTS));
-        let mut rim = rim.map(|angle| taxel.port_radius_mm * DVec2::from_angle(angle));
-        rim.any(|aside_mm| {
-            let at = taxel.position_mm + aside_mm.extend(0.0);
-            !sensor.gel.solid.contains(at, 1e-6, &sensor.surfaces)
-        })
-    })
 }
 
 /// Draws a press for a sensor.
@@ -148,7 +132,6 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let size_mm = (high - low).truncate();
     let scale = scale(sensor);
-    let height_mm = high.z - low.z;
     let is_lesson = purpose == Purpose::Lesson;
     let shape = match (is_lesson, random.random_range(0..7)) {
         (false, kind) => unseen(kind, scale, random),
@@ -156,10 +139,10 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         (true, _) => whole(scale, random),
     };
     // Coarse presses are cheap, so that there are many; fine ones are right.
-    let (finest_mm, coarsest_mm) = match random.random_range(0..3) {
-        _ if !is_lesson => (FINEST_MM, FINEST_MM),
-        0 => (0.8, 1.05),
-        _ => (FINEST_MM, 0.8),
+    let coarseness = match random.random_range(0..3) {
+        _ if !is_lesson => None,
+        0 => Some(COARSE),
+        _ => Some(FINE),
     };
     let tilt = if random.random_bool(0.4) {
         0.0
@@ -173,12 +156,8 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         place_mm: low.truncate() + size_mm * within,
         rotation,
         depth_mm: deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0),
-        edge_mm: height_mm / HEIGHT_MM
-            * if finest_mm < coarsest_mm {
-                random.random_range(finest_mm..coarsest_mm)
-            } else {
-                finest_mm
-            },
+        edge_mm: finest_edge_mm(height_mm(sensor))
+            * coarseness.map_or(1.0, |[least, most]| random.random_range(least..most)),
         slide: (purpose == Purpose::Slide).then(|| {
             // Towards the middle, so that it stays on the gel.
             let inwards = (DVec2::splat(0.5) - within).to_angle() + random.random_range(-1.0..1.0);
@@ -198,7 +177,7 @@ pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad:
         place_mm,
         rotation: DQuat::from_rotation_z(spin_rad),
         depth_mm,
-        edge_mm: finest_mm(sensor),
+        edge_mm: finest_edge_mm(height_mm(sensor)),
         slide: None,
     }
 }

@@ -53,7 +53,7 @@ impl PressureBatch {
             let frame = frames.any(random);
             picks.extend((0..n_places).map(|_| PressurePick {
                 frame,
-                place: random.random_range(0..frames.places.len()),
+                place: frames.any_place(random),
                 turn: Turn::number(random.random_range(0..8)),
             }));
         }
