@@ -215,3 +215,12 @@ pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
 pub use twintac_simulate::SimulateSettings;
 #[cfg(feature = "tasks")]
 pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};
+
+/// Snippets of the checkout's pages, which are tests.
+#[cfg(doctest)]
+mod pages {
+    #[doc = include_str!("../../../../README.md")]
+    struct Readme;
+    #[doc = include_str!("../../../../docs/reference/rust.md")]
+    struct Rust;
+}
