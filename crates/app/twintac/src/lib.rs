@@ -218,6 +218,7 @@ pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, 
 
 /// Snippets of the checkout's pages, which are tests.
 #[cfg(doctest)]
+#[allow(rustdoc::invalid_codeblock_attributes)] // titles of blocks that are not Rust
 mod pages {
     #[doc = include_str!("../../../../README.md")]
     struct Readme;
