@@ -16,7 +16,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
   lint   formatting and clippy, warnings are errors
   package every crate that can be published, without building it again; nothing may be uncommitted
   test   every test, optimised
-  readme the commands of README.md and docs/guide.md in blocks that are tagged `sh`, word for word; those of `cargo test` last
+  readme the commands of README.md in blocks that are tagged `sh`, word for word; those of `cargo test` last; the book's are run by python/tests/test_docs.py
   rooms  writes the tables of ARCHITECTURE.md from xtask/rooms.toml
   results  writes the table of docs/results.md from docs/results/metrics.json, and says when that is stale; FILE: the metrics.json of `reproduce --paper` at
          this commit, which is kept first

@@ -1,20 +1,16 @@
-//! The commands of README.md and of the guide, run word for word.
+//! The commands of README.md, run word for word: the lines of fenced blocks that are tagged `sh`, in the root of the checkout.
 //!
-//! A command is a line of a fenced block. Those of blocks tagged `sh` are run by [`run`], in the root of the checkout. Blocks tagged `text` have the commands
-//! that need hardware, files of the reader's own, or more than a few minutes: their options are looked up in the program's `--help`.
+//! Those of the book are run by `python/tests/test_docs.py`.
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
-/// Documents with commands. README.md has to have some.
-const DOCUMENTS: [&str; 2] = ["README.md", "docs/guide.md"];
-
-/// The commands of a document's blocks that have this tag, without comments at their ends.
-pub fn commands(document: &str, wanted: &str) -> Vec<String> {
+/// The commands of a document's blocks that are tagged `sh`, without comments at their ends.
+pub fn commands(document: &str) -> Vec<String> {
     let mut commands = Vec::new();
     let mut block: Option<bool> = None; // inside of one, and whether it has the tag
     let mut unfinished = String::new();
@@ -22,7 +18,7 @@ pub fn commands(document: &str, wanted: &str) -> Vec<String> {
         if let Some(tag) = line.trim_start().strip_prefix("```") {
             block = match block {
                 Some(_) => None,
-                None => Some(tag.trim() == wanted),
+                None => Some(tag.trim() == "sh"),
             };
         } else if block == Some(true) {
             let line = line.split_once(" #").map_or(line, |(command, _)| command).trim();
@@ -36,27 +32,14 @@ pub fn commands(document: &str, wanted: &str) -> Vec<String> {
     commands
 }
 
-/// Runs the commands of the documents at `root`, each once: those of `cargo test` last, so that their closing lines are. The first one that fails is an
+/// Runs the commands of the README.md at `root`, each once: those of `cargo test` last, so that their closing lines are. The first one that fails is an
 /// error, and so is one that leaves files which git does not ignore.
 pub fn run(root: &Path) -> Result<()> {
-    let (mut run, mut looked_up) = (Vec::new(), Vec::new());
-    for document in DOCUMENTS {
-        if let Ok(text) = fs::read_to_string(root.join(document)) {
-            run.extend(commands(&text, "sh"));
-            looked_up.extend(commands(&text, "text"));
-        }
-        ensure!(
-            !run.is_empty(),
-            "README.md has no command in a block that is tagged `sh`"
-        );
-    }
-    for command in looked_up
-        .iter()
-        .filter(|command| command.starts_with("cargo run "))
-    {
-        eprintln!("not run: {command}");
-        check_options(root, command)?;
-    }
+    let mut run = commands(&fs::read_to_string(root.join("README.md")).context("reading README.md")?);
+    ensure!(
+        !run.is_empty(),
+        "README.md has no command in a block that is tagged `sh`"
+    );
     run.sort_by_key(|command| command.starts_with("cargo test"));
     run.dedup();
     for command in &run {
@@ -71,31 +54,6 @@ pub fn run(root: &Path) -> Result<()> {
             "`{command}` left files that git does not ignore:\n{left}"
         );
         eprintln!("done in {:.0} s: {command}", begin.elapsed().as_secs_f64());
-    }
-    Ok(())
-}
-
-/// Options of a command that is not run stand in the `--help` of its subcommand.
-fn check_options(root: &Path, command: &str) -> Result<()> {
-    let Some((program, arguments)) = command.split_once(" -- ") else {
-        return Ok(());
-    };
-    let subcommands: Vec<&str> = arguments
-        .split_whitespace()
-        .take_while(|word| word.starts_with(char::is_alphabetic) && !word.contains(['/', '.']))
-        .collect();
-    let asked = format!("{program} -- {} --help", subcommands.join(" "));
-    let output = shell(root, &asked)
-        .stdout(Stdio::piped())
-        .output()
-        .context("starting bash")?;
-    ensure!(output.status.success(), "`{command}`: `{asked}` failed");
-    let help = String::from_utf8_lossy(&output.stdout).into_owned();
-    let known: Vec<&str> = help.split(|c: char| !(c.is_alphanumeric() || c == '-')).collect();
-    for option in arguments.split_whitespace().filter(|word| word.starts_with("--")) {
-        if !known.contains(&option) {
-            bail!("`{command}`: `{asked}` says nothing of `{option}`");
-        }
     }
     Ok(())
 }
@@ -146,8 +104,7 @@ mod tests {
     fn commands_are_lines_of_blocks_with_the_tag() {
         let readme = "cargo no\n```sh\ncargo run -- demo   # a comment\n\n# cargo comment\n```\n```rust\nlet no = 1;\n```\n\
             ```sh\ncargo \\\n  test\n```\ncargo no\n```text\ncargo shown\n```\n";
-        assert_eq!(commands(readme, "sh"), ["cargo run -- demo", "cargo test"]);
-        assert_eq!(commands(readme, "text"), ["cargo shown"]);
+        assert_eq!(commands(readme), ["cargo run -- demo", "cargo test"]);
     }
 
     #[test]
@@ -174,17 +131,5 @@ mod tests {
     #[test]
     fn a_readme_without_commands_is_an_error() {
         assert!(error_of("```\ntrue\n```\n").contains("no command"));
-    }
-
-    #[test]
-    fn options_of_a_command_that_is_not_run_are_looked_up() {
-        let error_of = |option: &str| {
-            let command =
-                format!("bash -c 'test $1 = two-words && echo its help names --known' -- two-words {option}");
-            let checked = check_options(Path::new("."), &command);
-            checked.map_or_else(|error| format!("{error:#}"), |()| String::new())
-        };
-        assert_eq!(error_of("--known"), "");
-        assert!(error_of("--unknown").contains("says nothing of `--unknown`"));
     }
 }

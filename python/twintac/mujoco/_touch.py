@@ -43,7 +43,7 @@ class TouchSensors:
         touch.update(data)
         mujoco.mj_step2(model, data)
 
-    or, for a `mujoco.batch.Batch` of `n_worlds` simulations, after `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`.
+    or, for a persistent `mujoco.batch.Batch` of `n_worlds` simulations, after `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`.
     Steps of 2 ms or less keep bodies of 20 g and more at rest on the gel.
     """
 

@@ -215,3 +215,13 @@ pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
 pub use twintac_simulate::SimulateSettings;
 #[cfg(feature = "tasks")]
 pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};
+
+/// Snippets of the checkout's pages, which are tests.
+#[cfg(doctest)]
+#[allow(rustdoc::invalid_codeblock_attributes)] // titles of blocks that are not Rust
+mod pages {
+    #[doc = include_str!("../../../../README.md")]
+    struct Readme;
+    #[doc = include_str!("../../../../docs/reference/rust.md")]
+    struct Rust;
+}
