@@ -161,7 +161,7 @@ class Gel:
         Raises `Error` for an indenter that the sensor does not have, and a first pose beside the gel.
         """
     def follow(self, path: PressPath, *, progress: Progress = None) -> Followed:
-        """Takes an indenter along a path, frame by frame; each takes from some milliseconds to a second. Ctrl-C ends it before its next frame. A path that cannot be followed
+        """Takes an indenter along a path, frame by frame; each takes from some milliseconds to seconds. Ctrl-C ends it before its next frame. A path that cannot be followed
         to its end is no error: `Followed.failure` says why the frames end early.
 
         Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a point outside the gel or with the name of a taxel.
@@ -179,7 +179,8 @@ class GelState:
         """One more frame, `since_previous_s` after the last: the indenter goes straight to a pose in the gel's frame (`gel_from_indenter`). With `force_n`, N, above 0, it then
         goes down or up, by at most the gel's height, until it presses straight down with that force. The first frame takes no notice of the time.
 
-        Returns the hydrostatic pressure in the gel over each taxel's port, kPa; `[n_taxels]`. Takes from some milliseconds to a second; other threads run meanwhile.
+        Returns the hydrostatic pressure in the gel over each taxel's port, kPa; `[n_taxels]`. Small steps take milliseconds on a gel of few nodes
+        (`Gel(sensor, {"max_path_nodes": 4000})`), long ones on a fine gel seconds. Ctrl-C ends the wait; the step is made all the same.
 
         Raises `Error` if the solver finds no equilibrium: the gel is then as it was before, and smaller steps may do; for a time below 0, and for a force that is not
         above 0 or is not met.
@@ -517,7 +518,7 @@ class Twin:
         Raises `Error` for an indenter that the sensor does not have, and for a place that cannot be pressed.
         """
     def predict_along(self, path: PressPath, *, progress: Progress = None) -> Prediction:
-        """What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included; each frame takes from some milliseconds to a second. Points of
+        """What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included; each frame takes from some milliseconds to seconds. Points of
         the path are not read. Ctrl-C ends it before its next frame. `Prediction.failure` says why a path ends before it should.
 
         Raises `Error` for an indenter that the sensor does not have, and for a path that misses the gel.
