@@ -1,10 +1,19 @@
 #!/usr/bin/env bash
-# Builds the package, installs it into the virtual environment of a Python, and checks it: types, stubs against the library, sources, tests, the book.
+# Builds the package, installs it into the virtual environment of a Python, and checks it: size, types, stubs against the library, sources, tests, the book.
 set -euo pipefail
 python=$(realpath --no-symlinks "${1:?usage: python/check.sh VENV/bin/python}")
 cd "$(dirname "$0")/tests" # where `twintac` is the installed one
 export CARGO_TARGET_DIR="$PWD/../../target" # what the workspace has built is not built again
-"$python" -m pip install --quiet --disable-pip-version-check '..[docs,test]'
+wheels=$(mktemp --directory)
+trap 'rm -r "$wheels"' EXIT
+pip=("$python" -m pip --quiet --disable-pip-version-check)
+"${pip[@]}" wheel --no-deps --wheel-dir "$wheels" ..
+wheel=$(echo "$wheels"/twintac-*.whl)
+bytes=$(stat --format %s "$wheel")
+echo "$(basename "$wheel"): $bytes bytes"
+((bytes < 30000000)) || { echo 'the wheel has 30 MB or more' >&2; exit 1; }
+"${pip[@]}" install --force-reinstall --no-deps "$wheel"
+"${pip[@]}" install "$wheel[docs,test]"
 "$python" -m mypy --config-file ../pyproject.toml ../twintac/mujoco
 "$python" -m mypy --config-file ../pyproject.toml ../examples ../benchmarks ../../docs/hooks.py .
 echo 'twintac\.gymnasium\.sb3' > ../../target/not-imported # where Stable-Baselines3 is not installed

@@ -16,6 +16,8 @@ use crate::settings::to_python;
 /// Presses are those of a protocol (TOML), or `n_presses` at random with the `indenters` named (all, if none is), 1000 unless it is said. The gel is solved, or a fast one:
 /// PhysTac's (`fast=True`) or that of a file. Readings are the pressures at the ports, or those of the twin in a folder. `imperfection` (TOML, with `fast`) gives each press an
 /// imperfect sensor of its own. `settings` (TOML) may have a table `[simulate]`. Without a `sensor` (TOML), that of the twin is taken, or PhysTac.
+///
+/// Raises `Error` with file, line and field if a file is wrong, and for arguments that do not go together.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Dataset {
     dataset: Arc<twintac::Dataset>,
@@ -89,6 +91,8 @@ impl Dataset {
 
     /// Makes shard `shard` of `of`, counted from 1, in a folder, unless it is complete there. It appears whole or not at all. Returns its manifest, and the paths `parquet` and
     /// `manifest_file`. Ctrl-C ends it before its next press.
+    ///
+    /// Raises `Error` for a folder that holds another data set or another division, and for a shard that is not from 1 to `of`.
     #[pyo3(signature = (folder, shard=1, of=1, *, progress=None))]
     fn make<'py>(
         &self,
@@ -107,6 +111,8 @@ impl Dataset {
     }
 
     /// Checks that all shards of a folder are there and as they were made. Returns counts of shards, presses and frames, and the presses that were left out.
+    ///
+    /// Raises `Error` that names the shard that is missing or differs.
     #[staticmethod]
     #[pyo3(signature = (folder, *, progress=None))]
     fn check<'py>(
@@ -120,7 +126,9 @@ impl Dataset {
         to_python(py, &whole.or_raise(py)?)
     }
 
-    /// Checks the same, and writes all presses as one recording: `presses.parquet` in the folder, or another file.
+    /// Does what `check` does, and writes all presses as one recording: `presses.parquet` in the folder, or another file. Returns what `check` returns.
+    ///
+    /// Raises `Error` as `check` does, and for a file that cannot be written.
     #[staticmethod]
     #[pyo3(signature = (folder, file=None, *, progress=None))]
     fn merge<'py>(

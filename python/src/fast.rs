@@ -19,7 +19,9 @@ pub(crate) const PROVENANCE: &str = "simulated";
 /// Pressures at the ports and wrenches of many sensors.
 pub(crate) type Answers<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 
-/// A sensor's gel without finite elements: microseconds a reading.
+/// A sensor's gel without finite elements: microseconds a reading, of bodies of any shape.
+///
+/// `FastGel.phystac()` is built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct FastGel {
@@ -36,6 +38,8 @@ impl FastGel {
     }
 
     /// Reads a file that `twintac fast train` has made.
+    ///
+    /// Raises `Error` with the file if it is none, or cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let bytes = std::fs::read(&path).map_err(|error| unreadable(py, &path, &error))?;
@@ -44,7 +48,7 @@ impl FastGel {
         Ok(Self { gel: Arc::new(gel) })
     }
 
-    /// Name of the sensor.
+    /// Name of the sensor whose gel it is.
     #[getter]
     fn sensor(&self) -> &str {
         self.gel.sensor()
@@ -61,7 +65,9 @@ impl FastGel {
         )
     }
 
-    /// The same gel with its ports at other places of the floor, mm, `[n_ports, 2]`: finer than taxels are.
+    /// The same gel with its ports at other places of the floor, x and y, mm, `[n_ports, 2]`: finer than taxels are.
+    ///
+    /// Raises `Error` for an array of another shape.
     fn with_ports(&self, py: Python<'_>, places_mm: Numbers<'_, Ix2>) -> PyResult<Self> {
         if places_mm.as_array().ncols() != 2 {
             return Err(crate::error::unusable(
@@ -81,14 +87,16 @@ impl FastGel {
         })
     }
 
-    /// Prepares one sensor to be read.
+    /// Prepares one sensor to be read. Each thread needs a reader of its own.
     fn reader(&self, py: Python<'_>) -> FastReader {
         FastReader {
             reader: py.detach(|| self.gel.reader()),
         }
     }
 
-    /// Prepares many sensors to be read in one call, which these bodies touch. It uses all cores, or so many threads.
+    /// Prepares many sensors to be read in one call, which these bodies touch. It uses all cores, or `n_threads`.
+    ///
+    /// Raises `Error` if there is no body.
     #[pyo3(signature = (bodies, n_threads=None))]
     fn batch(&self, py: Python<'_>, bodies: Vec<Body>, n_threads: Option<usize>) -> PyResult<FastBatch> {
         let bodies = self::bodies(py, bodies)?;
@@ -106,7 +114,7 @@ pub(crate) fn n_cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// A fast gel of one sensor, ready to be read.
+/// A fast gel of one sensor, ready to be read: what `FastGel.reader` returns.
 #[pyclass(module = "twintac")]
 pub(crate) struct FastReader {
     reader: twintac::FastReader,
@@ -120,15 +128,15 @@ impl FastReader {
         PROVENANCE
     }
 
-    /// What the gel does under bodies at these poses in its frame: pressure at each port, kPa, `[n_taxels]`; and force on the gel, N, and torque
-    /// about the top of its middle, N mm, `[6]`.
+    /// What the gel does under bodies at these poses in its frame (`gel_from_body`). Returns the pressure at each port, kPa, `[n_taxels]`; and force on the gel, N,
+    /// and torque about the top of its middle, N mm, `[6]`.
     fn read<'py>(&mut self, py: Python<'py>, bodies: Vec<(Body, Pose)>) -> Reading<'py> {
         self.answer(py, |reader, pressure_kpa, wrench| {
             reader.read(&placed(&bodies), pressure_kpa, wrench);
         })
     }
 
-    /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 readings and force may be wrong.
+    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong.
     fn novelty(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
         py.detach(|| self.reader.novelty(&placed(&bodies)))
     }
@@ -160,7 +168,7 @@ fn placed(bodies: &[(Body, Pose)]) -> Vec<(&twintac::Body, twintac::Pose)> {
 /// Pressures at the ports, kPa, and force and torque, N and N mm.
 pub(crate) type Reading<'py> = (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>);
 
-/// Fast gels of many sensors of one kind, read in one call.
+/// Fast gels of many sensors of one kind, read in one call: what `FastGel.batch` returns.
 #[pyclass(module = "twintac")]
 pub(crate) struct FastBatch {
     batch: twintac::FastBatch,
@@ -181,7 +189,9 @@ impl FastBatch {
     /// `gel_from_body` has a row for each touch, the first sensor's first: place in mm and quaternion (x, y, z, w), or the place alone. `body` has
     /// the numbers of the bodies, the first body unless given. `ends` says where each sensor's touches end; unless given, each has one.
     ///
-    /// Returns pressures at the ports, kPa, `[n_sensors, n_taxels]`, and wrenches, N and N mm, `[n_sensors, 6]`.
+    /// Returns pressures at the ports, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, `[n_sensors, 6]`.
+    ///
+    /// Raises `Error`, whose `field` is the array that has another shape, or numbers that cannot be.
     #[pyo3(signature = (gel_from_body, body=None, ends=None))]
     fn read<'py>(
         &mut self,

@@ -8,7 +8,9 @@ use crate::pose::Pose;
 use crate::sensor::Sensor;
 use crate::shape::Body;
 
-/// Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips.
+/// Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips. Nothing is held yet.
+///
+/// `coefficient` is Coulomb's, 0 or more; anything else raises `Error`.
 #[pyclass(module = "twintac")]
 pub(crate) struct Friction {
     friction: twintac::Friction,
@@ -16,7 +18,6 @@ pub(crate) struct Friction {
 
 #[pymethods]
 impl Friction {
-    /// Friction with Coulomb's coefficient; nothing is held yet.
     #[new]
     fn new(py: Python<'_>, sensor: &Sensor, coefficient: f64) -> PyResult<Self> {
         Ok(Self {

@@ -1,5 +1,6 @@
 //! Gels, pressed.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2};
@@ -8,21 +9,27 @@ use pyo3::types::PyDict;
 use twintac::{PressFrame, RunSettings};
 
 use crate::array::rows;
-use crate::error::OrRaise;
-use crate::long_call::long_call;
+use crate::error::{OrRaise, unusable};
+use crate::long_call::{followed, long_call};
+use crate::path::{Followed, PressPath};
+use crate::pose::Pose;
 use crate::press::Press;
 use crate::sensor::Sensor;
 use crate::settings::but;
+use crate::state::GelState;
 
 /// The gel of a sensor, ready to be pressed: a finite-element model with the material of the description.
+///
+/// `settings` are those of the simulation that differ from the usual ones for single presses: `{"edges_per_height": 4.0}`. More edges take longer and
+/// err less. Raises `Error`, whose `field` is the setting that cannot be.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Gel {
     gel: Arc<twintac::Gel>,
+    taxels: Vec<String>,
 }
 
 #[pymethods]
 impl Gel {
-    /// `settings` are those of the simulation that differ from the usual ones for single presses: `{"edges_per_height": 4.0}`.
     #[new]
     #[pyo3(signature = (sensor, settings=None))]
     fn new(py: Python<'_>, sensor: &Sensor, settings: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -30,18 +37,76 @@ impl Gel {
         of_run.set_item("simulate", settings.unwrap_or_else(|| PyDict::new(py)))?;
         let settings = but(RunSettings::fine(), Some(&of_run))?;
         let gel = twintac::Gel::with_settings(&sensor.sensor, settings.simulate);
-        Ok(Self { gel: Arc::new(gel) })
+        Ok(Self {
+            gel: Arc::new(gel),
+            taxels: sensor.sensor.taxels().map(str::to_owned).collect(),
+        })
     }
 
-    /// Presses the gel down to the depth of the press, which takes about a second. Ctrl-C ends the wait.
+    /// Presses the gel down to the depth of the press, which takes about a second. A gel whose material relaxes does so at the speed of the press. Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, a place beside the gel, and a depth at which the solver finds no equilibrium.
     fn press(&self, py: Python<'_>, press: &Press) -> PyResult<Pressed> {
         let (gel, press) = (Arc::clone(&self.gel), twintac::Press::from(press));
         let pressed = long_call(py, move || gel.press(&press))?.or_raise(py)?;
         Ok(Pressed { pressed })
     }
+
+    /// Where an indenter, lowered from a pose in the gel's frame whose height is ignored, first touches the undeformed gel.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and a place beside the gel.
+    fn touch(&self, py: Python<'_>, indenter: &str, above: Pose) -> PyResult<Pose> {
+        let pose = py.detach(|| self.gel.touch(indenter, &above.pose)).or_raise(py)?;
+        Ok(Pose { pose })
+    }
+
+    /// The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go, at least one: the mesh
+    /// is fine along the straight ways between them, and for the deepest of them. Takes about a second; Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and a first pose beside the gel.
+    fn state(&self, py: Python<'_>, indenter: String, poses: Vec<Pose>) -> PyResult<GelState> {
+        if poses.is_empty() {
+            return Err(unusable(py, "poses", "has none, expected at least one"));
+        }
+        let gel = Arc::clone(&self.gel);
+        let poses: Vec<twintac::Pose> = poses.into_iter().map(|pose| pose.pose).collect();
+        let state = long_call(py, move || gel.state(&indenter, &poses))?.or_raise(py)?;
+        Ok(GelState::new(state, self.taxels.clone()))
+    }
+
+    /// Takes an indenter along a path, frame by frame; each takes from some milliseconds to seconds. Ctrl-C ends it before its next frame. A path that cannot be followed
+    /// to its end is no error: `Followed.failure` says why the frames end early.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a point outside the gel or with the name of a taxel.
+    #[pyo3(signature = (path, *, progress=None))]
+    fn follow(
+        &self,
+        py: Python<'_>,
+        path: PressPath,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Followed> {
+        let gel = Arc::clone(&self.gel);
+        let followed = followed(py, progress.as_ref(), move |progress| {
+            progress.started("simulating", path.path.frames().len());
+            let followed = gel.follow(&path.path, &mut || {
+                progress.step("");
+                if progress.is_stopped() {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
+            progress.finished();
+            followed
+        })?;
+        Ok(Followed {
+            followed: followed.or_raise(py)?,
+            taxels: self.taxels.clone(),
+        })
+    }
 }
 
-/// A simulated press, from first touch to full depth.
+/// A simulated press, from first touch to full depth: what `Gel.press` returns. Each frame is deeper than the one before.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Pressed {
     pressed: twintac::Pressed,
@@ -67,14 +132,14 @@ impl Pressed {
         self.each(py, |frame| frame.depth_mm)
     }
 
-    /// Force of the indenter on the gel, N; `[n_frames]`.
+    /// Force of the indenter into the gel, N; `[n_frames]`.
     #[getter]
     fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.each(py, |frame| frame.force_n)
     }
 
     /// Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`. A barometer there would read this if it followed
-    /// the gel without gain, delay and creep.
+    /// the gel without gain, delay and creep; what a real one makes of it, a trained `Twin` tells.
     #[getter]
     fn readings_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let frames = self.pressed.frames();

@@ -3,23 +3,29 @@
 //! Each file binds the types of one of the library's files; nothing is computed here. Long calls work on a thread of their own ([`long_call`]).
 
 mod array;
+mod arrow;
 mod dataset;
 mod error;
 mod fast;
+mod floor;
 mod friction;
 mod gel;
 mod inverse;
 mod long_call;
 mod map;
+mod path;
 mod pose;
 mod press;
 mod program;
+mod reader;
 mod recording;
 mod run;
 mod sensor;
 mod sensors;
 mod settings;
 mod shape;
+mod state;
+mod table;
 mod tasks;
 mod touches;
 mod twin;
@@ -34,6 +40,8 @@ mod _twintac {
     #[pymodule_export]
     use crate::fast::{FastBatch, FastGel, FastReader};
     #[pymodule_export]
+    use crate::floor::FloorMap;
+    #[pymodule_export]
     use crate::friction::Friction;
     #[pymodule_export]
     use crate::gel::{Gel, Pressed};
@@ -42,11 +50,15 @@ mod _twintac {
     #[pymodule_export]
     use crate::map::PressureMap;
     #[pymodule_export]
+    use crate::path::{Followed, PressPath};
+    #[pymodule_export]
     use crate::pose::Pose;
     #[pymodule_export]
     use crate::press::Press;
     #[pymodule_export]
     use crate::program::command;
+    #[pymodule_export]
+    use crate::reader::{Reader, Reading};
     #[pymodule_export]
     use crate::recording::Recording;
     #[pymodule_export]
@@ -57,6 +69,10 @@ mod _twintac {
     use crate::sensors::{Coupling, Imperfection, SensorBatch};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
+    #[pymodule_export]
+    use crate::state::GelState;
+    #[pymodule_export]
+    use crate::table::ReadingTable;
     #[pymodule_export]
     use crate::tasks::Tasks;
     #[pymodule_export]

@@ -11,7 +11,12 @@ use crate::error::OrRaise;
 use crate::recording::Provenance;
 use crate::sensor::Sensor;
 
-/// A continuous map over the gel of what a few taxels read.
+/// A continuous map over the gel of what a few taxels read: 96 columns and 64 rows, interpolated between the taxels. A notebook shows its picture.
+///
+/// - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`.
+/// - `provenance`: where they come from: `"real"`, `"emulated"` or `"simulated"`.
+///
+/// Raises `Error` for another number of readings than the sensor has taxels.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct PressureMap {
     map: twintac::PressureMap,
@@ -20,7 +25,6 @@ pub(crate) struct PressureMap {
 
 #[pymethods]
 impl PressureMap {
-    /// The map through readings of a sensor above its unloaded baseline, kPa, `[n_taxels]`, which come from where `provenance` says.
     #[new]
     fn new(
         py: Python<'_>,
@@ -32,25 +36,27 @@ impl PressureMap {
         Ok(Self { map, provenance })
     }
 
-    /// Where the readings come from.
+    /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
     #[getter]
     fn provenance(&self) -> String {
         self.provenance.to_string()
     }
 
-    /// Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first.
+    /// Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first. The grid spans the box that holds the gel (`Sensor.bounds_mm`).
     #[getter]
     fn pressure_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [n_columns, n_rows] = self.map.grid();
         rows(py, self.map.pressure_kpa().to_vec(), [n_rows, n_columns])
     }
 
-    /// The picture that a notebook shows.
+    /// The picture that a notebook shows: the text of an SVG file.
     fn _repr_svg_(&self) -> String {
         self.map.svg()
     }
 
     /// Draws the map, with the taxels marked, into a file: `.svg` or `.png`.
+    ///
+    /// Raises `Error` for a name with another ending, and for a file that cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.map.write(path)).or_raise(py)
     }

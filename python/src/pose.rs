@@ -1,14 +1,21 @@
 //! Poses.
 
 use glam::DQuat;
+use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
 
+use crate::array::{Numbers, in_order};
 use crate::error::unusable;
 
 /// How far a quaternion's length may be from 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// A rigid transform from an inner to an outer frame.
+/// A rigid transform from an inner frame to an outer one, such as from an indenter's frame to the gel's.
+///
+/// - `position_mm`: origin of the inner frame in the outer one, mm.
+/// - `quaternion`: rotation from the inner to the outer frame, `(x, y, z, w)`, of length 1; none unless given.
+///
+/// Raises `Error` for numbers that are not finite, and for a quaternion of another length.
 #[pyclass(frozen, eq, from_py_object, module = "twintac")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Pose {
@@ -49,6 +56,22 @@ impl Pose {
             self.quaternion()
         )
     }
+}
+
+/// Poses, `[n_poses, 7]`: place in mm and quaternion `(x, y, z, w)`; or `[n_poses, 3]`, places of what is not turned.
+pub(crate) fn poses(py: Python<'_>, field: &str, rows: &Numbers<'_, Ix2>) -> PyResult<Vec<twintac::Pose>> {
+    let n_columns = rows.as_array().ncols();
+    if n_columns != 7 && n_columns != 3 {
+        let problem = format!("has {n_columns} columns, expected 7 (place and quaternion) or 3 (place)");
+        return Err(unusable(py, field, &problem));
+    }
+    let pose = |pose: &[f64]| {
+        let quaternion = pose
+            .get(3..7)
+            .map_or([0.0, 0.0, 0.0, 1.0], |q| [q[0], q[1], q[2], q[3]]);
+        checked(py, [pose[0], pose[1], pose[2]], quaternion)
+    };
+    in_order(rows).chunks_exact(n_columns).map(pose).collect()
 }
 
 /// The pose, if it is one.

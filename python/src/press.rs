@@ -5,12 +5,21 @@ use pyo3::prelude::*;
 use crate::error::unusable;
 
 /// A straight press: down to a depth, a hold, and back up.
+///
+/// - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
+/// - `at_mm`: place of the indenter's origin in the gel's plane, mm; the middle of the gel unless given.
+/// - `depth_mm`: depth below first touch, mm, above 0.
+/// - `spin_rad`: turn of the indenter about the axis of the press, radians.
+/// - `speed_mm_per_s`: speed down and up, mm/s, above 0.
+/// - `hold_s`: time at full depth, s.
+///
+/// Raises `Error`, whose `field` is the argument that cannot be. Whether the sensor has the indenter is seen when it presses.
 #[pyclass(frozen, eq, get_all, from_py_object, module = "twintac")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Press {
     /// Name of one of the sensor's indenters.
     indenter: String,
-    /// Place in the gel's plane, mm from its middle.
+    /// Place of the indenter's origin in the gel's plane, x and y, mm.
     at_mm: (f64, f64),
     /// Depth below first touch, mm.
     depth_mm: f64,

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyCapsule, PyDict, PyList};
 use twintac::{Column, Recorded, import_files};
 
+use crate::arrow::{STREAM, stream};
 use crate::error::{OrRaise, unusable};
 use crate::long_call::long_call;
 use crate::sensor::Sensor;
@@ -35,7 +36,7 @@ impl<'py> FromPyObject<'_, 'py> for Provenance {
     }
 }
 
-/// Recorded presses of one sensor.
+/// Recorded presses of one sensor: of a real one, of an emulated one, or simulated. `len()` is the number of presses.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Recording {
     pub(crate) recording: twintac::Recording,
@@ -43,14 +44,18 @@ pub(crate) struct Recording {
 
 #[pymethods]
 impl Recording {
-    /// Reads a Parquet file, as runs and `save` write it.
+    /// Reads a Parquet file, as runs and `save` write it. Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` with the file if it is no recording, is damaged, or cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let recording = long_call(py, move || twintac::Recording::read_parquet(&path))?.or_raise(py)?;
         Ok(Self { recording })
     }
 
-    /// Reads CSV files of any laboratory, which the description (TOML) says how to read.
+    /// Reads CSV files of any laboratory. The description (TOML, see the folder `imports`) says which column is what, in which unit. Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
     #[staticmethod]
     #[pyo3(signature = (description, *paths))]
     fn import_csv(py: Python<'_>, description: PathBuf, paths: Vec<PathBuf>) -> PyResult<Self> {
@@ -58,31 +63,37 @@ impl Recording {
         Ok(Self { recording })
     }
 
-    /// Name of the sensor's description.
+    /// Name of the sensor, as its description has it.
     #[getter]
     fn sensor(&self) -> &str {
         &self.recording.sensor
     }
 
-    /// Where the numbers come from.
+    /// Where the numbers come from: `"real"`, `"emulated"` or `"simulated"`.
     #[getter]
     fn provenance(&self) -> String {
         self.recording.provenance.to_string()
     }
 
-    /// Names of the taxels.
+    /// Names of the taxels, in the order of every row of readings.
     #[getter]
     fn taxels(&self) -> Vec<String> {
         self.recording.taxels.clone()
     }
 
-    /// Names of the presses.
+    /// Names of the presses, in the order in which they were made.
     #[getter]
     fn presses(&self) -> Vec<&str> {
         self.recording.presses.iter().map(|press| &*press.name).collect()
     }
 
-    /// A column for each name of the Parquet file, with a value for each frame; NaN where a force is not known.
+    /// A NumPy array for each column of the Parquet file, with a value for each frame:
+    ///
+    /// - `press_index`, `press`, `mounting`, `indenter`, `control`, `provenance`: of the press, the same in all its frames;
+    /// - `time_s`: time, s;
+    /// - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame, mm, and a quaternion;
+    /// - `force_n`: force into the gel, N; NaN where it is not known;
+    /// - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable.
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
         for (name, column) in self.recording.columns() {
@@ -97,19 +108,37 @@ impl Recording {
             .call_method1("DataFrame", (self.columns(py)?,))
     }
 
-    /// The columns as a `polars.DataFrame`.
-    fn to_polars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("polars")?
-            .call_method1("DataFrame", (self.columns(py)?,))
+    /// The columns as a `polars.DataFrame`, through Arrow: what `polars.DataFrame(recording)` does.
+    fn to_polars<'py>(recording: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let polars = recording.py().import("polars")?;
+        polars.call_method1("DataFrame", (recording,))
     }
 
-    /// Writes a Parquet file.
+    /// The columns for whatever reads Arrow by its PyCapsule interface: `polars.DataFrame(recording)`, `pyarrow.table(recording)`, `pandas.DataFrame.from_arrow(recording)`, or DuckDB.
+    /// Types are those of `columns`, texts are strings, and a force that is not known is null. No other schema is given, whatever `requested_schema` is.
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        drop(requested_schema);
+        let stream = py.detach(|| stream(&self.recording));
+        let stream = stream.map_err(|error| unusable(py, "recording", &error.to_string()))?;
+        PyCapsule::new_with_value(py, stream, STREAM)
+    }
+
+    /// Writes a Parquet file, whole or not at all.
+    ///
+    /// Raises `Error` with the file if it cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.recording.write_parquet(&path)).or_raise(py)
     }
 
     /// Writes a LeRobot data set, version 3.0, into a folder that is not there yet: presses are episodes, indenters are tasks. `how_made` is put into its data card.
     /// Returns the numbers of episodes, frames and tasks.
+    ///
+    /// Raises `Error` for a folder that is there, or cannot be written.
     #[pyo3(signature = (folder, *, how_made=""))]
     fn save_lerobot<'py>(
         &self,
@@ -122,7 +151,9 @@ impl Recording {
     }
 
     /// What the sensor does, as far as the presses tell: sensitivity, noise, hysteresis and more, as `twintac characterize --json` says it.
-    /// With a folder, the report and the data sheet are written into it.
+    /// With a folder, the report and the data sheet are written into it. Figures that the presses do not show have the reason in their place. Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for a sensor whose taxels are not those of the recording.
     #[pyo3(signature = (sensor, folder=None))]
     fn characterize<'py>(
         &self,

@@ -15,6 +15,8 @@ use crate::sensor::Sensor;
 use crate::settings::{but, to_python};
 
 /// A folder in which recordings become a judged twin and a report. What is done is kept: the same again does only what is missing.
+///
+/// `start`, `import_csv` and `finish` make one, `demo` makes one without data, `open` opens one that is there.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Run {
     run: twintac::Run,
@@ -36,7 +38,10 @@ impl Run {
 #[pymethods]
 impl Run {
     /// Starts a run, or takes up the one that the folder holds with new settings. `source` says in words where the presses come from. `settings`
-    /// has those that differ from the usual ones, with a dictionary for each stage: `{"train": {"epochs": 40}}`.
+    /// has those that differ from the usual ones, with a dictionary for each stage: `{"train": {"epochs": 40}}`. The same recordings, settings and `seed` give the
+    /// same twin.
+    ///
+    /// Raises `Error`, whose `field` is the setting that cannot be, and for a folder that cannot be written.
     #[staticmethod]
     #[pyo3(signature = (folder, sensor, source, *, seed=1, settings=None))]
     fn start(
@@ -55,13 +60,15 @@ impl Run {
     }
 
     /// Opens a run that was started.
+    ///
+    /// Raises `Error` for a folder that is no run.
     #[staticmethod]
     fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         let run = twintac::Run::open(&folder, caller(py)?).or_raise(py)?;
         Ok(Self { run })
     }
 
-    /// Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute.
+    /// Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute. Ctrl-C stops it.
     #[staticmethod]
     #[pyo3(signature = (folder, *, seed=1, progress=None))]
     fn demo(
@@ -79,7 +86,9 @@ impl Run {
         })
     }
 
-    /// Makes the run's recordings of CSV files of any laboratory, which the description (TOML) says how to read.
+    /// Makes the run's recordings of CSV files of any laboratory, which the description (TOML) says how to read, as `Recording.import_csv` does.
+    ///
+    /// Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
     #[pyo3(signature = (description, *paths))]
     fn import_csv(&self, py: Python<'_>, description: PathBuf, paths: Vec<PathBuf>) -> PyResult<()> {
         self.work(py, None, move |run| run.import(&description, &paths))
@@ -87,6 +96,8 @@ impl Run {
 
     /// Runs all stages after the recordings: simulates, aligns, trains, judges, reports. Returns how well the twin does, as `metrics.json` has it.
     /// Ctrl-C stops before the next step; the same call goes on from there.
+    ///
+    /// Raises `Error` for a run that has no recordings, and for presses that no twin can be trained with.
     #[pyo3(signature = (*, progress=None))]
     fn finish<'py>(
         &self,
@@ -98,6 +109,8 @@ impl Run {
     }
 
     /// The presses, as recorded.
+    ///
+    /// Raises `Error` for a run that has none yet.
     fn recording(&self, py: Python<'_>) -> PyResult<Recording> {
         let recording = py.detach(|| self.run.recording()).or_raise(py)?;
         Ok(Recording { recording })
@@ -115,7 +128,7 @@ impl Run {
         self.run.model_folder()
     }
 
-    /// The page that says how well the twin does.
+    /// The page that says how well the twin does: `report.html` in the folder. It is there after `finish`.
     #[getter]
     fn report_path(&self) -> PathBuf {
         self.run.report_path()

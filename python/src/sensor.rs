@@ -9,6 +9,8 @@ use crate::array::rows;
 use crate::error::OrRaise;
 
 /// A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
+///
+/// `Sensor.phystac()` is built in; `Sensor.load` reads the description of any other.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Sensor {
@@ -25,13 +27,15 @@ impl Sensor {
     }
 
     /// Reads a description (TOML).
+    ///
+    /// Raises `Error` with file, line and field if the description is wrong, and with the file if it cannot be read.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let sensor = py.detach(|| twintac::Sensor::read(path)).or_raise(py)?;
         Ok(Self { sensor })
     }
 
-    /// Its name.
+    /// Its name, as the description has it.
     #[getter]
     fn name(&self) -> &str {
         self.sensor.name()
@@ -51,7 +55,7 @@ impl Sensor {
         rows(py, positions.collect(), [taxels.len(), 3])
     }
 
-    /// Lowest and highest corner of the box that holds the gel, mm. `[2, 3]`
+    /// Lowest and highest corner of the box that holds the gel, in the gel's frame, mm; `[2, 3]`.
     #[getter]
     fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let sensor = &self.sensor.file().sensor;
@@ -59,7 +63,7 @@ impl Sensor {
         rows(py, [low.to_array(), high.to_array()].concat(), [2, 3])
     }
 
-    /// Names of the indenters that it can be pressed with.
+    /// Names of the indenters that it can be pressed with: those that `Press` takes.
     #[getter]
     fn indenters(&self) -> Vec<&str> {
         self.sensor.indenters().collect()

@@ -17,6 +17,23 @@ use crate::touches::{Counts, Touches, bodies};
 use crate::twin::Twin;
 
 /// How far sensors are from perfect: from what each sensor's own imperfections are drawn.
+///
+/// Keywords are the fields of `[imperfection]` in a file; each is 0 unless given, and `Imperfection()` is a perfect sensor. A *deviation* is the standard deviation of
+/// a normal distribution about zero.
+///
+/// - `gain_deviation`: of each taxel's gain, as part of it.
+/// - `growth_deviation_per_kpa`: of how much each taxel's reading grows beyond proportion for each kPa of it, 1/kPa.
+/// - `offset_deviation_kpa`: of each taxel's zero, kPa.
+/// - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: how much all taxels drift with temperature, and the deviation of each beyond that, kPa/K.
+/// - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the tare, K, and the time in which it forgets what it was, s.
+/// - `noise_deviation_kpa`: of each reading's noise, kPa.
+/// - `quantum_kpa`: distance of the values that are told apart, kPa.
+/// - `hysteresis`: half of the gap between loading and unloading, as part of the reading, 0 to 1.
+/// - `dead_chance`, `stuck_chance`, `late_chance`: chances, 0 to 1, that a taxel reads zero for ever, stays at its first value, reads a frame late.
+/// - `rate_hz`, `jitter`: frames that the bus delivers in a second, Hz (0: one at each step), and the deviation of the time between them, as part of it.
+/// - `height_deviation_mm`, `place_deviation_mm`, `turn_deviation_rad`, `tilt_deviation_rad`: of how the sensor is mounted, mm and radians.
+///
+/// Raises `Error`, whose `field` is the one that cannot be.
 #[pyclass(frozen, eq, from_py_object, module = "twintac")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Imperfection {
@@ -34,7 +51,6 @@ impl Imperfection {
 
 #[pymethods]
 impl Imperfection {
-    /// Without keywords, a perfect sensor. Keywords are the fields of `[imperfection]` in a file: `gain_deviation=0.05`.
     #[new]
     #[pyo3(signature = (**fields))]
     fn new(py: Python<'_>, fields: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -44,6 +60,8 @@ impl Imperfection {
     }
 
     /// Reads a file (TOML) with the table `[imperfection]`, as `twintac fast imperfection` makes them.
+    ///
+    /// Raises `Error` with file, line and field if it is wrong.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
@@ -55,8 +73,12 @@ impl Imperfection {
     }
 }
 
-/// How bodies and gels hold each other where bodies move freely: friction, with Coulomb's coefficient, and the gel's loss, as of a Kelvin-Voigt solid: its force leads the
-/// elastic one by a time.
+/// How bodies and gels hold each other where bodies move freely: with friction, and with the gel's loss, which lets what hits it come to rest.
+///
+/// - `friction`: Coulomb's coefficient of each body on each gel, 0 or more.
+/// - `retardation_s`: time by which the gel's force leads its elastic one, s, as of a Kelvin-Voigt solid: `F + t dF/dt`. 0 for a gel without loss.
+///
+/// Raises `Error`, whose `field` is the number that cannot be.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Coupling {
@@ -80,7 +102,17 @@ impl Coupling {
     }
 }
 
-/// Many sensors of one kind, each imperfect in its own way, stepped in one call.
+/// Many sensors of one kind, each imperfect in its own way, stepped in one call. Their gels have rested. `len()` is the number of sensors.
+///
+/// - `gel`: the fast gel of all of them.
+/// - `bodies`: what may touch them, at least one.
+/// - `imperfection`: from what each sensor's own imperfections are drawn; perfect sensors unless given.
+/// - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
+/// - `coupling`: how bodies and gels hold each other; neither friction nor loss unless given.
+/// - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
+/// - `n_threads`: as many as there are cores unless given; results do not depend on it.
+///
+/// Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
 #[pyclass(module = "twintac")]
 pub(crate) struct SensorBatch {
     batch: twintac::SensorBatch,
@@ -90,8 +122,6 @@ pub(crate) struct SensorBatch {
 
 #[pymethods]
 impl SensorBatch {
-    /// So many sensors whose gels have rested, which these bodies touch. With a twin, readings are those of its barometers; without, the
-    /// pressures at the ports. Sensor `n` is the same under the same seed, whatever the other sensors are.
     #[new]
     #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None))]
     #[allow(clippy::too_many_arguments)] // keywords in Python
@@ -141,7 +171,10 @@ impl SensorBatch {
 
     /// One more moment of every sensor, `since_previous_s` after the last. The other arguments are those of `FastBatch.read`.
     ///
-    /// Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and wrenches, N and N mm, `[n_sensors, 6]`.
+    /// Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, in the frame of
+    /// the sensor where it is, `[n_sensors, 6]`.
+    ///
+    /// Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot be.
     #[pyo3(signature = (since_previous_s, gel_from_body, body=None, ends=None))]
     fn step<'py>(
         &mut self,
@@ -187,21 +220,21 @@ impl SensorBatch {
     }
 
     /// What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of its middle, N mm,
-    /// `[n_touches, 6]`. None without a `Coupling`.
+    /// `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
     fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let wrenches: Vec<f32> = self.batch.wrench_of_touches().flatten().copied().collect();
         let n_touches = wrenches.len() / 6;
         rows(py, wrenches, [n_touches, 6])
     }
 
-    /// Lets the gel of one sensor rest until its next step, with the imperfections that it has.
+    /// Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has.
     fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
         self.check(py, sensor)?;
         self.batch.rest(sensor);
         Ok(())
     }
 
-    /// Puts another sensor in the place of one, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
+    /// Puts another sensor in the place of one, counted from 0, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
     /// below the number of sensors are the first ones.
     fn replace(&mut self, py: Python<'_>, sensor: usize, number: u64) -> PyResult<()> {
         self.check(py, sensor)?;

@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use twintac::RunSettings;
 
@@ -14,8 +15,21 @@ pub(crate) fn from_python<T: DeserializeOwned>(value: &Bound<'_, PyAny>, name: &
     serde_json::from_str(&text).map_err(|error| unusable(py, name, &format!("does not fit: {error}")))
 }
 
+/// Values but for those of a dictionary.
+pub(crate) fn over<T: Serialize + DeserializeOwned>(
+    base: &T,
+    own: Option<&Bound<'_, PyDict>>,
+    py: Python<'_>,
+) -> PyResult<T> {
+    let all = to_python(py, base)?;
+    if let Some(own) = own {
+        all.call_method1("update", (own,))?;
+    }
+    from_python(&all, "settings")
+}
+
 /// Anything that can be written as JSON, as Python has it.
-pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|error| unusable(py, "value", &error.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }

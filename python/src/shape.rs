@@ -17,6 +17,8 @@ use crate::pose::Pose;
 
 /// A rigid shape that presses. `edge_radius_mm` rounds every convex edge without moving any face. Prismatic shapes have their profile in the xy
 /// plane and stand on z = 0.
+///
+/// Each function that makes one raises `Error`, whose `field` is the length that cannot be.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Shape {
@@ -53,13 +55,13 @@ impl Shape {
 
 #[pymethods]
 impl Shape {
-    /// A ball that stands on its origin.
+    /// A ball that stands on its origin: its middle is `radius_mm` above it.
     #[staticmethod]
     fn sphere(py: Python<'_>, radius_mm: f64) -> PyResult<Self> {
         Self::of(py, twintac::Shape::Sphere { radius_mm }, Surfaces::new())
     }
 
-    /// A flat-ended upright cylinder.
+    /// A flat-ended upright cylinder, whose rims are rounded with `edge_radius_mm`.
     #[staticmethod]
     fn cylinder(py: Python<'_>, radius_mm: f64, height_mm: f64, edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Cylinder {
@@ -70,7 +72,7 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// A box of this full size along x, y and z.
+    /// A box of this full size along x, y and z, mm, whose edges are rounded with `edge_radius_mm`.
     #[staticmethod]
     fn r#box(py: Python<'_>, size_mm: [f64; 3], edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Box {
@@ -80,7 +82,7 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// Two crossed bars in the shape of an X.
+    /// Two crossed bars in the shape of an X, a plus turned by 45°: each bar is `length_mm` long and `width_mm` wide.
     #[staticmethod]
     fn x(
         py: Python<'_>,
@@ -146,6 +148,8 @@ impl Shape {
     }
 
     /// A closed triangle surface in an STL file, in mm; its lowest point is moved to the origin's z.
+    ///
+    /// Raises `Error` with the file if it cannot be read or its surface is not closed.
     #[staticmethod]
     fn stl(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let bytes = std::fs::read(&path).map_err(|error| unreadable(py, &path, &error))?;
@@ -157,6 +161,8 @@ impl Shape {
 
     /// A closed surface of triangles: places of its corners, mm, `[n_vertices, 3]`, and the corners of each triangle, counter-clockwise seen from outside,
     /// `[n_triangles, 3]`. It stays where it is.
+    ///
+    /// Raises `Error` for arrays of another shape, a corner that is not there, and a surface that is not closed.
     #[staticmethod]
     fn surface(
         py: Python<'_>,
@@ -219,7 +225,9 @@ impl Shape {
     }
 }
 
-/// A shape whose distances are known at once: for the fast gel.
+/// A shape whose distances are known at once: what the fast gel reads.
+///
+/// Sampling a shape takes from a millisecond to a second, for a surface of many triangles.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Body {
@@ -228,7 +236,6 @@ pub(crate) struct Body {
 
 #[pymethods]
 impl Body {
-    /// Samples a shape, which takes from a millisecond to a second for a surface of many triangles.
     #[new]
     fn new(py: Python<'_>, shape: Shape) -> PyResult<Self> {
         let body = long_call(py, move || twintac::Body::new(&shape.shape, &shape.surfaces))?.or_raise(py)?;

@@ -24,7 +24,17 @@ type Step<'py> = (
 /// Observations and figures.
 type Observed<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 
-/// Many environments of one task, each with a sensor of its own, stepped in one call.
+/// Many environments of one task, each with a sensor of its own, stepped in one call. `len()` is the number of environments. `twintac.gymnasium` has them as environments
+/// of Gymnasium, and says what each task observes, does and rewards.
+///
+/// - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`.
+/// - `gel`: PhysTac's unless given.
+/// - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
+/// - `autoreset`: when an environment whose episode is over begins the next one: in the next step (`"NextStep"`), which ignores its action and has a reward of zero; in
+///   the same step (`"SameStep"`); or when `reset` is called (`"Disabled"`).
+/// - `n_threads`: as many as there are cores unless given; results do not depend on it.
+///
+/// Raises `Error` for a task that is not there, a gel that it cannot use, and if there is no environment.
 #[pyclass(module = "twintac")]
 pub(crate) struct Tasks {
     tasks: twintac::Tasks,
@@ -35,7 +45,6 @@ pub(crate) struct Tasks {
 
 #[pymethods]
 impl Tasks {
-    /// `kind` is "ExploreShape", "HoldForce" or "FollowEdge". Unless said otherwise the gel is PhysTac's, sensors are as imperfect as usual, and all cores are used.
     #[new]
     #[pyo3(signature = (kind, n_environments, *, gel=None, imperfection=None, autoreset="NextStep", n_threads=None))]
     fn new(
@@ -88,13 +97,13 @@ impl Tasks {
         self.tasks.n_actions()
     }
 
-    /// Names of what is true in an environment and not observed, with units.
+    /// Names of what is true in an environment and not observed, with units; `[n_figures]`.
     #[getter]
     fn figures(&self) -> Vec<&str> {
         self.tasks.figures().to_vec()
     }
 
-    /// Gives environments seeds, from the next reset on; `None` leaves an environment the one that it has.
+    /// Gives environments seeds, one for each, from the next reset on; `None` leaves an environment the one that it has.
     fn seed(&mut self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
         self.check(py, "seeds", seeds.len())?;
         for (environment, seed) in seeds.into_iter().enumerate() {
@@ -105,7 +114,8 @@ impl Tasks {
         Ok(())
     }
 
-    /// Begins the next episode of all environments, or of those that `which` has. Observations, `[n_environments, n_observed]`, and figures; zeros of the others.
+    /// Begins the next episode of all environments, or of those where `which`, `[n_environments]`, is true. Returns observations, `[n_environments, n_observed]`, and figures,
+    /// `[n_environments, n_figures]`; zeros of the others.
     #[pyo3(signature = (which=None))]
     fn reset<'py>(
         &mut self,
@@ -135,10 +145,12 @@ impl Tasks {
         Ok((observed, figures))
     }
 
-    /// One step of every environment. `actions` is `[n_environments, n_actions]`.
+    /// One step of every environment. `actions` is `[n_environments, n_actions]`, each from -1 to 1.
     ///
-    /// Returns observations, rewards, whether the task is over, whether time is over, and figures; and, of environments that began anew in the same step, what was
-    /// observed before and the figures then, or `None` if there are none.
+    /// Returns observations, `[n_environments, n_observed]`; rewards, whether the task is over, and whether time is over, each `[n_environments]`; figures,
+    /// `[n_environments, n_figures]`; and, of environments that began anew in the same step, what was observed before and the figures then, or `None` if there are none.
+    ///
+    /// Raises `Error` for actions of another shape, or that are not finite.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -189,7 +201,7 @@ impl Tasks {
         Ok((observed, rewards, terminated, truncated, figures, last))
     }
 
-    /// An environment from above, and what its sensor reads: `[240, 600, 3]`, red, green and blue.
+    /// A picture of one environment, counted from 0: what is there from above, and what its sensor reads. `[240, 600, 3]`, red, green and blue, 0 to 255.
     fn picture<'py>(&self, py: Python<'py>, environment: usize) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let n = self.tasks.n_environments();
         if environment >= n {

@@ -5,9 +5,9 @@ use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
 use twintac::Touch;
 
-use crate::array::{Numbers, in_order};
+use crate::array::Numbers;
 use crate::error::unusable;
-use crate::pose::checked;
+use crate::pose::poses;
 use crate::shape::Body;
 
 /// Numbers of bodies, and ends.
@@ -31,17 +31,8 @@ impl Touches {
         ends: Option<&Counts<'_>>,
         n_bodies: usize,
     ) -> PyResult<Self> {
-        let &[n_touches, n_columns] = gel_from_body.as_array().shape() else {
-            return Err(unusable(
-                py,
-                "gel_from_body",
-                "has another shape than [n_touches, 7]",
-            ));
-        };
-        if n_columns != 7 && n_columns != 3 {
-            let problem = format!("has {n_columns} columns, expected 7 (place and quaternion) or 3 (place)");
-            return Err(unusable(py, "gel_from_body", &problem));
-        }
+        let poses = poses(py, "gel_from_body", gel_from_body)?;
+        let n_touches = poses.len();
         let body = body.map_or_else(|| vec![0; n_touches], |body| body.as_array().to_vec());
         if body.len() != n_touches {
             let problem = format!(
@@ -50,20 +41,16 @@ impl Touches {
             );
             return Err(unusable(py, "body", &problem));
         }
-        let poses = in_order(gel_from_body);
-        let touches = poses.chunks_exact(n_columns).zip(body).map(|(pose, body)| {
+        let touches = poses.into_iter().zip(body).map(|(gel_from_body, body)| {
             let number = u32::try_from(body)
                 .ok()
                 .filter(|number| (*number as usize) < n_bodies);
             let number = number.ok_or_else(|| {
                 unusable(py, "body", &format!("has {body}, expected 0 to {}", n_bodies - 1))
             })?;
-            let quaternion = pose
-                .get(3..7)
-                .map_or([0.0, 0.0, 0.0, 1.0], |q| [q[0], q[1], q[2], q[3]]);
-            Ok(Touch {
+            PyResult::Ok(Touch {
                 body: number,
-                gel_from_body: checked(py, [pose[0], pose[1], pose[2]], quaternion)?,
+                gel_from_body,
             })
         });
         Ok(Self {

@@ -10,12 +10,15 @@ use pyo3::prelude::*;
 use crate::array::{Numbers, in_order, of_rows, rows};
 use crate::error::{OrRaise, unusable};
 use crate::fast::PROVENANCE;
-use crate::long_call::long_call;
+use crate::long_call::{followed, long_call};
+use crate::path::PressPath;
 use crate::press::Press;
 use crate::sensor::Sensor;
 use crate::sensors::since;
 
 /// A trained twin: what the barometers of one sensor would read while its gel is pressed.
+///
+/// `predict` reads a whole press, `at` one place frame by frame, `states` many sensors together, from pressures at their ports.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Twin {
     pub(crate) twin: Arc<twintac::Twin>,
@@ -23,7 +26,9 @@ pub(crate) struct Twin {
 
 #[pymethods]
 impl Twin {
-    /// Loads a twin from the folder that a run leaves it in: `<run>/model`.
+    /// Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`).
+    ///
+    /// Raises `Error` for a folder that holds no twin, or a damaged one.
     #[staticmethod]
     fn load(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         let twin = py.detach(|| twintac::Twin::load(folder)).or_raise(py)?;
@@ -38,23 +43,53 @@ impl Twin {
         }
     }
 
-    /// Where the recordings come from that it was trained with. What it predicts is simulated.
+    /// Where the recordings come from that it was trained with: `"real"`, `"emulated"` or `"simulated"`. What it predicts is simulated.
     #[getter]
     fn trained_on(&self) -> String {
         self.twin.trained_on().to_string()
     }
 
-    /// What the barometers would read along a press, as many frames a second as the sensor gives. Takes a few seconds; Ctrl-C ends the wait.
+    /// What the barometers would read along a press, as many frames a second as the sensor gives. Bench and gel are as they were found at training. Takes a few
+    /// seconds; Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and for a place that cannot be pressed.
     fn predict(&self, py: Python<'_>, press: &Press) -> PyResult<Prediction> {
         let (twin, press) = (Arc::clone(&self.twin), twintac::Press::from(press));
         let prediction = long_call(py, move || twin.predict(&press))?.or_raise(py)?;
         Ok(Prediction {
             n_taxels: self.twin.sensor().taxels().count(),
             prediction,
+            failure: None,
         })
     }
 
-    /// The twin at the place of a press and down to its depth, to be stepped with depths as they come. Takes a second; Ctrl-C ends the wait.
+    /// What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included; each frame takes from some milliseconds to seconds. Points of
+    /// the path are not read. Ctrl-C ends it before its next frame. `Prediction.failure` says why a path ends before it should.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, and for a path that misses the gel.
+    #[pyo3(signature = (path, *, progress=None))]
+    fn predict_along(
+        &self,
+        py: Python<'_>,
+        path: PressPath,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Prediction> {
+        let twin = Arc::clone(&self.twin);
+        let predicted = followed(py, progress.as_ref(), move |progress| {
+            twin.predict_along(&path.path, progress.as_ref())
+        })?;
+        let mut predicted = predicted.or_raise(py)?;
+        Ok(Prediction {
+            n_taxels: self.twin.sensor().taxels().count(),
+            prediction: predicted.presses.swap_remove(0),
+            failure: predicted.failure,
+        })
+    }
+
+    /// The twin at the place of a press and down to its depth, to be stepped with depths as they come. Takes a second; Ctrl-C ends the wait. A step then takes a
+    /// microsecond.
+    ///
+    /// Raises `Error` as `predict` does.
     fn at(&self, py: Python<'_>, press: &Press) -> PyResult<TwinAtPlace> {
         let (twin, press) = (Arc::clone(&self.twin), twintac::Press::from(press));
         Ok(TwinAtPlace {
@@ -63,7 +98,7 @@ impl Twin {
         })
     }
 
-    /// Twins of so many sensors, to be stepped together with pressures at their ports.
+    /// Twins of so many sensors, to be stepped together with pressures at their ports: for programs that solve the gel themselves.
     #[pyo3(signature = (n_sensors=1))]
     fn states(&self, n_sensors: usize) -> TwinState {
         TwinState {
@@ -73,11 +108,12 @@ impl Twin {
     }
 }
 
-/// What a twin would read along a press.
+/// What a twin would read along a press or a path: what `Twin.predict` and `Twin.predict_along` return. Every array has a row for each frame.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Prediction {
     prediction: twintac::Prediction,
     n_taxels: usize,
+    failure: Option<String>,
 }
 
 #[pymethods]
@@ -88,19 +124,32 @@ impl Prediction {
         PROVENANCE
     }
 
-    /// Time since the start of the press, s; `[n_frames]`.
+    /// Why the frames end before the path does; `None` if they do not, and of a press.
+    #[getter]
+    fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    /// Place of the indenter's origin in the gel's plane, x and y, mm; `[n_frames, 2]`.
+    #[getter]
+    fn place_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let places_mm = self.prediction.place_mm.as_flattened().to_vec();
+        rows(py, places_mm, [self.prediction.place_mm.len(), 2])
+    }
+
+    /// Time since the start of the press, or that of the path, s; `[n_frames]`.
     #[getter]
     fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.prediction.time_s)
     }
 
-    /// Depth below first touch, mm, negative above the gel; `[n_frames]`.
+    /// Depth below first touch, mm, with the height at which the bench of the recordings touched; negative above the gel; `[n_frames]`.
     #[getter]
     fn depth_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.prediction.depth_mm)
     }
 
-    /// Force of the indenter on the gel, N; `[n_frames]`.
+    /// Force of the indenter into the gel, N; `[n_frames]`.
     #[getter]
     fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.prediction.force_n)
@@ -112,7 +161,7 @@ impl Prediction {
         of_rows(py, &self.prediction.readings_kpa, self.n_taxels)
     }
 
-    /// Whether the frame was simulated, and not deeper than the gel could be pressed; `[n_frames]`.
+    /// Whether the frame was simulated; `[n_frames]`. It was not where it is deeper than the gel could be pressed: the last pressures stand there.
     #[getter]
     fn simulated<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         PyArray1::from_slice(py, &self.prediction.simulated)
@@ -127,7 +176,7 @@ impl Prediction {
             .transpose()
     }
 
-    /// How unlike the contact is to what taught the twin, `[n_frames]`; `None` of a twin that does not know.
+    /// How unlike the contact is to what taught the twin, without unit, `[n_frames]`; `None` of a twin that does not know.
     #[getter]
     fn unlikeness<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let certainty = self.prediction.certainty.as_ref()?;
@@ -142,7 +191,7 @@ impl Prediction {
     }
 }
 
-/// A twin whose sensor is pressed at one place, stepped with depths.
+/// A twin whose sensor is pressed at one place, stepped with depths: what `Twin.at` returns.
 #[pyclass(module = "twintac")]
 pub(crate) struct TwinAtPlace {
     twin: twintac::TwinAtPlace,
@@ -157,8 +206,10 @@ impl TwinAtPlace {
         PROVENANCE
     }
 
-    /// One more frame, `since_previous_s` after the last, at a depth below first touch, mm. Returns what the barometers would read, kPa;
-    /// `[n_taxels]`.
+    /// One more frame, `since_previous_s` after the last, at a depth below first touch, mm, negative above the gel. Returns what the barometers would read above
+    /// their zero, kPa; `[n_taxels]`.
+    ///
+    /// Raises `Error` for a time below 0 or a depth that is not finite.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -166,12 +217,15 @@ impl TwinAtPlace {
         depth_mm: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         since(py, since_previous_s)?;
+        if !depth_mm.is_finite() {
+            return Err(unusable(py, "depth_mm", "is not finite"));
+        }
         let mut readings_kpa = vec![0.0; self.n_taxels];
         self.twin.step(since_previous_s, depth_mm, &mut readings_kpa);
         Ok(PyArray1::from_vec(py, readings_kpa))
     }
 
-    /// Force of the indenter on the gel at the last frame, N.
+    /// Force of the indenter into the gel at the last frame, N.
     #[getter]
     fn force_n(&self) -> f64 {
         self.twin.force_n()
@@ -185,7 +239,8 @@ impl TwinAtPlace {
             .map(|widths| PyArray1::from_slice(py, widths))
     }
 
-    /// How unlike the last contact is to what taught the twin, and whether it is too unlike to be trusted; `None` of a twin that does not know.
+    /// How unlike the last contact is to what taught the twin, without unit, and whether it is too unlike for readings and intervals to be trusted; `None` of a
+    /// twin that does not know.
     #[getter]
     fn unlikeness(&self) -> Option<(f64, bool)> {
         self.twin.unlikeness()
@@ -202,13 +257,13 @@ impl TwinAtPlace {
         self.twin.tare();
     }
 
-    /// Lets the gel rest until the next frame. The zero stays.
+    /// Lets the gel rest until the next frame: it forgets the presses before. The zero stays.
     fn rest(&mut self) {
         self.twin.rest();
     }
 }
 
-/// Twins of many sensors, stepped together with pressures at their ports.
+/// Twins of many sensors, stepped together with pressures at their ports: what `Twin.states` returns. `len()` is the number of sensors.
 #[pyclass(module = "twintac")]
 pub(crate) struct TwinState {
     state: twintac::TwinState,
@@ -226,6 +281,8 @@ impl TwinState {
 
     /// One more frame of every sensor, `since_previous_s` after the last: from pressures at the ports to what the barometers would read, kPa; both
     /// `[n_sensors, n_taxels]`.
+    ///
+    /// Raises `Error` for a time below 0, and for pressures of another shape.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -257,7 +314,7 @@ impl TwinState {
         self.state.tare_untouched();
     }
 
-    /// Lets the gel of one sensor rest until its next frame. Its zero stays.
+    /// Lets the gel of one sensor, counted from 0, rest until its next frame: it forgets the presses before. Its zero stays.
     fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
         if sensor >= self.shape[0] {
             let problem = format!("is {sensor}, there are {}", self.shape[0]);

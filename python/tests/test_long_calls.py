@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from conftest import DATA
 
-from twintac import Body, FastGel, Gel, Press, Run, Sensor, Shape
+from twintac import Body, FastGel, Gel, Pose, Press, PressPath, Run, Sensor, Shape
 
 FINE = {"edges_per_height": 12.0, "edges_per_contact_radius": 12.0, "max_nodes": 60_000}
 SHORT = {"simulate": {"edges_per_height": 4.0, "edges_per_contact_radius": 4.0}, "train": {"epochs": 10}}
@@ -103,3 +103,27 @@ def test_an_exception_of_who_follows_stops_the_run(tmp_path: Path) -> None:
     with pytest.raises(LookupError):
         start(tmp_path).finish(progress=refuse)
     assert not (tmp_path / "report.html").exists()
+
+
+def test_ctrl_c_ends_a_step_of_a_gel_which_is_made_all_the_same() -> None:
+    gel = Gel(Sensor.phystac())
+    x_mm, y_mm, z_mm = gel.touch("sphere-25", Pose((0.0, 0.0, 0.0))).position_mm
+    deep = Pose((x_mm, y_mm, z_mm - 3.0))
+    state = gel.state("sphere-25", [deep])
+    threading.Timer(0.3, interrupt).start()
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        state.step(0.1, deep)
+    waited_s = time.monotonic() - started
+    assert state.gel_from_indenter == deep  # which waits for the step
+    assert waited_s < 0.5 * (time.monotonic() - started)
+
+
+def test_ctrl_c_ends_a_path_before_its_next_frame() -> None:
+    poses = [[0.0, 0.0, -0.01 * frame] for frame in range(200)]
+    path = PressPath("sphere-25", np.arange(200.0), poses, zero="touch")
+    threading.Timer(0.5, interrupt).start()
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        Gel(Sensor.phystac()).follow(path)
+    assert time.monotonic() - started < 10.0

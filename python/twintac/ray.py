@@ -41,6 +41,8 @@ def make_dataset(
 
     Returns the manifests of the shards, in order. A task whose worker dies is done again elsewhere; what is complete is kept. The same call goes on where one was stopped.
     `twintac dataset --merge` then makes one file of a folder.
+
+    Raises `twintac.Error` for options that cannot be and for a folder of another data set, `ImportError` if a package is missing.
     """
     ray = _needed("ray")
     options = {name: _absolute(value) if name in _PATHS else value for name, value in options.items()}
@@ -79,7 +81,9 @@ def make_shard(
     """Makes shard `shard` of `of`, counted from 1, in a folder or at a URL, unless it is complete there. Returns its manifest.
 
     It is made on this machine first. Each file is then written under a temporary name and renamed, the manifest last: whatever else works there, a shard with a manifest is
-    whole. `options` are those of `twintac.Dataset`.
+    whole. `options` are those of `twintac.Dataset`, `storage_options` those of fsspec.
+
+    Raises `twintac.Error` for options that cannot be and for a folder of another data set, `ImportError` if a package is missing.
     """
     files, root = _needed("fsspec").core.url_to_fs(folder, **(storage_options or {}))
     dataset = Dataset(**options)

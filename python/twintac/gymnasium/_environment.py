@@ -13,10 +13,20 @@ from twintac.gymnasium._spaces import FRAMES_PER_S, Single, spaces
 
 
 class TouchEnv(gym.Env[Single, Single]):
-    """One environment of a task. It is the same as that of a vector environment under the same seed."""
+    """One environment of a task. It is the same as that of a vector environment under the same seed.
+
+    - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. What each observes, does and rewards, says `twintac.gymnasium`.
+    - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
+    - `gel`: PhysTac's unless given.
+    - `render_mode`: `"rgb_array"`, or none.
+
+    Raises `twintac.Error` for a task that is not there, and for actions of another shape or that are not finite.
+    """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 55}
+    """What Gymnasium knows of the environment; `render_fps` is the task's steps in a second."""
     provenance: ClassVar[str] = "simulated"
+    """What every number is."""
 
     def __init__(
         self,
@@ -34,7 +44,7 @@ class TouchEnv(gym.Env[Single, Single]):
         self._is_seeded = False
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Single, dict[str, Any]]:
-        """Begins the next episode, or the first one of a seed."""
+        """Begins the next episode, or the first one of a seed. Returns the observation, `[n_observed]`, and the info."""
         super().reset(seed=seed)
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**63))
@@ -45,13 +55,13 @@ class TouchEnv(gym.Env[Single, Single]):
         return observed[0], self._info(figures[0])
 
     def step(self, action: Single) -> tuple[Single, float, bool, bool, dict[str, Any]]:
-        """One step."""
+        """One step, with an action `[n_actions]`. Returns the observation, the reward, whether the task is over, whether time is over, and the info."""
         actions = np.asarray(action, np.float32).reshape(1, -1)
         observed, rewards, terminated, truncated, figures, _ = self._tasks.step(actions)
         return observed[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info(figures[0])
 
     def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
-        """What is there from above, and what the sensor reads: `[240, 600, 3]`."""
+        """What is there from above, and what the sensor reads: `[240, 600, 3]`, 0 to 255. `None` unless `render_mode` is `"rgb_array"`."""
         return self._tasks.picture(0) if self.render_mode == "rgb_array" else None
 
     def _info(self, figures: Single) -> dict[str, Any]:

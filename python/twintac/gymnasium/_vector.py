@@ -18,14 +18,27 @@ _Bool = npt.NDArray[np.bool_]
 
 
 class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
-    """Many environments of a task. Environment `i` of a seed is that of a single environment under `seed + i`, whatever others there are."""
+    """Many environments of a task, stepped in one call. Environment `i` of a seed is that of a single environment under `seed + i`, whatever others there are.
+
+    - `kind`: `"ExploreShape"`, `"HoldForce"` or `"FollowEdge"`. What each observes, does and rewards, says `twintac.gymnasium`.
+    - `num_envs`: number of environments.
+    - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
+    - `gel`: PhysTac's unless given.
+    - `autoreset_mode`: when an environment whose episode is over begins the next one: in the next step, in the same step, or when `reset` is called.
+    - `n_threads`: as many as there are cores unless given; results do not depend on it.
+    - `render_mode`: `"rgb_array"`, or none.
+
+    Raises `twintac.Error` for a task that is not there, and for actions of another shape or that are not finite.
+    """
 
     metadata: dict[str, Any] = {
         "render_modes": ["rgb_array"],
         "render_fps": 55,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
+    """What Gymnasium knows of the environments; `render_fps` is the task's steps in a second."""
     provenance: ClassVar[str] = "simulated"
+    """What every number is."""
 
     def __init__(
         self,
@@ -60,7 +73,8 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Single, dict[str, Any]]:
-        """Begins the next episode of each environment, or of those that `options["reset_mask"]` has."""
+        """Begins the next episode of each environment, or of those where `options["reset_mask"]`, `[num_envs]`, is true. `seed` gives environment `i` the seed
+        `seed + i`, or the one of a list. Returns observations, `[num_envs, n_observed]`, and infos."""
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**62))
         if seed is not None:
@@ -75,7 +89,8 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         return observed, self._infos(figures, np.ones(self.num_envs, np.bool_) if which is None else which)
 
     def step(self, actions: Single) -> tuple[Single, npt.NDArray[np.float64], _Bool, _Bool, dict[str, Any]]:
-        """One step of every environment."""
+        """One step of every environment, with actions `[num_envs, n_actions]`. Returns observations, `[num_envs, n_observed]`; rewards, whether the task is over, and
+        whether time is over, each `[num_envs]`; and infos. With the mode `"SameStep"` these have `final_obs` and `final_info` of the episodes that ended."""
         observed, rewards, terminated, truncated, figures, last = self._tasks.step(actions)
         self._observed = observed
         infos = self._infos(figures, np.ones(self.num_envs, np.bool_))
@@ -84,7 +99,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         return observed, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:  # type: ignore[override]
-        """A picture of each environment, `[240, 600, 3]`."""
+        """A picture of each environment, `[240, 600, 3]`, 0 to 255. `None` unless `render_mode` is `"rgb_array"`."""
         if self.render_mode != "rgb_array":
             return None
         return tuple(self._tasks.picture(number) for number in range(self.num_envs))

@@ -15,6 +15,7 @@ from twintac import Body, FastGel, Shape, Tasks
 from twintac.gymnasium._spaces import Single
 
 Policy: TypeAlias = Callable[[Single], Single]
+"""From observations, `[n, n_observed]`, to actions, `[n, n_actions]`."""
 
 _Double: TypeAlias = npt.NDArray[np.float64]
 _Integers: TypeAlias = npt.NDArray[np.int64]
@@ -24,7 +25,7 @@ _HEIGHT_MM = 8.5
 
 
 def random_policy(kind: str, seed: int = 0) -> Policy:
-    """Actions by chance, evenly from -1 to 1."""
+    """Actions by chance, evenly from -1 to 1. `kind` is the task."""
     n_actions = Tasks(kind, 1).n_actions
     random = np.random.default_rng(seed)
 
@@ -35,13 +36,13 @@ def random_policy(kind: str, seed: int = 0) -> Policy:
 
 
 def scripted_policy(kind: str, seed: int = 0) -> Policy:
-    """The script for a task, for PhysTac. HoldForce's is calibrated on the task's shapes and FollowEdge's on its discs, both with perfect sensors; ExploreShape's on imperfect ones."""
+    """The script for a task, `kind`, for PhysTac. It takes some seconds to make. HoldForce's is calibrated on the task's shapes and FollowEdge's on its discs, both with perfect sensors; ExploreShape's on imperfect ones."""
     scripts = {"HoldForce": _hold_force, "FollowEdge": _follow_edge, "ExploreShape": _explore_shape}
     return scripts[kind](np.random.default_rng(seed))
 
 
 def returns(policy: Policy, tasks: Tasks) -> _Double:
-    """Sum of the rewards of one episode of each environment. Environments must not begin anew by themselves (`autoreset="Disabled"`)."""
+    """Sum of the rewards of one episode of each environment, `[n_environments]`. Environments must not begin anew by themselves (`autoreset="Disabled"`)."""
     observed, _ = tasks.reset()
     total, is_going = np.zeros(len(tasks)), np.ones(len(tasks), np.bool_)
     while is_going.any():

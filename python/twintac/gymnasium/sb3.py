@@ -18,7 +18,10 @@ from twintac.gymnasium._spaces import Single, spaces
 
 
 class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
-    """Many environments of a task. Episodes that end begin anew in the same step, as Stable-Baselines3 expects."""
+    """Many environments of a task. Episodes that end begin anew in the same step, as Stable-Baselines3 expects.
+
+    `kind`, `num_envs`, `imperfection`, `gel` and `n_threads` are those of `twintac.gymnasium.TouchVectorEnv`. Environment `i` has the seed `seed + i`.
+    """
 
     def __init__(
         self,
@@ -41,7 +44,7 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         self._lengths = np.zeros(num_envs, np.int64)
 
     def reset(self) -> Single:  # type: ignore[override, unused-ignore]
-        """Begins the next episode of every environment."""
+        """Begins the next episode of every environment. Returns observations, `[num_envs, n_observed]`."""
         self.tasks.seed(self._seeds)
         self._reset_seeds()
         self._reset_options()
@@ -50,11 +53,12 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return self.tasks.reset()[0]
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
-        """Takes the actions of the next step."""
+        """Takes the actions of the next step, `[num_envs, n_actions]`."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Single, npt.NDArray[np.float64], npt.NDArray[np.bool_], list[dict[str, Any]]]:  # type: ignore[override, unused-ignore]
-        """Makes the step. Only episodes that ended have an info."""
+        """Makes the step. Returns observations, rewards, whether episodes ended, and infos. Only episodes that ended have an info, with `terminal_observation`,
+        `TimeLimit.truncated` and `episode`."""
         observed, rewards, terminated, truncated, _, last = self.tasks.step(self._actions)
         self._returns += rewards
         self._lengths += 1
@@ -91,7 +95,7 @@ class TouchVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return [False] * len(self._numbers(indices))
 
     def get_images(self) -> Sequence[npt.NDArray[np.uint8]]:
-        """A picture of each environment."""
+        """A picture of each environment, `[240, 600, 3]`, 0 to 255."""
         return [self.tasks.picture(number) for number in range(self.num_envs)]
 
     def _numbers(self, indices: Any) -> list[int]:

@@ -21,7 +21,9 @@ def add_sensor(
 ) -> None:
     """Puts a sensor onto a body: a site `name` that is the frame of its gel, z out of the board, and a box `name` that shows the gel and touches nothing.
 
-    `position_mm` and `quaternion` `(x, y, z, w)` are those of the gel's frame in the body's.
+    `position_mm`, mm, and `quaternion`, `(x, y, z, w)`, are those of the gel's frame in the body's.
+
+    Raises `ValueError` for a body that the model does not have.
     """
     parent = spec.body(body)
     if parent is None:

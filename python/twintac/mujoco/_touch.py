@@ -33,9 +33,16 @@ class _Geom:
 class TouchSensors:
     """Touch sensors in one or many worlds of one model.
 
-    `sites` are the frames of their gels, z out of the board: `add_sensor` makes them. Every geom of the model that collides can touch, but for those of the sensor's
-    own body; or those of `geoms` alone. With a `twin`, readings are those of its barometers; without, pressures at the ports. `imperfection` makes each
-    sensor imperfect in its own way. `friction` is Coulomb's coefficient, `retardation_s` the loss of the gel (`Coupling`).
+    - `sites`: names of the sites that are the frames of their gels, z out of the board: `add_sensor` makes them.
+    - `sensor`, `gel`: of all of them; PhysTac and its fast gel unless given.
+    - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
+    - `imperfection`: makes each sensor imperfect in its own way; perfect ones unless given.
+    - `friction`: Coulomb's coefficient of every body on every gel.
+    - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
+    - `geoms`: names of the geoms that can touch; all that collide unless given. Those of the sensor's own body never do.
+    - `n_worlds`: worlds of the model, as those of a `mujoco.batch.Batch`.
+    - `n_threads`: as many as there are cores unless given; results do not depend on it.
+    - `seed`: of the imperfections.
 
     Call `update` when poses are known and forces are not:
 
@@ -45,6 +52,8 @@ class TouchSensors:
 
     or, for a persistent `mujoco.batch.Batch` of `n_worlds` simulations, after `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`.
     Steps of 2 ms or less keep bodies of 20 g and more at rest on the gel.
+
+    Raises `ValueError` for a site or geom that the model does not have, and if no geom can touch.
     """
 
     def __init__(
@@ -114,7 +123,10 @@ class TouchSensors:
         return self._wrench
 
     def update(self, data: _Data) -> npt.NDArray[np.float32]:
-        """One more time step: reads where geoms are, and applies to bodies what the gels do to them (`xfrc_applied`). Returns `readings_kpa`."""
+        """One more time step: reads where geoms are, and applies to bodies what the gels do to them (`xfrc_applied`). Returns `readings_kpa`.
+
+        Raises `ValueError` for data of another number of worlds.
+        """
         at = [_rows(data, name, self._n_worlds) for name in ("site_xpos", "site_xquat", "geom_xpos", "geom_xquat")]
         site_mm, site_quat = 1e3 * at[0][:, self._site], at[1][:, self._site]
         geom_mm, geom_quat = 1e3 * at[2][:, self._geom], at[3][:, self._geom]
@@ -142,7 +154,7 @@ class TouchSensors:
         return self._readings_kpa
 
     def reset(self, world: int | None = None) -> None:
-        """Lets the gels of a world rest, or of all: to be called when its data are reset."""
+        """Lets the gels of a world, counted from 0, rest, or of all: to be called when its data are reset."""
         worlds = range(self._n_worlds) if world is None else [world]
         for world in worlds:
             self._applied[world] = 0.0

@@ -81,7 +81,7 @@ pub use cross_validation::{
 pub use digitac::HeldOut;
 pub use error::RunError;
 pub use files::sha256_of_file;
-pub use locate::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator};
+pub use locate::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, LocatorTracker};
 pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};
 pub use predict::{Predicted, Predictor};
 pub use progress::{Outcome, Progress, Silent};

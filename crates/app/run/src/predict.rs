@@ -72,15 +72,33 @@ impl Predictor {
         })
     }
 
-    /// Takes the twin along the path that a TOML file describes: the gel is solved frame by frame, sliding and tilting included, and the
-    /// twin stepped with what reaches its ports. Points of the path are not read.
+    /// A twin, and the gel that it was trained with.
+    #[must_use]
+    pub fn new(model: Model, gel: Gel) -> Self {
+        Self {
+            model,
+            gel,
+            added: None,
+        }
+    }
+
+    /// Takes the twin along the path that a TOML file describes, as [`along`](Self::along).
+    ///
+    /// # Errors
+    /// A file that cannot be read or is wrong; those of [`along`](Self::along).
+    pub fn follow(&self, file: &Path, progress: &dyn Progress) -> Result<Predicted, RunError> {
+        let path = PressPath::parse(&file.display().to_string(), &read_text(file)?)?;
+        self.along(path, progress).at(|| file.display().to_string())
+    }
+
+    /// Takes the twin along a path: the gel is solved frame by frame, sliding and tilting included, and the twin stepped with what reaches its ports. Points of
+    /// the path are not read.
     ///
     /// The gel answers at once, as it does in the tables that the twin was trained with: what it does over time, the twin has learned.
     ///
     /// # Errors
-    /// A file that cannot be read or is wrong; an indenter that the sensor does not have; a path that misses the gel.
-    pub fn follow(&self, file: &Path, progress: &dyn Progress) -> Result<Predicted, RunError> {
-        let path = PressPath::parse(&file.display().to_string(), &read_text(file)?)?;
+    /// An indenter that the sensor does not have; a path that misses the gel.
+    pub fn along(&self, path: PressPath, progress: &dyn Progress) -> Result<Predicted, RunError> {
         let bench = self.bench_for(&path.indenter);
         let stiffness = if path.asks_for_force() {
             bench.stiffness()
@@ -102,9 +120,8 @@ impl Predictor {
         let offset_mm = bench.contact_offset_mm(&path.indenter);
         let path = on_bench(path, offset_mm, stiffness);
         let work = Work::start(progress, "simulating", path.frames().len());
-        let followed = gel
-            .follow(&shape, &path, &mut || work.step(""))
-            .at(|| file.display().to_string())?;
+        let followed = gel.follow(&shape, &path, &mut || work.advance())?;
+        work.go_on()?;
         drop(work);
         let mut along = self.read_along(&path, &followed, &bench, stiffness);
         if let Some(certainty) = &self.model.record.certainty {

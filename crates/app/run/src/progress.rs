@@ -1,5 +1,7 @@
 //! Following long work, and stopping it.
 
+use std::ops::ControlFlow;
+
 use crate::RunError;
 
 /// Whether a stage ran or was already there.
@@ -80,6 +82,16 @@ impl<'a> Work<'a> {
 
     pub(crate) fn step(&self, state: &str) {
         self.0.step(state);
+    }
+
+    /// A step is done; whether to go on.
+    pub(crate) fn advance(&self) -> ControlFlow<()> {
+        self.step("");
+        if self.0.is_stopped() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     /// Nothing, unless the work should end.

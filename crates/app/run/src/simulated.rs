@@ -129,18 +129,11 @@ impl SimulatedPath {
     pub fn follow(gel: &Gel, file: &Path, progress: &dyn Progress) -> Result<Self, RunError> {
         let path = PressPath::parse(&file.display().to_string(), &read_text(file)?)?;
         let shape = gel.shape(&path.indenter)?;
-        let is_taxel = |name: &str| gel.sensor().taxels.iter().any(|taxel| taxel.name == name);
-        if let Some(point) = path.points.iter().find(|point| is_taxel(&point.name)) {
-            return Err(RunError::Input(format!(
-                "{}: the point `{}` is called like a taxel; give it another name",
-                file.display(),
-                point.name
-            )));
-        }
         let work = Work::start(progress, "simulating", path.frames().len());
         let followed = gel
-            .follow(shape, &path, &mut || work.step(""))
+            .follow(shape, &path, &mut || work.advance())
             .at(|| file.display().to_string())?;
+        work.go_on()?;
         Ok(Self {
             provenance: Provenance::Simulated,
             sensor: gel.sensor().name.clone(),

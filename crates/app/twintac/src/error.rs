@@ -38,6 +38,9 @@ pub enum Error {
     #[cfg(feature = "twin")]
     #[error("the twin's settings of the simulation cannot be used")]
     TwinSettings(#[from] serde_json::Error),
+    /// A path can't be.
+    #[error(transparent)]
+    Path(#[from] twintac_protocol::PathError),
     /// A shape can't be.
     #[error(transparent)]
     Shape(#[from] twintac_shape::ShapeError),
@@ -81,6 +84,10 @@ impl Error {
         match self {
             Self::Sensor(error) => of_description(error),
             Self::Shape(error) => of_shape(error),
+            Self::Path(error) => ErrorPlace {
+                field: Some(error.field.clone()),
+                ..ErrorPlace::default()
+            },
             #[cfg(feature = "recording")]
             Self::Recording(error) => of_recording(error),
             #[cfg(feature = "fast")]

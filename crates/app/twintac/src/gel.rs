@@ -1,10 +1,15 @@
 //! A sensor's gel, pressed.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use twintac_simulate::{Keyframe, PressPlace, SimulateSettings};
+use twintac_protocol::PressPath;
+use twintac_simulate::{Followed, GelState, Keyframe, PressPlace, SimulateSettings};
 
-use crate::{Error, Press, PressFrame, Sensor};
+use crate::{Error, Pose, Press, PressFrame, Sensor};
+
+/// Places between two poses of [`Gel::state`] at which the mesh is made fine.
+const PLACES_BETWEEN: f64 = 16.0;
 
 /// The gel of a sensor, ready to be pressed: a finite-element model with the material of the description.
 #[derive(Clone, Debug)]
@@ -60,6 +65,59 @@ impl Gel {
                 reason: failure.unwrap_or_default(),
             }),
         }
+    }
+
+    /// Where an indenter, lowered from a pose in the gel's frame whose height is ignored, first touches the undeformed gel.
+    ///
+    /// # Errors
+    /// An indenter that the sensor does not have; a place beside the gel.
+    pub fn touch(&self, indenter: &str, above: &Pose) -> Result<Pose, Error> {
+        Ok(self.gel.touch(self.gel.shape(indenter)?, above)?)
+    }
+
+    /// The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go,
+    /// at least one: the mesh is fine along the straight ways between them, and for the deepest of them. Takes a fraction of a second.
+    ///
+    /// ```
+    /// use twintac::{Error, Gel, Pose, Sensor, SimulateSettings};
+    ///
+    /// let settings = SimulateSettings { max_path_nodes: 2000, ..SimulateSettings::default() };
+    /// let gel = Gel::with_settings(&Sensor::phystac()?, settings);
+    /// let touch = gel.touch("sphere-25", &Pose::from_position([-4.0, 4.0, 0.0].into()))?;
+    /// let moved = |x_mm: f64, depth_mm: f64| Pose { position_mm: touch.position_mm + glam::dvec3(x_mm, 0.0, -depth_mm), ..touch };
+    /// let mut state = gel.state("sphere-25", &[moved(0.0, 1.0), moved(2.0, 1.0)])?;
+    /// state.step(0.018, &moved(0.0, 1.0))?;
+    /// let frame = state.step(0.018, &moved(2.0, 1.0))?; // slid aside
+    /// println!("{:.2} N, {:.2} N mm, {:.2} kPa at t5", frame.force_n, frame.torque_n_mm, frame.pressure_kpa["t5"]);
+    /// assert!(frame.force_n.z < -0.3);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// An indenter that the sensor does not have; a first pose beside the gel.
+    ///
+    /// # Panics
+    /// No pose.
+    pub fn state(&self, indenter: &str, poses: &[Pose]) -> Result<GelState, Error> {
+        assert!(!poses.is_empty(), "at least one pose");
+        let path = PressPath {
+            rate_hz: Some(PLACES_BETWEEN),
+            ..PressPath::through(indenter, (0..).map(f64::from).zip(poses.iter().copied()))
+        };
+        Ok(self.gel.state_along(self.gel.shape(indenter)?, &path)?)
+    }
+
+    /// Takes an indenter along a path, frame by frame. `advanced` hears of each, and says whether to go on. A path that cannot be followed to its end is no error:
+    /// its frames end early, and [`Followed::failure`] says why.
+    ///
+    /// # Errors
+    /// An indenter that the sensor does not have; a first pose beside the gel; a point outside the gel, or with the name of a taxel.
+    pub fn follow(
+        &self,
+        path: &PressPath,
+        advanced: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Followed, Error> {
+        Ok(self.gel.follow(self.gel.shape(&path.indenter)?, path, advanced)?)
     }
 }
 

@@ -35,6 +35,7 @@
 //! | [`Sensor`] | a sensor as its description says: gel, taxels, indenters | |
 //! | [`Press`] | where, with what, how deep and how fast to press | |
 //! | [`Gel`], [`Pressed`] | the sensor's gel, and what it does under a press: forces, and pressures at the ports | |
+//! | [`GelState`]; [`PressPath`], [`Followed`] | the gel pressed frame by frame, as poses come; a path of poses and forces, and what the gel does along it | |
 //! | [`PressureMap`] | pressure between the taxels, and a picture of it | `map` |
 //! | [`Recording`] | recorded presses, as Parquet or from CSV files of any laboratory ([`Import`]) | `recording` |
 //! | [`Reader`], [`Reading`] | frames of a sensor on an I²C bus, or of an emulated one | `live` |
@@ -44,6 +45,7 @@
 //! | [`SensorBatch`], [`Imperfection`], [`Coupling`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
 //! | [`Tasks`], [`Kind`] | many environments of a task for reinforcement learning | `tasks` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
+//! | [`Locator`], [`LocatorTracker`] | the same by a trained twin, whose memory is taken off the readings | `run` |
 //! | [`Dataset`] | many simulated presses, made in shards by as many machines as there are | `run` |
 //! | [`Run`] | a folder in which recordings become a judged twin and a report | `run` |
 //!
@@ -197,6 +199,7 @@ pub use twintac_inverse::{
     Contact, FastModel, FloorMap, Inverse, InverseError, InverseSettings, KnownShape, ReadingTable,
     TableModel, Tracker,
 };
+pub use twintac_protocol::{PathError, Point, PressPath, Waypoint, Zero};
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Column, Import, Provenance, Recording};
 #[cfg(feature = "run")]
@@ -205,14 +208,14 @@ pub use twintac_run::characterization::Recorded;
 pub use twintac_run::dataset::{Dataset, DatasetPlan, FastSource, Shard, check_dataset, merge_dataset};
 #[cfg(feature = "run")]
 pub use twintac_run::{
-    Caller, Metrics, Outcome, Progress, Run, RunError, RunSettings, Silent, import_files, read_recordings,
-    sha256_of_file,
+    Caller, Locator, LocatorTracker, Metrics, Outcome, Predicted, Progress, Run, RunError, RunSettings,
+    Silent, import_files, read_recordings, sha256_of_file,
 };
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
 pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
-pub use twintac_simulate::SimulateSettings;
+pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "tasks")]
 pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};
 

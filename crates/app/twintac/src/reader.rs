@@ -21,10 +21,16 @@ pub struct Reader {
 /// A frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
+    /// Its number, from 0, of all that were asked of the sensor: numbers that are missing were missed, or the bus gave none. The first frames made the tare.
+    pub sequence: u64,
     /// When the taxels were triggered, s since the sensor was switched on.
     pub time_s: f64,
     /// Readings above what the taxels read untouched, kPa; `[n_taxels]`, `None` of a taxel that gives no usable one.
     pub readings_kpa: Vec<Option<f64>>,
+    /// Why a taxel's reading cannot be used, in a word or two; `[n_taxels]`, `None` of a taxel that works.
+    pub faults: Vec<Option<&'static str>>,
+    /// Temperatures of the barometers, °C; `[n_taxels]`, `None` of one that gives none.
+    pub temperatures_c: Vec<Option<f64>>,
 }
 
 impl Reader {
@@ -68,16 +74,36 @@ impl Reader {
         self.live.about.provenance
     }
 
-    /// The next frame.
+    /// What was odd when the sensor was switched on, a sentence each.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.live.notes
+    }
+
+    /// The next frame. Up to 256 wait for whom is late; more are missed.
     ///
     /// # Errors
     /// A sensor that has failed for 2 s on end.
     pub fn read(&mut self) -> Result<Reading, Error> {
-        let reading = self.live.source.next(PATIENCE)?.ok_or_else(silent)?;
-        Ok(Reading {
+        self.wait(PATIENCE)?.ok_or_else(silent)
+    }
+
+    /// The next frame, or `None` if none comes for so long.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn wait(&mut self, patience: Duration) -> Result<Option<Reading>, Error> {
+        let Some(reading) = self.live.source.next(patience)? else {
+            return Ok(None);
+        };
+        let taxels = &reading.frame.taxels;
+        Ok(Some(Reading {
+            sequence: reading.sequence,
             time_s: reading.bench_s,
             readings_kpa: self.tare.above_kpa(&reading.frame),
-        })
+            faults: taxels.iter().map(|taxel| taxel.state.fault()).collect(),
+            temperatures_c: taxels.iter().map(|taxel| taxel.temperature_c).collect(),
+        }))
     }
 }
 

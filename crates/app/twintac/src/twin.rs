@@ -7,11 +7,15 @@ use digitac::{Model, Prediction, TwinAtPlace, TwinState};
 #[cfg(feature = "sensors")]
 use twintac_fast::FastGel;
 use twintac_recording::Provenance;
+#[cfg(feature = "run")]
+use twintac_run::Predictor;
 use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 use twintac_sensors::{Imperfection, SensorBatch};
 
 use crate::{Error, Press, Sensor};
+#[cfg(feature = "run")]
+use crate::{Predicted, PressPath};
 
 /// A trained twin: what the barometers of one sensor would read while its gel is pressed.
 #[derive(Clone, Debug)]
@@ -61,6 +65,21 @@ impl Twin {
         let plans = std::slice::from_ref(&press.plan);
         let twin = (&self.model.twin, self.model.record.certainty.as_ref());
         Ok(digitac::predict(twin, bench, &self.gel, plans, rate_hz)?.swap_remove(0))
+    }
+
+    /// What the barometers would read along a path: the gel is solved frame by frame, sliding and tilting included. `progress` hears of each frame, and can stop it.
+    /// [`Predicted::failure`] says why a path ends before it should. Points of the path are not read.
+    ///
+    /// # Errors
+    /// An indenter that the sensor does not have; a path that misses the gel; work that was stopped.
+    #[cfg(feature = "run")]
+    pub fn predict_along(
+        &self,
+        path: &PressPath,
+        progress: &dyn twintac_run::Progress,
+    ) -> Result<Predicted, Error> {
+        let predictor = Predictor::new(self.model.clone(), self.gel.clone());
+        Ok(predictor.along(path.clone(), progress)?)
     }
 
     /// The twin at the place of a press and down to its depth, to be stepped with depths or poses as they come. Takes a second; a step then

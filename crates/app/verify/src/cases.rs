@@ -1,5 +1,6 @@
 //! The presses that are timed.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, ensure};
@@ -183,7 +184,10 @@ impl Case {
         tolerance: f64,
         advanced: &mut dyn FnMut(),
     ) -> Result<Followed> {
-        let followed = self.gel(tolerance, linear).follow(&BALL, &self.path, advanced)?;
+        let followed = self.gel(tolerance, linear).follow(&BALL, &self.path, &mut || {
+            advanced();
+            ControlFlow::Continue(())
+        })?;
         if let Some(failure) = &followed.failure {
             anyhow::bail!("{}: {failure}", self.name);
         }

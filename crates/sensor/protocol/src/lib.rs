@@ -14,7 +14,7 @@ mod target;
 
 pub use load::{Load, LoadPlan};
 pub use part::Part;
-pub use path::{PathFrame, Point, PressPath, Waypoint, Zero};
+pub use path::{PathError, PathFrame, Point, PressPath, Waypoint, Zero};
 pub use places::{Area, Places};
 pub use plan::PressPlan;
 pub use protocol::Protocol;

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
-use twintac_config::{ConfigError, Document};
+use twintac_config::ConfigError;
 use twintac_shape::Pose;
 
 /// Most frames of a path.
@@ -32,6 +32,28 @@ pub struct PressPath {
     /// Places in the gel, other than the taxels, at which to read the pressure.
     #[serde(default)]
     pub points: Vec<Point>,
+}
+
+/// What of a path cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{field}` {problem}; {hint}")]
+pub struct PathError {
+    /// The field, with indices from 0: `poses[2].time_s`.
+    pub field: String,
+    /// What is wrong, read after the field's name.
+    pub problem: String,
+    /// What to do about it.
+    pub hint: String,
+}
+
+impl PathError {
+    fn new(field: &str, problem: &str, hint: &str) -> Self {
+        Self {
+            field: field.to_owned(),
+            problem: problem.to_owned(),
+            hint: hint.to_owned(),
+        }
+    }
 }
 
 /// Where heights are counted from.
@@ -95,59 +117,104 @@ pub struct Point {
 }
 
 impl PressPath {
+    /// A path through poses of the indenter in the gel's frame, each at a time, s. The poses themselves are the frames.
+    #[must_use]
+    pub fn through(indenter: &str, poses: impl IntoIterator<Item = (f64, Pose)>) -> Self {
+        let waypoint = |(time_s, pose): (f64, Pose)| Waypoint {
+            time_s,
+            position_mm: pose.position_mm,
+            turn_rad: pose.rotation.to_scaled_axis(),
+            force_n: None,
+        };
+        Self {
+            summary: String::new(),
+            indenter: indenter.to_owned(),
+            zero: Zero::Board,
+            rate_hz: None,
+            poses: poses.into_iter().map(waypoint).collect(),
+            force_direction: down(),
+            force_travel_mm: None,
+            points: Vec::new(),
+        }
+    }
+
     /// Reads a path from the text of a TOML file.
     ///
     /// # Errors
     /// The first field that is wrong, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
         let document = twintac_config::parse::<Self>(file, text)?;
-        document.value.check(&document)?;
+        let wrong = |wrong: PathError| document.error(&wrong.field, wrong.problem, wrong.hint);
+        document.value.validate().map_err(wrong)?;
         Ok(document.value)
     }
 
-    fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
+    /// Whether this path can be.
+    ///
+    /// # Errors
+    /// The first field that is wrong.
+    pub fn validate(&self) -> Result<(), PathError> {
         if self.poses.is_empty() {
-            return Err(document.error("poses", "has none", "give at least one pose"));
+            return Err(PathError::new("poses", "has none", "give at least one pose"));
+        }
+        for (index, pose) in self.poses.iter().enumerate() {
+            let numbers = [pose.position_mm.to_array(), pose.turn_rad.to_array()];
+            if !pose.time_s.is_finite() || !numbers.iter().flatten().all(|number| number.is_finite()) {
+                let field = format!("poses[{index}]");
+                return Err(PathError::new(
+                    &field,
+                    "has a number that is not finite",
+                    "give finite ones",
+                ));
+            }
         }
         for (index, pair) in self.poses.windows(2).enumerate() {
             if pair[1].time_s <= pair[0].time_s {
                 let field = format!("poses[{}].time_s", index + 1);
                 let problem = format!("is {} s after {} s", pair[1].time_s, pair[0].time_s);
-                return Err(document.error(&field, problem, "let times increase"));
+                return Err(PathError::new(&field, &problem, "let times increase"));
             }
         }
         if let Some(rate_hz) = self.rate_hz {
             let n_frames = rate_hz * (self.poses[self.poses.len() - 1].time_s - self.poses[0].time_s);
-            if rate_hz <= 0.0 || n_frames > MOST_FRAMES {
+            if !(rate_hz > 0.0 && n_frames <= MOST_FRAMES) {
                 let hint = format!("give a rate above zero that makes at most {MOST_FRAMES} frames");
-                return Err(document.error("rate_hz", format!("is {rate_hz} Hz"), hint));
+                return Err(PathError::new("rate_hz", &format!("is {rate_hz} Hz"), &hint));
             }
         }
         for (index, force_n) in self.poses.iter().map(|pose| pose.force_n).enumerate() {
-            if let Some(force_n) = force_n.filter(|force_n| *force_n <= 0.0) {
+            if let Some(force_n) = force_n.filter(|force_n| !(*force_n > 0.0 && force_n.is_finite())) {
                 let field = format!("poses[{index}].force_n");
                 let problem = format!("is {force_n} N");
                 let hint = "give a force above zero, or leave it out and give a position off the gel";
-                return Err(document.error(&field, problem, hint));
+                return Err(PathError::new(&field, &problem, hint));
             }
         }
         if self.force_direction.try_normalize().is_none() {
-            return Err(document.error("force_direction", "is zero", "give a vector of any length"));
+            return Err(PathError::new(
+                "force_direction",
+                "is zero",
+                "give a vector of any length",
+            ));
         }
         if let Some(travel_mm) = self.force_travel_mm.filter(|travel_mm| *travel_mm <= 0.0) {
             let problem = format!("is {travel_mm} mm");
-            return Err(document.error("force_travel_mm", problem, "give a distance above zero"));
+            return Err(PathError::new(
+                "force_travel_mm",
+                &problem,
+                "give a distance above zero",
+            ));
         }
         for (index, point) in self.points.iter().enumerate() {
             if point.radius_mm < 0.0 {
                 let field = format!("points[{index}].radius_mm");
                 let problem = format!("is {} mm", point.radius_mm);
-                return Err(document.error(&field, problem, "give zero or more"));
+                return Err(PathError::new(&field, &problem, "give zero or more"));
             }
             if self.points[..index].iter().any(|other| other.name == point.name) {
                 let field = format!("points[{index}].name");
                 let problem = format!("is `{}` again", point.name);
-                return Err(document.error(&field, problem, "name each point once"));
+                return Err(PathError::new(&field, &problem, "name each point once"));
             }
         }
         Ok(())

@@ -37,6 +37,12 @@ pub enum SimulateError {
         /// The names that there are.
         described: Vec<String>,
     },
+    /// A point of a path has the name of a taxel.
+    #[error("the point `{point}` is called like a taxel; give it another name")]
+    PointIsTaxel {
+        /// The name.
+        point: String,
+    },
     /// A taxel's port, or a point, reaches outside the mesh.
     #[error("`{place}` reaches more than {distance_mm:.2} mm outside the gel's mesh")]
     PortOutside {

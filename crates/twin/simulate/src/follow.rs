@@ -1,16 +1,16 @@
 //! An indenter on a path of its own: down, aside, tilted, and up again, to poses or with forces.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 use twintac_depth_table::SolveQuality;
 use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
-use twintac_softbody::{Cost, Frame, Push, SolveError, State};
+use twintac_softbody::Cost;
 
-use crate::history::solve_quality;
-use crate::readout::PortReadout;
+use crate::walk::Walk;
 use crate::{Gel, GelMesh, SimulateError};
 
 /// First guess of the depth that a prescribed force presses, as a fraction of the gel's height.
@@ -88,7 +88,7 @@ impl Gel {
         if path.asks_for_force() {
             let guess_mm = deepest_mm.max(GUESSED_DEPTH * self.height_mm());
             let gel = self.coarse().mesh_for(shape, &first, guess_mm, Some(ways_mm))?;
-            let mut walk = Walk::new(&gel, path, self.height_mm());
+            let mut walk = Walk::new(gel, path, self.height_mm());
             // Between waypoints forces and poses change evenly: the deepest place is at one.
             let waypoints = PressPath {
                 rate_hz: None,
@@ -105,7 +105,7 @@ impl Gel {
     }
 
     /// A path's frames in the gel's frame.
-    fn frames(&self, shape: &Shape, path: &PressPath) -> Result<Vec<PathFrame>, SimulateError> {
+    pub(crate) fn frames(&self, shape: &Shape, path: &PressPath) -> Result<Vec<PathFrame>, SimulateError> {
         let mut frames = path.frames();
         if path.zero == Zero::Touch {
             let zero_mm = self.touch(shape, &frames[0].pose)?.position_mm.z;
@@ -116,7 +116,7 @@ impl Gel {
         Ok(frames)
     }
 
-    /// Takes an indenter along a path. The mesh is fine wherever the path presses.
+    /// Takes an indenter along a path. The mesh is fine wherever the path presses. `advanced` hears of each frame, and says whether to go on.
     ///
     /// # Errors
     /// Those of [`Gel::mesh`], and a point outside the gel. A path that can't be followed to its end is no error.
@@ -124,127 +124,30 @@ impl Gel {
         &self,
         shape: &Shape,
         path: &PressPath,
-        advanced: &mut dyn FnMut(),
+        advanced: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Followed, SimulateError> {
-        let rough = self.rough_for(&path.indenter);
-        let frames = rough.frames(shape, path)?;
-        let touch_mm = rough.touch(shape, &frames[0].pose)?.position_mm.z;
-        let depth_mm = |pose: &Pose| touch_mm - pose.position_mm.z;
-        // Somebody waits for this one press.
-        let gel = rough.mesh_along(shape, path)?.on_two_threads();
-        let mesh = gel.body.mesh();
-        let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
-        let mut ports: Vec<(String, &PortReadout)> = taxels.zip(&gel.ports).collect();
-        let points = path
-            .points
-            .iter()
-            .map(|point| PortReadout::new(mesh, &point.name, point.position_mm, point.radius_mm))
-            .collect::<Result<Vec<_>, _>>()?;
-        ports.extend(path.points.iter().map(|point| point.name.clone()).zip(&points));
-
-        let mut walk = Walk::new(&gel, path, self.height_mm());
+        let frames = self.frames(shape, path)?;
+        let mut state = self.state_along(shape, path)?;
+        let [n_nodes, n_tets] = state.mesh_size();
         let mut followed = Followed {
-            n_nodes: mesh.nodes_mm.len(),
-            n_tets: mesh.tets.len(),
+            n_nodes,
+            n_tets,
             frames: Vec::with_capacity(frames.len()),
             failure: None,
         };
-        for path_frame in &frames {
-            let time_s = path_frame.time_s;
-            let frame = match walk.step(path_frame) {
-                Ok(frame) => frame,
+        for to in &frames {
+            match state.walk_to(to) {
+                Ok(frame) => followed.frames.push(frame),
                 Err(error) => {
-                    followed.failure = Some(format!("at {time_s} s: {error}"));
+                    followed.failure = Some(format!("at {} s: {error}", to.time_s));
                     break;
                 }
-            };
-            let pose = walk.pose().unwrap_or(path_frame.pose);
-            let nodal_kpa = gel.body.pressure_kpa(&walk.state);
-            followed.frames.push(FollowedFrame {
-                time_s,
-                position_mm: pose.position_mm,
-                depth_mm: depth_mm(&pose),
-                force_n: frame.indenter_force_n,
-                torque_n_mm: frame.indenter_torque_n_mm,
-                pressure_kpa: ports
-                    .iter()
-                    .map(|(name, port)| (name.clone(), port.read(&nodal_kpa)))
-                    .collect(),
-                port_slope_kpa_per_mm: gel.port_slopes_kpa_per_mm(&nodal_kpa),
-                stress_feature_kpa_per_mm: if self.stress_along_paths {
-                    gel.stress_features_kpa_per_mm(&gel.fields(&walk.state))
-                } else {
-                    Vec::new()
-                },
-                quality: solve_quality(&frame),
-                wall_time_s: frame.wall_time_s,
-                cost: frame.cost,
-            });
-            advanced();
+            }
+            if advanced().is_break() {
+                followed.failure = Some(format!("stopped after {} s", to.time_s));
+                break;
+            }
         }
         Ok(followed)
-    }
-}
-
-/// A gel on whose indenter a path is followed.
-struct Walk<'a> {
-    gel: &'a GelMesh,
-    state: State,
-    direction: DVec3,
-    travel_mm: f64,
-    /// Time of the last frame, s.
-    time_s: Option<f64>,
-    /// How far beyond its pose the indenter was at the last frame of prescribed force, mm.
-    beyond_mm: f64,
-    /// Force along the direction at the last frame of prescribed pose, N.
-    force_n: f64,
-}
-
-impl<'a> Walk<'a> {
-    fn new(gel: &'a GelMesh, path: &PressPath, height_mm: f64) -> Self {
-        Self {
-            gel,
-            state: gel.body.rest(),
-            direction: path.force_direction.normalize_or(DVec3::NEG_Z),
-            travel_mm: path.force_travel_mm.unwrap_or(height_mm),
-            time_s: None,
-            beyond_mm: 0.0,
-            force_n: 0.0,
-        }
-    }
-
-    /// Where the indenter is.
-    fn pose(&self) -> Option<Pose> {
-        self.state.gel_from_indenter()
-    }
-
-    fn step(&mut self, to: &PathFrame) -> Result<Frame, SolveError> {
-        let time_step_s = to.time_s - self.time_s.unwrap_or(to.time_s);
-        let (body, indenter) = (&self.gel.body, self.gel.indenter.as_ref());
-        let mut pose = to.pose;
-        let frame = match to.forces_n {
-            [from_n, Some(to_n)] => {
-                let from_n = from_n.unwrap_or(self.force_n);
-                let push = Push {
-                    direction: self.direction,
-                    force_n: from_n + to.part * (to_n - from_n),
-                    travel_mm: self.travel_mm,
-                };
-                let frame = body.advance_to_force(&mut self.state, indenter, &pose, &push, time_step_s)?;
-                let found_mm = self.pose().map_or(pose.position_mm, |found| found.position_mm);
-                self.beyond_mm = (found_mm - pose.position_mm).dot(self.direction);
-                frame
-            }
-            [from_n, None] => {
-                if from_n.is_some() {
-                    pose.position_mm += self.direction * (self.beyond_mm * (1.0 - to.part));
-                }
-                let frame = body.advance(&mut self.state, indenter, &pose, time_step_s)?;
-                self.force_n = frame.indenter_force_n.dot(self.direction).max(0.0);
-                frame
-            }
-        };
-        self.time_s = Some(to.time_s);
-        Ok(frame)
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // helpers of tests
 
+use std::ops::ControlFlow::Continue;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
@@ -85,8 +86,10 @@ fn place(gel: &Gel, indenter: &str, x_mm: f64, depth_mm: f64) -> PressPlace {
 
 fn follow(gel: &Gel, path: &str) -> Followed {
     let path = PressPath::parse("path", path).unwrap();
-    gel.follow(&place(gel, &path.indenter, 0.0, 0.0).shape, &path, &mut || ())
-        .unwrap()
+    gel.follow(&place(gel, &path.indenter, 0.0, 0.0).shape, &path, &mut || {
+        Continue(())
+    })
+    .unwrap()
 }
 
 #[test]

@@ -132,7 +132,7 @@ impl Locator {
             .map(|press| record.taught_by.contains(&press_checksum(press)))
             .collect();
         let (mut presses, mut busy_s) = (Vec::new(), 0.0);
-        let mut following: Option<Following> = None;
+        let mut following: Option<LocatorTracker> = None;
         for (number, press) in recording.presses.iter().enumerate() {
             let before = number.checked_sub(1).map(|before| &recording.presses[before]);
             if !before.is_some_and(|before| follows(before, press)) {
@@ -166,8 +166,23 @@ impl Locator {
         })
     }
 
-    fn start(&self) -> Following {
-        Following {
+    /// Names of the indenters that it tells apart: the numbers of a contact's shape count these.
+    #[must_use]
+    pub fn indenters(&self) -> &[String] {
+        &self.indenters
+    }
+
+    /// Names of the taxels, in the order of readings.
+    #[must_use]
+    pub fn taxels(&self) -> &[String] {
+        &self.model.record.taxels
+    }
+
+    /// Follows a sensor that nothing touches yet, as its frames come.
+    #[must_use]
+    pub fn start(&self) -> LocatorTracker {
+        LocatorTracker {
+            taxels: self.taxels.clone(),
             sensor: self.model.twin.without_memory(),
             tracker: self.inverse.start(),
             before_s: None,
@@ -177,15 +192,17 @@ impl Locator {
         }
     }
 
-    fn frame(&self, following: &mut Following, press: &Press, frame: usize, truth: &Truth) -> LocatedFrame {
+    fn frame(
+        &self,
+        following: &mut LocatorTracker,
+        press: &Press,
+        frame: usize,
+        truth: &Truth,
+    ) -> LocatedFrame {
         let time_s = press.time_s[frame];
         let since_s = following.before_s.map_or(0.0, |before_s| time_s - before_s);
         following.before_s = Some(time_s);
-        let contact = following.step(
-            since_s,
-            (&press.taxels_kpa[frame], &press.valid[frame]),
-            &self.taxels,
-        );
+        let contact = following.update(since_s, &press.taxels_kpa[frame], &press.valid[frame]);
         let contact = contact.cloned();
         let found = contact.as_ref();
         LocatedFrame {
@@ -204,24 +221,23 @@ impl Locator {
     }
 }
 
-/// A sensor that is followed.
-struct Following {
+/// Follows the contact of one sensor by its trained twin, frame by frame.
+#[derive(Clone, Debug)]
+pub struct LocatorTracker {
     sensor: WithoutMemory,
     tracker: Tracker<TableModel>,
     before_s: Option<f64>,
     usable_kpa: Vec<f64>,
     readings_kpa: Vec<f64>,
-    /// Of the taxels that are read.
+    /// Taxels that are read, by index, and what they read.
+    taxels: Vec<usize>,
     read_kpa: Vec<f64>,
 }
 
-impl Following {
-    fn step(
-        &mut self,
-        since_s: f64,
-        (readings_kpa, valid): (&[f64], &[bool]),
-        taxels: &[usize],
-    ) -> Option<&Contact> {
+impl LocatorTracker {
+    /// Takes a frame, `since_s` after the one before: readings above the untouched sensor, kPa, and whether each is usable; `[n_taxels]` both. For one that is not,
+    /// the taxel's last usable one stands. Returns what touches, or nothing if the readings are within noise.
+    pub fn update(&mut self, since_s: f64, readings_kpa: &[f64], valid: &[bool]) -> Option<&Contact> {
         for ((usable, reading), valid) in self.usable_kpa.iter_mut().zip(readings_kpa).zip(valid) {
             if *valid && reading.is_finite() {
                 *usable = *reading;
@@ -229,7 +245,7 @@ impl Following {
         }
         self.readings_kpa.copy_from_slice(&self.usable_kpa);
         self.sensor.step(since_s, &mut self.readings_kpa);
-        for (read, taxel) in self.read_kpa.iter_mut().zip(taxels) {
+        for (read, taxel) in self.read_kpa.iter_mut().zip(&self.taxels) {
             *read = self.readings_kpa[*taxel];
         }
         let contact = self.tracker.update(since_s, &self.read_kpa);

@@ -1,6 +1,7 @@
 //! Our answer beside CalculiX's.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use anyhow::{Context, Result, bail, ensure};
 use twintac_simulate::{Followed, Gel, SimulateSettings};
@@ -121,7 +122,8 @@ pub(super) fn compare_elements(case: &Case) -> Result<Compared> {
 fn follow(case: &Case, settings: SimulateSettings) -> Result<Followed> {
     let sensor = case.sensor()?;
     let indenter = sensor.indenters.first().context("the sensor has an indenter")?;
-    Ok(Gel::new(sensor.clone(), settings).follow(&indenter.shape, &case.path()?, &mut || ())?)
+    Ok(Gel::new(sensor.clone(), settings)
+        .follow(&indenter.shape, &case.path()?, &mut || ControlFlow::Continue(()))?)
 }
 
 impl ComparedFrame {

@@ -1,0 +1,142 @@
+//! A gel that is pressed frame by frame.
+
+use glam::DVec3;
+use twintac_protocol::{PathFrame, PressPath};
+use twintac_shape::{Pose, Shape};
+use twintac_softbody::SolveError;
+
+use crate::history::solve_quality;
+use crate::readout::PortReadout;
+use crate::walk::Walk;
+use crate::{FollowedFrame, Gel, SimulateError};
+
+/// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. It keeps how it is deformed, what its material remembers, and where friction
+/// holds it.
+pub struct GelState {
+    walk: Walk,
+    /// Ports of the taxels, then points, by name.
+    ports: Vec<(String, PortReadout)>,
+    /// Height of the indenter's origin at first touch, at the place and turn of the first pose, mm.
+    touch_mm: f64,
+    reads_stress: bool,
+}
+
+impl Gel {
+    /// The gel before an indenter is taken along a path. The mesh is fine wherever the path presses.
+    ///
+    /// # Errors
+    /// Those of [`Gel::mesh`]; a point outside the gel, or with the name of a taxel.
+    pub fn state_along(&self, shape: &Shape, path: &PressPath) -> Result<GelState, SimulateError> {
+        let rough = self.rough_for(&path.indenter);
+        let first = rough.frames(shape, path)?[0].pose;
+        let touch_mm = rough.touch(shape, &first)?.position_mm.z;
+        // Somebody waits for this one press.
+        let gel = rough.mesh_along(shape, path)?.on_two_threads();
+        let taxels = self.sensor().taxels.iter().map(|taxel| taxel.name.clone());
+        let mut ports: Vec<(String, PortReadout)> = taxels.zip(gel.ports.iter().cloned()).collect();
+        let n_taxels = ports.len();
+        for point in &path.points {
+            if ports[..n_taxels].iter().any(|(taxel, _)| *taxel == point.name) {
+                let point = point.name.clone();
+                return Err(SimulateError::PointIsTaxel { point });
+            }
+            let port = PortReadout::new(gel.body.mesh(), &point.name, point.position_mm, point.radius_mm)?;
+            ports.push((point.name.clone(), port));
+        }
+        Ok(GelState {
+            walk: Walk::new(gel, path, self.height_mm()),
+            ports,
+            touch_mm,
+            reads_stress: self.stress_along_paths,
+        })
+    }
+}
+
+impl GelState {
+    /// One more frame, `since_previous_s` after the last: the indenter is taken to a pose, evenly on a straight way. The first frame takes no notice of the time.
+    ///
+    /// # Errors
+    /// [`SimulateError::Press`]: the solver finds no equilibrium. The gel is then as it was.
+    pub fn step(
+        &mut self,
+        since_previous_s: f64,
+        gel_from_indenter: &Pose,
+    ) -> Result<FollowedFrame, SimulateError> {
+        self.step_to(since_previous_s, gel_from_indenter, None)
+    }
+
+    /// The same to where the indenter presses with a force straight down, N, above 0: the pose, moved up or down by at most the gel's height.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step); a force that is not met.
+    pub fn step_to_force(
+        &mut self,
+        since_previous_s: f64,
+        gel_from_indenter: &Pose,
+        force_n: f64,
+    ) -> Result<FollowedFrame, SimulateError> {
+        self.step_to(since_previous_s, gel_from_indenter, Some(force_n))
+    }
+
+    /// Lets go of the gel: it is at rest, and remembers nothing.
+    pub fn rest(&mut self) {
+        self.walk.rest();
+    }
+
+    /// Where the indenter is; nowhere before the first frame.
+    #[must_use]
+    pub fn gel_from_indenter(&self) -> Option<Pose> {
+        self.walk.pose()
+    }
+
+    fn step_to(
+        &mut self,
+        since_previous_s: f64,
+        gel_from_indenter: &Pose,
+        force_n: Option<f64>,
+    ) -> Result<FollowedFrame, SimulateError> {
+        let to = PathFrame {
+            time_s: self.walk.time_s() + since_previous_s,
+            pose: *gel_from_indenter,
+            part: 1.0,
+            forces_n: [None, force_n],
+        };
+        self.walk_to(&to).map_err(|error| SimulateError::Press {
+            depth_mm: self.touch_mm - gel_from_indenter.position_mm.z,
+            error,
+        })
+    }
+
+    /// Nodes and tetrahedra of the mesh.
+    pub(crate) fn mesh_size(&self) -> [usize; 2] {
+        let mesh = self.walk.gel.body.mesh();
+        [mesh.nodes_mm.len(), mesh.tets.len()]
+    }
+
+    pub(crate) fn walk_to(&mut self, to: &PathFrame) -> Result<FollowedFrame, SolveError> {
+        let frame = self.walk.step(to)?;
+        let (gel, state) = (&self.walk.gel, &self.walk.state);
+        let position_mm: DVec3 = self.walk.pose().unwrap_or(to.pose).position_mm;
+        let nodal_kpa = gel.body.pressure_kpa(state);
+        let ports = self.ports.iter();
+        Ok(FollowedFrame {
+            time_s: to.time_s,
+            position_mm,
+            depth_mm: self.touch_mm - position_mm.z,
+            force_n: frame.indenter_force_n,
+            torque_n_mm: frame.indenter_torque_n_mm,
+            pressure_kpa: ports
+                .map(|(name, port)| (name.clone(), port.read(&nodal_kpa)))
+                .collect(),
+            port_slope_kpa_per_mm: gel.port_slopes_kpa_per_mm(&nodal_kpa),
+            stress_feature_kpa_per_mm: if self.reads_stress {
+                gel.stress_features_kpa_per_mm(&gel.fields(state))
+            } else {
+                Vec::new()
+            },
+            quality: solve_quality(&frame),
+            wall_time_s: frame.wall_time_s,
+            cost: frame.cost,
+        })
+    }
+}

@@ -1,0 +1,10 @@
+"""Reads a PhysTac, here an emulated one; yours is `Reader.open("/dev/i2c-1", sensor, counts_per_pa=8)`, 8 being its counts per Pa."""
+
+from twintac import Reader, Sensor
+
+sensor = Sensor.phystac()
+with Reader.emulated(sensor) as reader:
+    for reading in reader:
+        print(f"{reading.time_s:.3f} s: {reading.readings_kpa.round(2)} kPa, {reading.temperatures_c.mean():.1f} °C, {reading.provenance}")
+        if reading.sequence >= 350:  # the emulated ball presses after the first second
+            break

@@ -1,0 +1,211 @@
+//! Paths of an indenter, and what a gel does along them.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use numpy::ndarray::{Ix1, Ix2};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use twintac::{FollowedFrame, Zero};
+
+use crate::array::{Numbers, in_order, rows};
+use crate::error::{OrRaise, unreadable, unusable};
+use crate::fast::PROVENANCE;
+use crate::pose::poses;
+
+/// A path of an indenter over and into a gel, through poses or to forces: down, aside, tilted, and up again. Between its poses the indenter moves evenly.
+///
+/// - `indenter`: name of one of the sensor's indenters (`Sensor.indenters`).
+/// - `time_s`: when it is at each pose, s, increasing; `[n_poses]`.
+/// - `gel_from_indenter`: its poses in the gel's frame: place of its origin, mm, and quaternion (x, y, z, w), `[n_poses, 7]`; or the place alone, `[n_poses, 3]`.
+/// - `zero`: where heights are counted from: the `"board"`, or `"touch"`, where the indenter first touches at the place and turn of the first pose.
+/// - `rate_hz`: frames in a second between the poses, Hz; without it, the poses themselves are the frames.
+/// - `force_n`: the force straight down, N, above 0, with which the indenter presses at each pose: it goes down or up from there until it does. NaN where it stays
+///   at the pose; `[n_poses]`.
+///
+/// Raises `Error`, whose `field` is what cannot be.
+#[pyclass(frozen, from_py_object, module = "twintac")]
+#[derive(Clone)]
+pub(crate) struct PressPath {
+    pub(crate) path: twintac::PressPath,
+}
+
+#[pymethods]
+impl PressPath {
+    #[new]
+    #[pyo3(signature = (indenter, time_s, gel_from_indenter, *, zero="board", rate_hz=None, force_n=None))]
+    fn new(
+        py: Python<'_>,
+        indenter: &str,
+        time_s: Numbers<'_, Ix1>,
+        gel_from_indenter: Numbers<'_, Ix2>,
+        zero: &str,
+        rate_hz: Option<f64>,
+        force_n: Option<Numbers<'_, Ix1>>,
+    ) -> PyResult<Self> {
+        let poses = poses(py, "gel_from_indenter", &gel_from_indenter)?;
+        let of_each = |field: &str, numbers: &Numbers<'_, Ix1>| {
+            let numbers = in_order(numbers).into_owned();
+            if numbers.len() == poses.len() {
+                return Ok(numbers);
+            }
+            let problem = format!(
+                "has {} numbers, expected one for each of {} poses",
+                numbers.len(),
+                poses.len()
+            );
+            Err(unusable(py, field, &problem))
+        };
+        let time_s = of_each("time_s", &time_s)?;
+        let force_n = force_n.map(|force_n| of_each("force_n", &force_n)).transpose()?;
+        let mut path = twintac::PressPath::through(indenter, time_s.into_iter().zip(poses));
+        path.zero = match zero {
+            "board" => Zero::Board,
+            "touch" => Zero::Touch,
+            _ => {
+                let problem = format!("is `{zero}`, expected board or touch");
+                return Err(unusable(py, "zero", &problem));
+            }
+        };
+        path.rate_hz = rate_hz;
+        for (pose, force_n) in path.poses.iter_mut().zip(force_n.unwrap_or_default()) {
+            pose.force_n = Some(force_n).filter(|force_n| !force_n.is_nan());
+        }
+        path.validate().or_raise(py)?;
+        Ok(Self { path })
+    }
+
+    /// Reads a path (TOML), as `twintac simulate --path` does. It may also have points in the gel at which the pressure is read, and another direction of forces.
+    ///
+    /// Raises `Error` with file, line and field if it is wrong, and with the file if it cannot be read.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
+        let parsed = twintac::PressPath::parse(&path.display().to_string(), &text);
+        let path = parsed.map_err(twintac::RunError::from).or_raise(py)?;
+        Ok(Self { path })
+    }
+
+    /// Name of the indenter.
+    #[getter]
+    fn indenter(&self) -> &str {
+        &self.path.indenter
+    }
+
+    /// Time of each frame, s; `[n_frames]`.
+    #[getter]
+    fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let frames = self.path.frames();
+        PyArray1::from_iter(py, frames.iter().map(|frame| frame.time_s))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<PressPath of {:?} through {} poses>",
+            self.path.indenter,
+            self.path.poses.len()
+        )
+    }
+}
+
+/// What a gel does along a path: what `Gel.follow` returns. Every array has a row for each frame, up to the last good one.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct Followed {
+    pub(crate) followed: twintac::Followed,
+    pub(crate) taxels: Vec<String>,
+}
+
+impl Followed {
+    fn each<'py>(&self, py: Python<'py>, value: impl Fn(&FollowedFrame) -> f64) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_iter(py, self.followed.frames.iter().map(value))
+    }
+
+    fn vectors<'py>(
+        &self,
+        py: Python<'py>,
+        value: impl Fn(&FollowedFrame) -> glam::DVec3,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let frames = &self.followed.frames;
+        let numbers = frames.iter().flat_map(|frame| value(frame).to_array());
+        rows(py, numbers.collect(), [frames.len(), 3])
+    }
+}
+
+#[pymethods]
+impl Followed {
+    /// What every number here is: simulated.
+    #[getter]
+    fn provenance(&self) -> &'static str {
+        PROVENANCE
+    }
+
+    /// Why the frames end before the path does; `None` if they do not.
+    #[getter]
+    fn failure(&self) -> Option<&str> {
+        self.followed.failure.as_deref()
+    }
+
+    /// Time, s; `[n_frames]`.
+    #[getter]
+    fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.each(py, |frame| frame.time_s)
+    }
+
+    /// The indenter's origin in the gel's frame, mm; `[n_frames, 3]`.
+    #[getter]
+    fn position_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |frame| frame.position_mm)
+    }
+
+    /// How far the indenter is below where, at the place and turn of the first pose, it first touches the gel, mm; `[n_frames]`.
+    #[getter]
+    fn depth_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.each(py, |frame| frame.depth_mm)
+    }
+
+    /// Force of the indenter on the gel, in the gel's frame, N; `[n_frames, 3]`. A press straight down has a negative z.
+    #[getter]
+    fn force_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |frame| frame.force_n)
+    }
+
+    /// Torque of the indenter on the gel about the indenter's origin, in the gel's frame, N mm; `[n_frames, 3]`.
+    #[getter]
+    fn torque_n_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |frame| frame.torque_n_mm)
+    }
+
+    /// Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`.
+    #[getter]
+    fn readings_kpa<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let frames = &self.followed.frames;
+        let readings = frames.iter().flat_map(|frame| readings_kpa(frame, &self.taxels));
+        rows(py, readings.collect(), [frames.len(), self.taxels.len()])
+    }
+
+    /// Hydrostatic pressure at each point of the path's file, by name, kPa; `[n_frames]` each.
+    #[getter]
+    fn points_kpa<'py>(&self, py: Python<'py>) -> BTreeMap<&str, Bound<'py, PyArray1<f64>>> {
+        let names = self
+            .followed
+            .frames
+            .first()
+            .map(|frame| frame.pressure_kpa.keys());
+        let points = names
+            .into_iter()
+            .flatten()
+            .filter(|name| !self.taxels.contains(name));
+        points
+            .map(|name| (name.as_str(), self.each(py, |frame| frame.pressure_kpa[name])))
+            .collect()
+    }
+
+    fn __len__(&self) -> usize {
+        self.followed.frames.len()
+    }
+}
+
+/// What the taxels read, in their order, kPa.
+pub(crate) fn readings_kpa(frame: &FollowedFrame, taxels: &[String]) -> Vec<f64> {
+    taxels.iter().map(|taxel| frame.pressure_kpa[taxel]).collect()
+}

@@ -1,0 +1,219 @@
+//! A sensor that is being read.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::error::{OrRaise, unusable};
+use crate::long_call::long_call;
+use crate::sensor::Sensor;
+
+/// How long Ctrl-C may wait to be heard, and how often a frame may not come within this time.
+const PATIENCE: Duration = Duration::from_millis(50);
+const MOST_WAITS: usize = 40;
+
+/// Reads a sensor frame by frame: one on an I²C bus of Linux (`Reader.open`), or an emulated one (`Reader.emulated`).
+///
+/// It reads on a thread of its own, from when it is made until `close` or the end of a `with` block. Iterating gives a `Reading` for each frame, as they come; up to 256
+/// frames wait for whom is late, more are missed. Other threads run meanwhile, and Ctrl-C ends the wait for a frame.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct Reader {
+    /// None once it is closed.
+    reader: Mutex<Option<twintac::Reader>>,
+    provenance: String,
+    taxels: Vec<String>,
+    notes: Vec<String>,
+}
+
+impl Reader {
+    fn start(
+        py: Python<'_>,
+        sensor: &Sensor,
+        start: impl FnOnce(&twintac::Sensor) -> Result<twintac::Reader, twintac::Error> + Send + 'static,
+    ) -> PyResult<Self> {
+        let sensor = sensor.sensor.clone();
+        let taxels = sensor.taxels().map(str::to_owned).collect();
+        let reader = long_call(py, move || start(&sensor))?.or_raise(py)?;
+        Ok(Self {
+            provenance: reader.provenance().to_string(),
+            notes: reader.notes().to_vec(),
+            taxels,
+            reader: Mutex::new(Some(reader)),
+        })
+    }
+}
+
+#[pymethods]
+impl Reader {
+    /// Reads the sensor on a bus such as `/dev/i2c-1`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of its barometers,
+    /// confirmed by who knows the parts; the description's unless given. Takes half a second; Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for a bus that cannot be opened, and a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
+    #[staticmethod]
+    #[pyo3(signature = (bus, sensor, *, counts_per_pa=None))]
+    fn open(py: Python<'_>, bus: PathBuf, sensor: &Sensor, counts_per_pa: Option<u16>) -> PyResult<Self> {
+        #[cfg(target_os = "linux")]
+        return Self::start(py, sensor, move |sensor| {
+            twintac::Reader::open(bus, sensor, counts_per_pa)
+        });
+        #[cfg(not(target_os = "linux"))]
+        {
+            let _ = (sensor, counts_per_pa);
+            let problem = format!("is {}, but only Linux has such buses", bus.display());
+            Err(unusable(py, "bus", &problem))
+        }
+    }
+
+    /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about. Takes half a second; Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for a sensor that is not read this way: one of another number of taxels than eight.
+    #[staticmethod]
+    fn emulated(py: Python<'_>, sensor: &Sensor) -> PyResult<Self> {
+        Self::start(py, sensor, twintac::Reader::emulated)
+    }
+
+    /// Where the readings come from: `"real"` or `"emulated"`.
+    #[getter]
+    fn provenance(&self) -> &str {
+        &self.provenance
+    }
+
+    /// Names of the taxels, in the order of every reading.
+    #[getter]
+    fn taxels(&self) -> Vec<String> {
+        self.taxels.clone()
+    }
+
+    /// What was odd when the sensor was switched on, a sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// The next frame.
+    ///
+    /// Raises `Error` for a sensor that has failed for 2 s on end, and for a reader that is closed.
+    fn read(&self, py: Python<'_>) -> PyResult<Reading> {
+        self.next(py)?.ok_or_else(|| unusable(py, "reader", "is closed"))
+    }
+
+    /// Ends the reading. What is closed is not read again; closing it once more does nothing.
+    fn close(&self, py: Python<'_>) {
+        py.detach(|| drop(self.reader.lock().unwrap_or_else(PoisonError::into_inner).take()));
+    }
+
+    fn __iter__(reader: Bound<'_, Self>) -> Bound<'_, Self> {
+        reader
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Reading>> {
+        self.next(py)
+    }
+
+    /// The reader itself.
+    fn __enter__(reader: Bound<'_, Self>) -> Bound<'_, Self> {
+        reader
+    }
+
+    /// Ends the reading.
+    #[pyo3(signature = (*_error))]
+    fn __exit__(&self, py: Python<'_>, _error: &Bound<'_, pyo3::types::PyTuple>) {
+        self.close(py);
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Reader of {} taxels, {}>", self.taxels.len(), self.provenance)
+    }
+}
+
+impl Reader {
+    /// The next frame; none of a reader that is closed.
+    fn next(&self, py: Python<'_>) -> PyResult<Option<Reading>> {
+        for wait in 0..=MOST_WAITS {
+            let heard = py.detach(|| {
+                let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
+                let reader = reader.as_mut()?;
+                Some(if wait < MOST_WAITS {
+                    reader.wait(PATIENCE)
+                } else {
+                    reader.read().map(Some)
+                })
+            });
+            match heard {
+                None => return Ok(None),
+                Some(frame) => {
+                    if let Some(reading) = frame.or_raise(py)? {
+                        let provenance = self.provenance.clone();
+                        return Ok(Some(Reading { reading, provenance }));
+                    }
+                }
+            }
+            py.check_signals()?;
+        }
+        Ok(None)
+    }
+}
+
+/// A frame of a sensor: what `Reader.read` returns.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct Reading {
+    reading: twintac::Reading,
+    /// Where the readings come from: `"real"` or `"emulated"`.
+    #[pyo3(get)]
+    provenance: String,
+}
+
+#[pymethods]
+impl Reading {
+    /// Its number, from 0, of all frames that were asked of the sensor: numbers that are missing were missed, or the bus gave none. The first ones made the tare.
+    #[getter]
+    fn sequence(&self) -> u64 {
+        self.reading.sequence
+    }
+
+    /// When the taxels were triggered, s since the sensor was switched on.
+    #[getter]
+    fn time_s(&self) -> f64 {
+        self.reading.time_s
+    }
+
+    /// Readings above what the taxels read untouched, kPa, `[n_taxels]`; NaN of a taxel that gives no usable one.
+    #[getter]
+    fn readings_kpa<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        or_nan(py, &self.reading.readings_kpa)
+    }
+
+    /// Whether each taxel's reading can be used; `[n_taxels]`.
+    #[getter]
+    fn is_valid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_iter(py, self.reading.readings_kpa.iter().map(Option::is_some))
+    }
+
+    /// Why a taxel's reading cannot be used, in a word or two, `[n_taxels]`; `None` of a taxel that works.
+    #[getter]
+    fn faults(&self) -> Vec<Option<&'static str>> {
+        self.reading.faults.clone()
+    }
+
+    /// Temperatures of the barometers, °C, `[n_taxels]`; NaN of one that gives none.
+    #[getter]
+    fn temperatures_c<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        or_nan(py, &self.reading.temperatures_c)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Reading {} at {:.3} s, {}>",
+            self.sequence(),
+            self.time_s(),
+            self.provenance
+        )
+    }
+}
+
+fn or_nan<'py>(py: Python<'py>, numbers: &[Option<f64>]) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_iter(py, numbers.iter().map(|number| number.unwrap_or(f64::NAN)))
+}

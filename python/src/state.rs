@@ -1,0 +1,132 @@
+//! A gel that is pressed frame by frame.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use twintac::FollowedFrame;
+
+use crate::error::{OrRaise, unusable};
+use crate::fast::PROVENANCE;
+use crate::long_call::long_call;
+use crate::path::readings_kpa;
+use crate::pose::Pose;
+use crate::sensors::since;
+
+/// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. What `Gel.state` returns. It keeps how it is deformed, what its material
+/// remembers, and where friction holds it.
+#[pyclass(frozen, module = "twintac")]
+pub(crate) struct GelState {
+    held: Arc<Mutex<Held>>,
+    taxels: Vec<String>,
+}
+
+/// The gel, and its last frame.
+struct Held {
+    state: twintac::GelState,
+    last: Option<FollowedFrame>,
+}
+
+impl GelState {
+    pub(crate) fn new(state: twintac::GelState, taxels: Vec<String>) -> Self {
+        let held = Held { state, last: None };
+        Self {
+            held: Arc::new(Mutex::new(held)),
+            taxels,
+        }
+    }
+
+    /// Looks at the gel, once a step that was interrupted is made.
+    fn look<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&mut Held) -> T + Send) -> T {
+        py.detach(|| look(&mut self.held.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+
+    /// A vector of the last frame; zero before the first.
+    fn vector<'py>(
+        &self,
+        py: Python<'py>,
+        vector: impl Fn(&FollowedFrame) -> glam::DVec3 + Send,
+    ) -> Bound<'py, PyArray1<f64>> {
+        let vector = self.look(py, |held| held.last.as_ref().map(vector));
+        PyArray1::from_slice(py, &vector.unwrap_or_default().to_array())
+    }
+}
+
+#[pymethods]
+impl GelState {
+    /// What every number is: simulated.
+    #[getter]
+    fn provenance(&self) -> &'static str {
+        PROVENANCE
+    }
+
+    /// One more frame, `since_previous_s` after the last: the indenter goes straight to a pose in the gel's frame (`gel_from_indenter`). With `force_n`, N, above 0, it then
+    /// goes down or up, by at most the gel's height, until it presses straight down with that force. The first frame takes no notice of the time.
+    ///
+    /// Returns the hydrostatic pressure in the gel over each taxel's port, kPa; `[n_taxels]`. Small steps take milliseconds on a gel of few nodes
+    /// (`Gel(sensor, {"max_path_nodes": 4000})`), long ones on a fine gel seconds. Ctrl-C ends the wait; the step is made all the same.
+    ///
+    /// Raises `Error` if the solver finds no equilibrium: the gel is then as it was before, and smaller steps may do; for a time below 0, and for a force that is not
+    /// above 0 or is not met.
+    #[pyo3(signature = (since_previous_s, gel_from_indenter, *, force_n=None))]
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        since_previous_s: f64,
+        gel_from_indenter: Pose,
+        force_n: Option<f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        since(py, since_previous_s)?;
+        if let Some(force_n) = force_n.filter(|force_n| !(*force_n > 0.0 && force_n.is_finite())) {
+            let problem = format!("is {force_n}, expected a number above 0");
+            return Err(unusable(py, "force_n", &problem));
+        }
+        let (held, taxels) = (Arc::clone(&self.held), self.taxels.clone());
+        let readings_kpa = long_call(py, move || {
+            let mut held = held.lock().unwrap_or_else(PoisonError::into_inner);
+            let pose = &gel_from_indenter.pose;
+            let frame = match force_n {
+                Some(force_n) => held.state.step_to_force(since_previous_s, pose, force_n),
+                None => held.state.step(since_previous_s, pose),
+            }?;
+            let readings_kpa = readings_kpa(&frame, &taxels);
+            held.last = Some(frame);
+            Ok::<_, twintac::Error>(readings_kpa)
+        })?;
+        Ok(PyArray1::from_vec(py, readings_kpa.or_raise(py)?))
+    }
+
+    /// Where the indenter is, in the gel's frame; `None` before the first frame.
+    #[getter]
+    fn gel_from_indenter(&self, py: Python<'_>) -> Option<Pose> {
+        let pose = self.look(py, |held| held.state.gel_from_indenter());
+        pose.map(|pose| Pose { pose })
+    }
+
+    /// How far the indenter is below where, at the place and turn of the first of the poses that `Gel.state` was given, it first touches the gel, mm; `None` before the
+    /// first frame.
+    #[getter]
+    fn depth_mm(&self, py: Python<'_>) -> Option<f64> {
+        self.look(py, |held| held.last.as_ref().map(|frame| frame.depth_mm))
+    }
+
+    /// Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. A press straight down has a negative z. Zero before the first frame.
+    #[getter]
+    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.vector(py, |frame| frame.force_n)
+    }
+
+    /// Torque of the indenter on the gel about the indenter's origin at the last frame, in the gel's frame, N mm; `[3]`. Zero before the first frame.
+    #[getter]
+    fn torque_n_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.vector(py, |frame| frame.torque_n_mm)
+    }
+
+    /// Takes the indenter away: the gel is as it was before the first frame, and remembers nothing.
+    fn rest(&self, py: Python<'_>) {
+        self.look(py, |held| {
+            held.state.rest();
+            held.last = None;
+        });
+    }
+}
