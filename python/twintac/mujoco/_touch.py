@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import Body, Coupling, FastGel, Imperfection, Sensor, SensorBatch, Twin
-from ._poses import multiply, rotate, turned_back
+from ._poses import cross, multiply, rotate, turned_back
 from ._shapes import body_of, key_of
 
 _Array = npt.NDArray[np.float64]
@@ -179,7 +179,7 @@ class TouchSensors:
         new = np.zeros_like(self._applied)
         for body, sign in ((self._body[sensor], 1.0), (self._geom_body[geom], -1.0)):
             lever_m = at_m - middle_m[world, body]
-            torque = torque_n_m + np.cross(lever_m, force_n)
+            torque = torque_n_m + cross(lever_m, force_n)
             np.add.at(new, (world, body), sign * np.concatenate([force_n, torque], axis=1))
         applied = _rows(data, "xfrc_applied", self._n_worlds)
         applied += new - self._applied
