@@ -21,7 +21,7 @@ pub(crate) type Answers<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f
 
 /// A sensor's gel without finite elements: microseconds a reading, of bodies of any shape.
 ///
-/// `FastGel.phystac()` is built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
+/// `FastGel.phystac()` and `FastGel.phystac_tip()` are built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct FastGel {
@@ -34,6 +34,13 @@ impl FastGel {
     #[staticmethod]
     fn phystac(py: Python<'_>) -> PyResult<Self> {
         let gel = py.detach(twintac::FastGel::phystac).or_raise(py)?;
+        Ok(Self { gel: Arc::new(gel) })
+    }
+
+    /// The fast gel of PhysTac's fingertip, which is built in.
+    #[staticmethod]
+    fn phystac_tip(py: Python<'_>) -> PyResult<Self> {
+        let gel = py.detach(twintac::FastGel::phystac_tip).or_raise(py)?;
         Ok(Self { gel: Arc::new(gel) })
     }
 

@@ -10,7 +10,7 @@ use crate::error::OrRaise;
 
 /// A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
 ///
-/// `Sensor.phystac()` is built in; `Sensor.load` reads the description of any other.
+/// `Sensor.phystac()` and `Sensor.phystac_tip()` are built in; `Sensor.load` reads the description of any other.
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct Sensor {
@@ -23,6 +23,13 @@ impl Sensor {
     #[staticmethod]
     fn phystac(py: Python<'_>) -> PyResult<Self> {
         let sensor = twintac::Sensor::phystac().or_raise(py)?;
+        Ok(Self { sensor })
+    }
+
+    /// PhysTac's fingertip: eight barometers under a dome, 19.2 mm high.
+    #[staticmethod]
+    fn phystac_tip(py: Python<'_>) -> PyResult<Self> {
+        let sensor = twintac::Sensor::phystac_tip().or_raise(py)?;
         Ok(Self { sensor })
     }
 

@@ -29,7 +29,7 @@ UNIT = {"HoldForce": "N of all frames", "FollowEdge": "mm of edge", "ExploreShap
 
 SETTINGS: dict[str, dict[str, Any]] = {
     "HoldForce": {"n_envs": 128, "n_steps": 110, "gamma": 0.9, "gae_lambda": 0.9, "steps": 800_000},
-    "FollowEdge": {"n_envs": 128, "n_steps": 110, "gamma": 0.97, "gae_lambda": 0.95, "steps": 2_000_000},
+    "FollowEdge": {"n_envs": 128, "n_steps": 110, "gamma": 0.97, "gae_lambda": 0.95, "steps": 3_000_000},
     "ExploreShape": {"n_envs": 512, "n_steps": 20, "gamma": 0.8, "gae_lambda": 0.9, "steps": 4_000_000},
 }
 

@@ -101,7 +101,7 @@ pub(crate) struct FastTrain {
     /// Press with the sensor's own indenters alone, upright and near its ports: for the twin of a bench (`fast_gel` in a run's settings). There are no slides then.
     #[arg(long, conflicts_with = "slides")]
     pub(crate) own_indenters: bool,
-    /// Steps of the training [default: 40000].
+    /// Steps of the training [default: 80000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) steps: Option<u64>,
     /// Seed of all random choices.

@@ -21,6 +21,14 @@ impl Sensor {
         Ok(SensorFile::phystac()?.into())
     }
 
+    /// PhysTac's fingertip: eight barometers under a dome, 19.2 mm high.
+    ///
+    /// # Errors
+    /// None, unless this library was compiled with another description in its place.
+    pub fn phystac_tip() -> Result<Self, Error> {
+        Ok(SensorFile::phystac_tip()?.into())
+    }
+
     /// Reads a description (TOML).
     ///
     /// # Errors

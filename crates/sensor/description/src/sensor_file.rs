@@ -9,6 +9,10 @@ use crate::{Sensor, SensorError};
 
 /// PhysTac's description, and its name for errors.
 const PHYSTAC: (&str, &str) = ("sensors/phystac.toml", include_str!("../built_in/phystac.toml"));
+const PHYSTAC_TIP: (&str, &str) = (
+    "sensors/phystac-tip.toml",
+    include_str!("../built_in/phystac-tip.toml"),
+);
 
 /// A sensor description with its text, which logs, runs and models keep.
 #[derive(Clone, Debug)]
@@ -59,6 +63,15 @@ impl SensorFile {
     /// None, unless this crate was compiled with another file in its place.
     pub fn phystac() -> Result<Self, SensorError> {
         let (name, text) = PHYSTAC;
+        Self::parse(Path::new(name), text)
+    }
+
+    /// The description of PhysTac's domed fingertip, which is built in.
+    ///
+    /// # Errors
+    /// None, unless this crate was compiled with another file in its place.
+    pub fn phystac_tip() -> Result<Self, SensorError> {
+        let (name, text) = PHYSTAC_TIP;
         Self::parse(Path::new(name), text)
     }
 
@@ -139,9 +152,12 @@ mod tests {
     #[test]
     fn what_is_built_in_is_what_people_edit() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-        let (name, text) = PHYSTAC;
-        assert_eq!(text, std::fs::read_to_string(root.join(name)).unwrap());
-        assert_eq!(SensorFile::phystac().unwrap().sensor.taxels.len(), 8);
+        for (name, text) in [PHYSTAC, PHYSTAC_TIP] {
+            assert_eq!(text, std::fs::read_to_string(root.join(name)).unwrap());
+        }
+        for built_in in [SensorFile::phystac(), SensorFile::phystac_tip()] {
+            assert_eq!(built_in.unwrap().sensor.taxels.len(), 8);
+        }
     }
 
     #[test]

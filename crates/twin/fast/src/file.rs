@@ -48,6 +48,9 @@ struct Header {
 /// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
+/// The fingertip's, made by `twintac fast train --sensor sensors/phystac-tip.toml --lessons 1090 --exams 50 --slides 8 --steps 30000`.
+const PHYSTAC_TIP: &[u8] = include_bytes!("../built_in/phystac-tip.safetensors");
+
 impl FastGel {
     /// The fast gel of PhysTac, which is built in.
     ///
@@ -55,6 +58,14 @@ impl FastGel {
     /// None, unless this crate was compiled with another file in its place.
     pub fn phystac() -> Result<Self, FastFileError> {
         Self::from_bytes(PHYSTAC)
+    }
+
+    /// The fast gel of PhysTac's domed fingertip, which is built in.
+    ///
+    /// # Errors
+    /// None, unless this crate was compiled with another file in its place.
+    pub fn phystac_tip() -> Result<Self, FastFileError> {
+        Self::from_bytes(PHYSTAC_TIP)
     }
 
     /// The gel as the bytes of a file.

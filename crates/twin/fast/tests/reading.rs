@@ -231,3 +231,37 @@ fn a_contact_unlike_what_was_taught_is_new() {
     let between = Pose::from_position(DVec3::new(1.0, 1.0, 8.0));
     assert!(reader.novelty(&[(&thin, between)]) > 1.0);
 }
+
+#[test]
+fn the_built_in_fingertip_carries_a_ball_about_as_the_solved_gel() {
+    let sensor = SensorFile::phystac_tip().unwrap().sensor;
+    let gel = FastGel::phystac_tip().unwrap();
+    assert_eq!(
+        (gel.sensor(), gel.n_taxels()),
+        (&sensor.name[..], sensor.taxels.len())
+    );
+    let ball = Body::new(&Shape::Sphere { radius_mm: 6.0 }, &Surfaces::new()).unwrap();
+    let mut reader = gel.reader();
+    let mut press = |depth_mm: f64| {
+        let pose = Pose::from_position(DVec3::new(0.0, 0.0, 19.2 - depth_mm));
+        let (mut pressure_kpa, mut wrench) = ([0.0; 8], [0.0; 6]);
+        reader.read(&[(&ball, pose)], &mut pressure_kpa, &mut wrench);
+        (pressure_kpa, -wrench[2])
+    };
+    assert_eq!(press(-2.0), ([0.0; 8], 0.0));
+    let ((shallow_kpa, shallow_n), (deep_kpa, deep_n)) = (press(1.5), press(3.0));
+    assert!(0.0 < shallow_n && shallow_n < deep_n, "{shallow_n} {deep_n}");
+    assert!(
+        shallow_kpa
+            .iter()
+            .zip(&deep_kpa)
+            .all(|(shallow, deep)| shallow < deep),
+        "{shallow_kpa:?} {deep_kpa:?}"
+    );
+    // A ball of this size on a half-space with these constants (Hertz, 1882): 4/3 E / (1 - nu^2) sqrt(R d^3).
+    let hertz_n = 4.0 / 3.0 * 45.4e-3 / (1.0 - 0.495_f32.powi(2)) * (6.0_f32 * 1.5_f32.powi(3)).sqrt();
+    assert!(
+        (0.6..1.4).contains(&(shallow_n / hertz_n)),
+        "{shallow_n} {hertz_n}"
+    );
+}
