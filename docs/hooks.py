@@ -156,6 +156,7 @@ ALIASES = {
     "_Bool": "NDArray[bool]",
     "_Floats": "ArrayLike",
     "_Integers": "ArrayLike",
+    "_Number": "float",
 }
 
 
