@@ -39,7 +39,7 @@ def link(found: "re.Match[str]", folder: Path, repository: str) -> str:
     if target.is_relative_to(DOCS) or not target.is_relative_to(ROOT):
         return found[0]
     kind = "tree" if target.is_dir() else "blob"
-    return f"]({repository}/{kind}/main/{target.relative_to(ROOT).as_posix()})"
+    return f"]({repository}/{kind}/main/{target.relative_to(ROOT).as_posix()}{found[2] or ''})"
 
 
 def file(path: str) -> str:
@@ -156,6 +156,7 @@ ALIASES = {
     "_Bool": "NDArray[bool]",
     "_Floats": "ArrayLike",
     "_Integers": "ArrayLike",
+    "_Number": "float",
 }
 
 

@@ -1,6 +1,6 @@
 """How many environment steps are made in a second: writes docs/benchmarks/tasks.json and tasks.md.
 
-pip install 'twintac[rl]' mujoco
+pip install './python[rl]' mujoco
 python python/benchmarks/tasks.py
 """
 

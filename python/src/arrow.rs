@@ -12,7 +12,7 @@ use twintac::{Column, Recording};
 /// The name that the Arrow PyCapsule interface gives to streams.
 pub(crate) const STREAM: &std::ffi::CStr = c"arrow_array_stream";
 
-/// The columns of a recording as a stream of one batch. Numbers are not copied.
+/// The columns of a recording as a stream of one batch, which has a copy of its numbers.
 pub(crate) fn stream(recording: &Recording) -> Result<FFI_ArrowArrayStream, ArrowError> {
     let (mut fields, mut arrays) = (Vec::new(), Vec::new());
     for (name, column) in recording.columns() {

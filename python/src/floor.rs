@@ -1,5 +1,7 @@
 //! The pressure on a gel's floor, finer than the taxels.
 
+use std::sync::Arc;
+
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -12,12 +14,12 @@ use crate::inverse::Contact;
 #[pyclass(module = "twintac")]
 pub(crate) struct FloorMap {
     map: twintac::FloorMap,
-    /// Names of the shapes of the inverse.
-    shapes: Vec<String>,
+    /// Names of the shapes of the inverse, which are in memory once.
+    shapes: Arc<[String]>,
 }
 
 impl FloorMap {
-    pub(crate) fn new(map: twintac::FloorMap, shapes: Vec<String>) -> Self {
+    pub(crate) fn new(map: twintac::FloorMap, shapes: Arc<[String]>) -> Self {
         Self { map, shapes }
     }
 
@@ -53,14 +55,11 @@ impl FloorMap {
 
     /// The map under a contact that the same inverse has found, kPa; `[n_rows, n_columns]`, the row of smallest y first. Each point is the mean over a disc as large as a port.
     ///
-    /// Raises `Error` for a contact of an inverse of other shapes.
+    /// Raises `Error` for a contact that another inverse has found.
     fn read<'py>(&mut self, py: Python<'py>, contact: &Contact) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        if contact.shapes != self.shapes {
-            let problem = format!(
-                "is one of {:?}, expected one of {:?}",
-                contact.shapes, self.shapes
-            );
-            return Err(unusable(py, "contact", &problem));
+        if !Arc::ptr_eq(&contact.shapes, &self.shapes) {
+            let problem = "was found by another inverse, expected one of the inverse that made this map";
+            return Err(unusable(py, "contact", problem));
         }
         let [n_columns, n_rows] = self.map.n();
         let pressure_kpa = py.detach(|| self.map.read(&contact.contact).to_vec());

@@ -21,7 +21,7 @@ impl Friction {
     #[new]
     fn new(py: Python<'_>, sensor: &Sensor, coefficient: f64) -> PyResult<Self> {
         Ok(Self {
-            friction: friction(py, sensor, coefficient)?,
+            friction: friction(py, sensor, ("coefficient", coefficient))?,
         })
     }
 
@@ -46,9 +46,17 @@ impl Friction {
 }
 
 /// Friction with a coefficient that can be.
-pub(crate) fn friction(py: Python<'_>, sensor: &Sensor, coefficient: f64) -> PyResult<twintac::Friction> {
+pub(crate) fn friction(
+    py: Python<'_>,
+    sensor: &Sensor,
+    (field, coefficient): (&str, f64),
+) -> PyResult<twintac::Friction> {
     if !(coefficient.is_finite() && coefficient >= 0.0) {
-        return Err(unusable(py, "coefficient", "is not a number from 0 on"));
+        return Err(unusable(
+            py,
+            field,
+            &format!("is {coefficient}, expected 0 or more"),
+        ));
     }
     Ok(twintac::Friction::on(&sensor.sensor.file().sensor, coefficient))
 }

@@ -33,9 +33,7 @@ impl Gel {
     #[new]
     #[pyo3(signature = (sensor, settings=None))]
     fn new(py: Python<'_>, sensor: &Sensor, settings: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
-        let of_run = PyDict::new(py);
-        of_run.set_item("simulate", settings.unwrap_or_else(|| PyDict::new(py)))?;
-        let settings = but(RunSettings::fine(), Some(&of_run))?;
+        let settings = but(py, RunSettings::fine(), settings.as_ref(), "simulate")?;
         let gel = twintac::Gel::with_settings(&sensor.sensor, settings.simulate);
         Ok(Self {
             gel: Arc::new(gel),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use numpy::PyArray2;
 use numpy::ndarray::Ix1;
@@ -39,7 +40,8 @@ use crate::table::ReadingTable;
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Inverse {
     model: Model,
-    shapes: Vec<String>,
+    /// Names; where they are in memory tells contacts of this inverse from those of others.
+    shapes: Arc<[String]>,
     n_taxels: usize,
 }
 
@@ -60,7 +62,7 @@ impl Inverse {
         shapes: BTreeMap<String, Shape>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = over(&InverseSettings::default(), settings.as_ref(), py)?;
+        let settings = checked(py, InverseSettings::default(), settings.as_ref())?;
         let (gel, n_taxels) = (gel.gel.clone(), gel.gel.n_taxels());
         let names = shapes.keys().cloned().collect();
         let surfaces: Surfaces = shapes.values().flat_map(|shape| shape.surfaces.clone()).collect();
@@ -89,7 +91,7 @@ impl Inverse {
         tables: BTreeMap<String, ReadingTable>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = over(&InverseSettings::default(), settings.as_ref(), py)?;
+        let settings = checked(py, InverseSettings::default(), settings.as_ref())?;
         let (shapes, tables): (Vec<String>, Vec<ReadingTable>) = tables.into_iter().unzip();
         let n_taxels = tables.first().map_or(0, ReadingTable::n_taxels);
         if let Some(other) = tables.iter().map(ReadingTable::n_taxels).find(|n| *n != n_taxels) {
@@ -105,7 +107,7 @@ impl Inverse {
         })?;
         Ok(Self {
             model: Model::Tables(inverse.or_raise(py)?),
-            shapes,
+            shapes: shapes.into(),
             n_taxels,
         })
     }
@@ -124,13 +126,13 @@ impl Inverse {
         progress: Option<Bound<'_, PyAny>>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = over(&Locator::settings(None).or_raise(py)?, settings.as_ref(), py)?;
+        let settings = checked(py, Locator::settings(None).or_raise(py)?, settings.as_ref())?;
         let locator = followed(py, progress.as_ref(), move |progress| {
             Locator::open(&folder, &indenters, settings, progress.as_ref())
         })?;
         let locator = locator.or_raise(py)?;
         Ok(Self {
-            shapes: locator.indenters().to_vec(),
+            shapes: locator.indenters().to_vec().into(),
             n_taxels: locator.taxels().len(),
             model: Model::Twin(Box::new(locator)),
         })
@@ -139,7 +141,7 @@ impl Inverse {
     /// Names of the shapes; in alphabetical order, or of a twin as its sensor's description has its indenters.
     #[getter]
     fn shapes(&self) -> Vec<String> {
-        self.shapes.clone()
+        self.shapes.to_vec()
     }
 
     /// Follows the contact of a sensor that nothing has touched yet. `provenance` says where its readings come from: `"real"`, `"emulated"` or `"simulated"`.
@@ -150,7 +152,7 @@ impl Inverse {
                 Model::Tables(inverse) => Follower::Tables(Box::new(inverse.start())),
                 Model::Twin(locator) => Follower::Twin(Box::new(locator.start())),
             },
-            shapes: self.shapes.clone(),
+            shapes: Arc::clone(&self.shapes),
             n_taxels: self.n_taxels,
             provenance,
         }
@@ -159,7 +161,7 @@ impl Inverse {
     /// Prepares maps of the pressure on the gel's floor under contacts, finer than the taxels: on a grid of this spacing, mm, in the middle of the gel. 0.5 mm makes about 2,500 points
     /// of PhysTac's floor.
     ///
-    /// Raises `Error` for a spacing that is not above 0, and for an inverse that is not of a fast gel.
+    /// Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and for an inverse that is not of a fast gel.
     #[pyo3(signature = (spacing_mm=0.5))]
     fn floor_map(&self, py: Python<'_>, spacing_mm: f64) -> PyResult<FloorMap> {
         let Model::Fast(inverse) = &self.model else {
@@ -169,17 +171,8 @@ impl Inverse {
                 "is not of a fast gel, which alone knows the floor",
             ));
         };
-        if !(spacing_mm > 0.0 && spacing_mm.is_finite()) {
-            return Err(unusable(
-                py,
-                "spacing_mm",
-                &format!("is {spacing_mm}, expected a number above 0"),
-            ));
-        }
-        Ok(FloorMap::new(
-            py.detach(|| inverse.floor_map(spacing_mm)),
-            self.shapes.clone(),
-        ))
+        let map = py.detach(|| inverse.floor_map(spacing_mm)).or_raise(py)?;
+        Ok(FloorMap::new(map, Arc::clone(&self.shapes)))
     }
 
     fn __repr__(&self) -> String {
@@ -187,11 +180,22 @@ impl Inverse {
     }
 }
 
+/// Settings but for those of keywords, if they can be.
+fn checked(
+    py: Python<'_>,
+    base: InverseSettings,
+    own: Option<&Bound<'_, PyDict>>,
+) -> PyResult<InverseSettings> {
+    let settings = over(base, own, py)?;
+    settings.check().or_raise(py)?;
+    Ok(settings)
+}
+
 /// Follows the contact of one sensor, frame by frame: what `Inverse.start` returns.
 #[pyclass(module = "twintac")]
 pub(crate) struct Tracker {
     tracker: Follower,
-    shapes: Vec<String>,
+    shapes: Arc<[String]>,
     n_taxels: usize,
     provenance: Provenance,
 }
@@ -221,7 +225,7 @@ impl Tracker {
         readings_kpa: Numbers<'_, Ix1>,
     ) -> PyResult<Option<Contact>> {
         since(py, since_previous_s)?;
-        let readings_kpa = in_order(&readings_kpa);
+        let readings_kpa = in_order(&readings_kpa).into_owned(); // other threads may write into the array meanwhile
         let is_usable = |kpa: &f64| kpa.is_finite() || matches!(self.tracker, Follower::Twin(_));
         if readings_kpa.len() != self.n_taxels || !readings_kpa.iter().all(is_usable) {
             let problem = format!("has to have {} finite numbers", self.n_taxels);
@@ -237,7 +241,7 @@ impl Tracker {
             }
         });
         Ok(contact.map(|contact| Contact {
-            shapes: self.shapes.clone(),
+            shapes: Arc::clone(&self.shapes),
             provenance: self.provenance.to_string(),
             contact,
         }))
@@ -248,7 +252,8 @@ impl Tracker {
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Contact {
     pub(crate) contact: twintac::Contact,
-    pub(crate) shapes: Vec<String>,
+    /// Names of the shapes of the inverse that has found it, which are in memory once.
+    pub(crate) shapes: Arc<[String]>,
     /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
     #[pyo3(get)]
     provenance: String,

@@ -1,14 +1,16 @@
 //! Poses.
 
 use glam::DQuat;
-use numpy::ndarray::Ix2;
+use numpy::ndarray::{Ix1, Ix2};
 use pyo3::prelude::*;
 
-use crate::array::{Numbers, in_order};
+use crate::array::{Numbers, few, in_order};
 use crate::error::unusable;
 
 /// How far a quaternion's length may be from 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
+
+const NO_TURN: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// A rigid transform from an inner frame to an outer one, such as from an indenter's frame to the gel's.
 ///
@@ -26,14 +28,23 @@ pub(crate) struct Pose {
 impl Pose {
     #[new]
     #[pyo3(
-        signature = (position_mm, quaternion=(0.0, 0.0, 0.0, 1.0)),
+        signature = (position_mm, quaternion=None),
         text_signature = "(position_mm, quaternion=(0.0, 0.0, 0.0, 1.0))"
     )]
-    fn new(py: Python<'_>, position_mm: (f64, f64, f64), quaternion: (f64, f64, f64, f64)) -> PyResult<Self> {
-        let (x_mm, y_mm, z_mm) = position_mm;
-        let (x, y, z, w) = quaternion;
+    fn new(
+        py: Python<'_>,
+        position_mm: Numbers<'_, Ix1>,
+        quaternion: Option<Numbers<'_, Ix1>>,
+    ) -> PyResult<Self> {
+        let quaternion = quaternion
+            .map(|quaternion| few(py, "quaternion", &quaternion))
+            .transpose()?;
         Ok(Self {
-            pose: checked(py, [x_mm, y_mm, z_mm], [x, y, z, w])?,
+            pose: checked(
+                py,
+                few(py, "position_mm", &position_mm)?,
+                quaternion.unwrap_or(NO_TURN),
+            )?,
         })
     }
 
@@ -66,9 +77,7 @@ pub(crate) fn poses(py: Python<'_>, field: &str, rows: &Numbers<'_, Ix2>) -> PyR
         return Err(unusable(py, field, &problem));
     }
     let pose = |pose: &[f64]| {
-        let quaternion = pose
-            .get(3..7)
-            .map_or([0.0, 0.0, 0.0, 1.0], |q| [q[0], q[1], q[2], q[3]]);
+        let quaternion = pose.get(3..7).map_or(NO_TURN, |q| [q[0], q[1], q[2], q[3]]);
         checked(py, [pose[0], pose[1], pose[2]], quaternion)
     };
     in_order(rows).chunks_exact(n_columns).map(pose).collect()

@@ -1,7 +1,9 @@
 //! Presses as they are asked for.
 
+use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
 
+use crate::array::{Numbers, few};
 use crate::error::unusable;
 
 /// A straight press: down to a depth, a hold, and back up.
@@ -35,18 +37,20 @@ pub(crate) struct Press {
 impl Press {
     #[new]
     #[pyo3(
-        signature = (indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0),
+        signature = (indenter, *, at_mm=None, depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0),
         text_signature = "(indenter, *, at_mm=(0.0, 0.0), depth_mm=1.0, spin_rad=0.0, speed_mm_per_s=2.0, hold_s=0.0)"
     )]
     fn new(
         py: Python<'_>,
         indenter: String,
-        at_mm: (f64, f64),
+        at_mm: Option<Numbers<'_, Ix1>>,
         depth_mm: f64,
         spin_rad: f64,
         speed_mm_per_s: f64,
         hold_s: f64,
     ) -> PyResult<Self> {
+        let at_mm = at_mm.map(|at_mm| few::<2>(py, "at_mm", &at_mm)).transpose()?;
+        let at_mm = at_mm.map_or((0.0, 0.0), Into::into);
         for (field, value) in [("depth_mm", depth_mm), ("speed_mm_per_s", speed_mm_per_s)] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(unusable(

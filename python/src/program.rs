@@ -15,7 +15,7 @@ fn program(py: Python<'_>) -> PyResult<Program> {
     Ok(Program { file, arguments })
 }
 
-/// Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input.
+/// Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input, 3 if a bench was stopped safely.
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>) -> PyResult<u8> {
     let program = program(py)?;

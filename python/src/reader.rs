@@ -1,6 +1,7 @@
 //! A sensor that is being read.
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
@@ -11,9 +12,8 @@ use crate::error::{OrRaise, unusable};
 use crate::long_call::long_call;
 use crate::sensor::Sensor;
 
-/// How long Ctrl-C may wait to be heard, and how often a frame may not come within this time.
+/// How long Ctrl-C and `close` may wait to be heard.
 const PATIENCE: Duration = Duration::from_millis(50);
-const MOST_WAITS: usize = 40;
 
 /// Reads a sensor frame by frame: one on an I²C bus of Linux (`Reader.open`), or an emulated one (`Reader.emulated`).
 ///
@@ -23,6 +23,8 @@ const MOST_WAITS: usize = 40;
 pub(crate) struct Reader {
     /// None once it is closed.
     reader: Mutex<Option<twintac::Reader>>,
+    /// Tells threads that wait for a frame to let go of it.
+    is_closed: AtomicBool,
     provenance: String,
     taxels: Vec<String>,
     notes: Vec<String>,
@@ -42,6 +44,7 @@ impl Reader {
             notes: reader.notes().to_vec(),
             taxels,
             reader: Mutex::new(Some(reader)),
+            is_closed: AtomicBool::new(false),
         })
     }
 }
@@ -95,13 +98,14 @@ impl Reader {
 
     /// The next frame.
     ///
-    /// Raises `Error` for a sensor that has failed for 2 s on end, and for a reader that is closed.
+    /// Raises `Error` for a sensor that has failed or was silent for 2 s on end, and for a reader that is closed.
     fn read(&self, py: Python<'_>) -> PyResult<Reading> {
         self.next(py)?.ok_or_else(|| unusable(py, "reader", "is closed"))
     }
 
-    /// Ends the reading. What is closed is not read again; closing it once more does nothing.
+    /// Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing.
     fn close(&self, py: Python<'_>) {
+        self.is_closed.store(true, Ordering::Relaxed);
         py.detach(|| drop(self.reader.lock().unwrap_or_else(PoisonError::into_inner).take()));
     }
 
@@ -132,15 +136,10 @@ impl Reader {
 impl Reader {
     /// The next frame; none of a reader that is closed.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Reading>> {
-        for wait in 0..=MOST_WAITS {
+        while !self.is_closed.load(Ordering::Relaxed) {
             let heard = py.detach(|| {
                 let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
-                let reader = reader.as_mut()?;
-                Some(if wait < MOST_WAITS {
-                    reader.wait(PATIENCE)
-                } else {
-                    reader.read().map(Some)
-                })
+                Some(reader.as_mut()?.wait(PATIENCE))
             });
             match heard {
                 None => return Ok(None),

@@ -52,7 +52,7 @@ impl Run {
         seed: u64,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = but(RunSettings::default(), settings.as_ref())?;
+        let settings = but(py, RunSettings::default(), settings.as_ref(), "")?;
         let run = twintac::Run::start(&folder, &sensor.sensor, source, seed, settings, caller(py)?);
         Ok(Self {
             run: run.or_raise(py)?,

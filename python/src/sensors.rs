@@ -11,10 +11,13 @@ use crate::array::{Numbers, rows};
 use crate::error::{OrRaise, unreadable, unusable};
 use crate::fast::{Answers, FastGel, PROVENANCE, n_cores};
 use crate::sensor::Sensor;
-use crate::settings::as_toml;
+use crate::settings::{as_toml, refused};
 use crate::shape::Body;
 use crate::touches::{Counts, Touches, bodies};
 use crate::twin::Twin;
+
+/// The table of a file in which imperfections stand.
+const TABLE: &str = "imperfection";
 
 /// How far sensors are from perfect: from what each sensor's own imperfections are drawn.
 ///
@@ -40,23 +43,17 @@ pub(crate) struct Imperfection {
     pub(crate) imperfection: twintac::Imperfection,
 }
 
-impl Imperfection {
-    fn parse(py: Python<'_>, file: &str, text: &str) -> PyResult<Self> {
-        let parsed = twintac::Imperfection::parse(file, text).map_err(twintac::RunError::from);
-        Ok(Self {
-            imperfection: parsed.or_raise(py)?,
-        })
-    }
-}
-
 #[pymethods]
 impl Imperfection {
     #[new]
     #[pyo3(signature = (**fields))]
     fn new(py: Python<'_>, fields: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
-        let file = PyDict::new(py);
-        file.set_item("imperfection", fields.unwrap_or_else(|| PyDict::new(py)))?;
-        Self::parse(py, "imperfection", &as_toml(file.as_any())?)
+        let text = as_toml(py, fields.as_ref(), TABLE)?;
+        let imperfection = twintac::Imperfection::parse(TABLE, &text);
+        Ok(Self {
+            imperfection: imperfection
+                .map_err(|error| refused(py, TABLE, [&error.field, &error.problem, &error.hint]))?,
+        })
     }
 
     /// Reads a file (TOML) with the table `[imperfection]`, as `twintac fast imperfection` makes them.
@@ -65,7 +62,10 @@ impl Imperfection {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
-        Self::parse(py, &path.display().to_string(), &text)
+        let imperfection = twintac::Imperfection::parse(&path.display().to_string(), &text);
+        Ok(Self {
+            imperfection: imperfection.map_err(twintac::RunError::from).or_raise(py)?,
+        })
     }
 
     fn __repr__(&self) -> String {
@@ -95,7 +95,7 @@ impl Coupling {
         }
         Ok(Self {
             coupling: twintac::Coupling {
-                friction: crate::friction::friction(py, sensor, friction)?,
+                friction: crate::friction::friction(py, sensor, ("friction", friction))?,
                 retardation_s,
             },
         })

@@ -1,31 +1,89 @@
 //! Settings as dictionaries.
 
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use twintac::RunSettings;
+use serde_json::{Map, Number, Value};
+use twintac::{RunError, RunSettings};
 
 use crate::error::{OrRaise, unusable};
 
-/// A value of Python as JSON has it.
-pub(crate) fn from_python<T: DeserializeOwned>(value: &Bound<'_, PyAny>, name: &str) -> PyResult<T> {
-    let py = value.py();
-    let text: String = py.import("json")?.call_method1("dumps", (value,))?.extract()?;
-    serde_json::from_str(&text).map_err(|error| unusable(py, name, &format!("does not fit: {error}")))
-}
-
-/// Values but for those of a dictionary.
+/// Settings but for those of keywords.
 pub(crate) fn over<T: Serialize + DeserializeOwned>(
-    base: &T,
+    base: T,
     own: Option<&Bound<'_, PyDict>>,
     py: Python<'_>,
 ) -> PyResult<T> {
-    let all = to_python(py, base)?;
-    if let Some(own) = own {
-        all.call_method1("update", (own,))?;
+    let mut settings = base;
+    for (name, own) in own.into_iter().flatten() {
+        let name: String = name.extract()?;
+        let misfit = |error: serde_json::Error| unusable(py, &name, &format!("does not fit: {error}"));
+        let mut all: Map<String, Value> = serde_json::to_value(&settings)
+            .and_then(serde_json::from_value)
+            .map_err(misfit)?;
+        let Some(value) = all.get_mut(&name) else {
+            let names: Vec<&str> = all.keys().map(String::as_str).collect();
+            let problem = format!("is no setting; there are {}", names.join(", "));
+            return Err(unusable(py, &name, &problem));
+        };
+        *value = value_of(&own, &name)?;
+        settings = serde_json::from_value(Value::Object(all)).map_err(misfit)?;
     }
-    from_python(&all, "settings")
+    Ok(settings)
+}
+
+/// Numbers, texts, and lists and dictionaries of them, of Python or of NumPy. `name` is the field in which they stand.
+fn value_of(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
+    if let Ok(flag) = value.cast::<PyBool>() {
+        return Ok(flag.is_true().into());
+    }
+    if let Ok(number) = value.cast::<PyInt>() {
+        return Ok(number.extract::<i64>()?.into());
+    }
+    if let Ok(number) = value.cast::<PyFloat>() {
+        let number: f64 = number.extract()?;
+        let finite = Number::from_f64(number).map(Value::Number);
+        let refused = || {
+            unusable(
+                value.py(),
+                name,
+                &format!("is {number}, expected a finite number"),
+            )
+        };
+        return finite.ok_or_else(refused);
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return Ok(text.extract::<String>()?.into());
+    }
+    if let Ok(values) = value.cast::<PyDict>() {
+        return Ok(Value::Object(values_of(values, name)?));
+    }
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let each = value.try_iter()?.map(|value| value_of(&value?, name));
+        return Ok(Value::Array(each.collect::<PyResult<_>>()?));
+    }
+    if value.hasattr("tolist")? {
+        return value_of(&value.call_method0("tolist")?, name); // of NumPy
+    }
+    if value.hasattr("__fspath__")? {
+        return value_of(&value.call_method0("__fspath__")?, name);
+    }
+    let kind = value.get_type().name()?;
+    let problem = format!("is of type {kind}, expected a number, a text, a list or a dictionary");
+    Err(unusable(value.py(), name, &problem))
+}
+
+fn values_of(values: &Bound<'_, PyDict>, within: &str) -> PyResult<Map<String, Value>> {
+    let named = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| -> PyResult<(String, Value)> {
+        let name: String = name.extract()?;
+        let path = match within {
+            "" => name.clone(),
+            _ => format!("{within}.{name}"),
+        };
+        Ok((name, value_of(&value, &path)?))
+    };
+    values.iter().map(named).collect()
 }
 
 /// Anything that can be written as JSON, as Python has it.
@@ -34,16 +92,34 @@ pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResul
     py.import("json")?.call_method1("loads", (text,))
 }
 
-/// The text of a TOML file with these values.
-pub(crate) fn as_toml(values: &Bound<'_, PyAny>) -> PyResult<String> {
-    let table: toml::Table = from_python(values, "settings")?;
-    toml::to_string(&table).map_err(|error| unusable(values.py(), "settings", &error.to_string()))
+/// The text of a TOML file with these values, in a table if it has a name.
+pub(crate) fn as_toml(py: Python<'_>, values: Option<&Bound<'_, PyDict>>, table: &str) -> PyResult<String> {
+    let mut all = values.map_or_else(|| Ok(Map::new()), |values| values_of(values, ""))?;
+    if !table.is_empty() {
+        all = Map::from_iter([(table.to_owned(), Value::Object(all))]);
+    }
+    let table = toml::Table::try_from(&all);
+    let text = table.and_then(|table| toml::to_string(&table));
+    text.map_err(|error| unusable(py, "settings", &error.to_string()))
 }
 
-/// Settings but for those of a dictionary with a dictionary for each stage.
-pub(crate) fn but(base: RunSettings, own: Option<&Bound<'_, PyDict>>) -> PyResult<RunSettings> {
-    let Some(own) = own else {
-        return Ok(base);
-    };
-    base.but_parsed("settings", &as_toml(own)?).or_raise(own.py())
+/// A value in such a text that cannot be: by its keyword.
+pub(crate) fn refused(py: Python<'_>, table: &str, [field, problem, hint]: [&str; 3]) -> PyErr {
+    let of_table = field
+        .strip_prefix(table)
+        .and_then(|field| field.strip_prefix('.'));
+    unusable(py, of_table.unwrap_or(field), &format!("{problem}; {hint}"))
+}
+
+/// Settings but for those of a dictionary with a dictionary for each stage, or of the dictionary of one stage.
+pub(crate) fn but(
+    py: Python<'_>,
+    base: RunSettings,
+    own: Option<&Bound<'_, PyDict>>,
+    stage: &str,
+) -> PyResult<RunSettings> {
+    match base.but_parsed("settings", &as_toml(py, own, stage)?) {
+        Err(RunError::Config(error)) => Err(refused(py, stage, [&error.field, &error.problem, &error.hint])),
+        settings => settings.or_raise(py),
+    }
 }

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use numpy::ndarray::{ArrayView1, Ix2};
+use numpy::ndarray::{ArrayView1, Ix1, Ix2};
 use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
 use twintac::{Part, Surfaces, TriangleSurface};
 
-use crate::array::Numbers;
+use crate::array::{Numbers, few};
 use crate::error::{OrRaise, unreadable, unusable};
 use crate::long_call::long_call;
 use crate::pose::Pose;
@@ -74,9 +74,9 @@ impl Shape {
 
     /// A box of this full size along x, y and z, mm, whose edges are rounded with `edge_radius_mm`.
     #[staticmethod]
-    fn r#box(py: Python<'_>, size_mm: [f64; 3], edge_radius_mm: f64) -> PyResult<Self> {
+    fn r#box(py: Python<'_>, size_mm: Numbers<'_, Ix1>, edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Box {
-            size_mm,
+            size_mm: few(py, "size_mm", &size_mm)?,
             edge_radius_mm,
         };
         Self::of(py, shape, Surfaces::new())

@@ -122,6 +122,13 @@ impl GelState {
         self.vector(py, |frame| frame.torque_n_mm)
     }
 
+    fn __repr__(&self, py: Python<'_>) -> String {
+        match self.depth_mm(py) {
+            Some(depth_mm) => format!("<GelState pressed {depth_mm:.2} mm deep, {PROVENANCE}>"),
+            None => format!("<GelState untouched, {PROVENANCE}>"),
+        }
+    }
+
     /// Takes the indenter away: the gel is as it was before the first frame, and remembers nothing.
     fn rest(&self, py: Python<'_>) {
         self.look(py, |held| {

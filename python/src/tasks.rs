@@ -166,17 +166,10 @@ impl Tasks {
             );
             return Err(unusable(py, "actions", &problem));
         }
+        let actions: Vec<f32> = actions.iter().copied().collect(); // other threads may write into the array meanwhile
         if actions.iter().any(|action| !action.is_finite()) {
             return Err(unusable(py, "actions", "has a number that is not finite"));
         }
-        let in_order;
-        let actions = match actions.to_slice() {
-            Some(actions) => actions,
-            None => {
-                in_order = actions.iter().copied().collect::<Vec<f32>>();
-                &in_order
-            }
-        };
         let observed = PyArray2::<f32>::zeros(py, [n, self.tasks.n_observed()], false);
         let figures = PyArray2::<f32>::zeros(py, [n, self.tasks.figures().len()], false);
         let rewards = PyArray1::<f64>::zeros(py, [n], false);
@@ -195,7 +188,7 @@ impl Tasks {
                 last_figures,
             };
             let tasks = &mut self.tasks;
-            py.detach(|| tasks.step(actions, answers));
+            py.detach(|| tasks.step(&actions, answers));
         }
         let last = self.last(py, &terminated, &truncated)?;
         Ok((observed, rewards, terminated, truncated, figures, last))

@@ -10,8 +10,24 @@ use crate::error::unusable;
 use crate::pose::poses;
 use crate::shape::Body;
 
-/// Numbers of bodies, and ends.
-pub(crate) type Counts<'py> = PyArrayLike<'py, i64, Ix1, AllowTypeChange>;
+/// Numbers of bodies, and ends: integers of any type.
+pub(crate) type Counts<'py> = Bound<'py, PyAny>;
+
+/// Integers; other numbers are not rounded to some.
+fn integers(field: &str, counts: &Counts<'_>) -> PyResult<Vec<i64>> {
+    let py = counts.py();
+    let counts = py.import("numpy")?.call_method1("asarray", (counts,))?;
+    let kind = counts.getattr("dtype")?;
+    if !matches!(&*kind.getattr("kind")?.extract::<String>()?, "i" | "u") && counts.len()? > 0 {
+        return Err(unusable(
+            py,
+            field,
+            &format!("has numbers of type {kind}, expected integers"),
+        ));
+    }
+    let counts: PyArrayLike<'_, i64, Ix1, AllowTypeChange> = counts.extract()?;
+    Ok(counts.as_array().to_vec())
+}
 
 /// What touches each of many sensors.
 pub(crate) struct Touches {
@@ -33,7 +49,7 @@ impl Touches {
     ) -> PyResult<Self> {
         let poses = poses(py, "gel_from_body", gel_from_body)?;
         let n_touches = poses.len();
-        let body = body.map_or_else(|| vec![0; n_touches], |body| body.as_array().to_vec());
+        let body = body.map_or_else(|| Ok(vec![0; n_touches]), |body| integers("body", body))?;
         if body.len() != n_touches {
             let problem = format!(
                 "has {} numbers, expected one for each of {n_touches} touches",
@@ -56,7 +72,7 @@ impl Touches {
         Ok(Self {
             touches: touches.collect::<PyResult<_>>()?,
             ends: match ends {
-                Some(ends) => checked_ends(py, &ends.as_array().to_vec(), n_touches)?,
+                Some(ends) => checked_ends(py, &integers("ends", ends)?, n_touches)?,
                 None => (1..=n_touches).collect(),
             },
         })

@@ -189,6 +189,10 @@ impl Prediction {
         let certainty = self.prediction.certainty.as_ref()?;
         Some(PyArray1::from_slice(py, &certainty.is_unlike))
     }
+
+    fn __len__(&self) -> usize {
+        self.prediction.time_s.len()
+    }
 }
 
 /// A twin whose sensor is pressed at one place, stepped with depths: what `Twin.at` returns.
@@ -298,7 +302,7 @@ impl TwinState {
             );
             return Err(unusable(py, "pressure_kpa", &problem));
         }
-        let seen = in_order(&pressure_kpa);
+        let seen = in_order(&pressure_kpa).into_owned(); // other threads may write into the array meanwhile
         let mut readings_kpa = vec![0.0; seen.len()];
         py.detach(|| self.state.step(since_previous_s, &seen, &mut readings_kpa));
         rows(py, readings_kpa, self.shape)

@@ -85,7 +85,7 @@ def test_a_task_writes_what_a_process_does(tmp_path: Path, monkeypatch: pytest.M
     with pytest.raises(twintac.Error, match="other settings"):
         make_shard(url, 2, 3, **{**options, "seed": 6})
     monkeypatch.setitem(sys.modules, "ray", None)
-    with pytest.raises(ImportError, match=r"pip install 'twintac\[ray\]'"):
+    with pytest.raises(ImportError, match=r"pip install ray fsspec"):
         make_dataset(tmp_path / "by-ray", 3, **options)
 
 

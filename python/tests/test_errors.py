@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,8 +10,10 @@ from conftest import DATA, ROOT, run_command
 
 from twintac import (
     Body,
+    Coupling,
     Error,
     FastGel,
+    Friction,
     Gel,
     Imperfection,
     Inverse,
@@ -74,13 +77,26 @@ def test_a_missing_file_is_named(load: Callable[[], object]) -> None:
 
 
 def test_a_folder_without_a_twin_says_so() -> None:
-    with pytest.raises(Error, match=MISSING):
+    with pytest.raises(Error, match=MISSING) as caught:
         Twin.load(MISSING)
+    assert caught.value.file is not None and caught.value.file.startswith(MISSING)
+
+
+@pytest.mark.parametrize("path", [f"{MISSING}.svg", "map.pdf"])
+def test_a_picture_that_cannot_be_written_is_named_once(path: str) -> None:
+    with pytest.raises(Error) as caught:
+        PressureMap(Sensor.phystac(), np.zeros(8), "simulated").save(path)
+    assert caught.value.file == path
+    assert str(caught.value).count(path) == 1 and str(caught.value).count("No such file") <= 1
 
 
 @pytest.fixture(scope="module")
 def ball() -> Body:
     return Body(Shape.sphere(5.0))
+
+
+def inverse(**settings: Any) -> Inverse:
+    return Inverse(FastGel.phystac(), {"ball": Shape.sphere(5.0)}, **settings)
 
 
 @pytest.mark.parametrize(
@@ -93,12 +109,25 @@ def ball() -> Body:
         ("edge_radius_mm", lambda: Shape.box([1.0, 1.0, 1.0], 0.5)),
         ("quaternion", lambda: Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 2.0))),
         ("position_mm", lambda: Pose((0.0, 0.0, float("inf")))),
-        ("imperfection.hysteresis", lambda: Imperfection(hysteresis=2.0)),
-        ("imperfection.gain", lambda: Imperfection(gain=2.0)),
-        ("simulate.edges_per_height", lambda: Gel(Sensor.phystac(), {"edges_per_height": -1.0})),
-        ("simulate.edges", lambda: Gel(Sensor.phystac(), {"edges": 1.0})),
-        ("noise_kpa", lambda: Inverse(FastGel.phystac(), {"ball": Shape.sphere(5.0)}, noise_kpa=-1.0)),
-        ("settings", lambda: Inverse(FastGel.phystac(), {"ball": Shape.sphere(5.0)}, nose_kpa=1.0)),
+        ("position_mm", lambda: Pose([0.0, 0.0])),
+        ("quaternion", lambda: Pose(np.zeros(3), np.zeros(3))),
+        ("at_mm", lambda: Press("sphere-25", at_mm=(0.0, 0.0, 0.0))),
+        ("size_mm", lambda: Shape.box([1.0, 1.0], 0.1)),
+        ("hysteresis", lambda: Imperfection(hysteresis=2.0)),
+        ("gain_deviation", lambda: Imperfection(gain_deviation=float("nan"))),
+        ("gain", lambda: Imperfection(gain=2.0)),
+        ("friction", lambda: Coupling(Sensor.phystac(), friction=-1.0)),
+        ("coefficient", lambda: Friction(Sensor.phystac(), -1.0)),
+        ("edges_per_height", lambda: Gel(Sensor.phystac(), {"edges_per_height": -1.0})),
+        ("edges_per_height", lambda: Gel(Sensor.phystac(), {"edges_per_height": float("nan")})),
+        ("edges", lambda: Gel(Sensor.phystac(), {"edges": 1.0})),
+        ("noise_kpa", lambda: inverse(noise_kpa=-1.0)),
+        ("noise_kpa", lambda: inverse(noise_kpa=np.float32("nan"))),
+        ("model_part", lambda: inverse(model_part=-0.1)),
+        ("place_walk_mm", lambda: inverse(place_walk_mm=float("inf"))),
+        ("n_starts", lambda: inverse(n_starts=-1)),
+        ("nose_kpa", lambda: inverse(nose_kpa=1.0)),
+        ("spacing_mm", lambda: inverse().floor_map(1e-4)),
         ("provenance", lambda: PressureMap(Sensor.phystac(), np.zeros(8), "unreal")),  # type: ignore[arg-type]
         ("bodies", lambda: FastGel.phystac().batch([])),
     ],
@@ -107,7 +136,8 @@ def test_a_wrong_argument_is_named(field: str, wrong: Callable[[], object]) -> N
     with pytest.raises(Error) as caught:
         wrong()
     assert caught.value.field == field
-    assert field.split(".")[-1] in str(caught.value)
+    assert caught.value.file is None and caught.value.line is None
+    assert field in str(caught.value) and " line " not in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -119,6 +149,8 @@ def test_a_wrong_argument_is_named(field: str, wrong: Callable[[], object]) -> N
         ("body", {"gel_from_body": np.zeros((2, 3)), "body": [0]}),
         ("body", {"gel_from_body": np.zeros((1, 3)), "body": [1]}),
         ("body", {"gel_from_body": np.zeros((1, 3)), "body": [-1]}),
+        ("body", {"gel_from_body": np.zeros((1, 3)), "body": [0.7]}),
+        ("ends", {"gel_from_body": np.zeros((1, 3)), "ends": np.array([1.0])}),
         ("ends", {"gel_from_body": np.zeros((2, 3)), "ends": [2, 1]}),
         ("ends", {"gel_from_body": np.zeros((2, 3)), "ends": [1]}),
     ],
@@ -143,6 +175,9 @@ def test_sensors_refuse_what_cannot_be(ball: Body) -> None:
 def test_an_indenter_that_the_sensor_does_not_have_is_named() -> None:
     with pytest.raises(Error, match="there is no indenter `spoon`; the sensor has"):
         Gel(Sensor.phystac()).press(Press("spoon"))
+    with pytest.raises(Error) as caught:
+        Gel(Sensor.phystac()).touch("spoon", Pose((0.0, 0.0, 0.0)))
+    assert caught.value.field == "indenter"
 
 
 def test_readings_of_another_sensor_are_refused() -> None:

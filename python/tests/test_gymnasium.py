@@ -93,7 +93,7 @@ import twintac.gymnasium
 """
     ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert ran.returncode == 1
-    assert "twintac.gymnasium needs the package gymnasium: pip install 'twintac[rl]'" in ran.stderr
+    assert "twintac.gymnasium needs the package gymnasium: pip install gymnasium" in ran.stderr
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -50,6 +50,19 @@ def test_other_threads_run_while_frames_are_waited_for() -> None:
     assert turns > 20
 
 
+def test_closing_lets_go_of_what_waits_for_frames() -> None:
+    reader = Reader.emulated(Sensor.phystac())
+    n_frames: list[int] = []
+    worker = threading.Thread(target=lambda: n_frames.append(sum(1 for _ in reader)))
+    worker.start()
+    time.sleep(0.2)
+    start_s = time.monotonic()
+    reader.close()
+    worker.join(5.0)
+    assert not worker.is_alive() and time.monotonic() - start_s < 3.0
+    assert n_frames[0] > 0
+
+
 def test_ctrl_c_ends_the_reading() -> None:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:

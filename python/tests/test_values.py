@@ -147,7 +147,7 @@ def test_a_prediction_is_that_of_the_command(trained: Path, tmp_path: Path) -> N
     certainty = expected["certainty"]
     assert certainty is not None and predicted.half_width_kpa is not None
     assert predicted.half_width_kpa.tolist() == certainty["half_width_kpa"]
-    assert predicted.readings_kpa.shape == (len(predicted.time_s), 8)
+    assert predicted.readings_kpa.shape == (len(predicted), 8)
     assert (predicted.provenance, twin.trained_on) == ("simulated", "emulated")
 
 
@@ -195,6 +195,34 @@ def test_a_batch_reads_as_a_reader_does() -> None:
         assert np.array_equal(wrench[sensor], expected)
     assert pressure_kpa.dtype == wrench.dtype == np.float32
     assert wrench[1, 2] == 0.0 and wrench[0, 2] < 0.0
+
+
+def test_poses_and_places_are_any_few_numbers() -> None:
+    pose = Pose((1.0, 2.0, 3.0), (0.0, 0.0, 1.0, 0.0))
+    assert pose == Pose([1, 2, 3], [0, 0, 1, 0]) == Pose(np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.0, 1.0, 0.0], np.float32))
+    assert Pose(np.zeros(3)).quaternion == (0.0, 0.0, 0.0, 1.0)
+    assert Press("sphere-25", at_mm=np.array([1.0, -2.0])) == Press("sphere-25", at_mm=[1, -2]) == Press("sphere-25", at_mm=(1.0, -2.0))
+
+
+def test_settings_may_be_of_numpy() -> None:
+    assert Imperfection(gain_deviation=np.float32(0.25)) == Imperfection(gain_deviation=0.25)
+    gel, shapes = FastGel.phystac(), {"ball": Shape.sphere(5.0)}
+    readings_kpa = gel.reader().read([(Body(shapes["ball"]), Pose((1.0, 0.0, 6.5)))])[0]
+    own = Inverse(gel, shapes, noise_kpa=np.float32(0.25), n_steps=np.int64(2)).start("simulated").update(0.1, readings_kpa)
+    same = Inverse(gel, shapes, noise_kpa=0.25, n_steps=2).start("simulated").update(0.1, readings_kpa)
+    assert own is not None and same is not None
+    assert np.array_equal(own.covariance, same.covariance) and own.place_mm == same.place_mm
+
+
+def test_what_is_pressed_tells_how_deep() -> None:
+    gel = Gel(Sensor.phystac(), {"edges_per_height": np.float64(2.0), "max_path_nodes": np.int64(1500)})
+    touch = gel.touch("sphere-25", Pose((0.0, 0.0, 0.0)))
+    x_mm, y_mm, z_mm = touch.position_mm
+    deep = Pose((x_mm, y_mm, z_mm - 0.5), touch.quaternion)
+    state = gel.state("sphere-25", [deep])
+    assert repr(state) == "<GelState untouched, simulated>"
+    state.step(0.1, deep)
+    assert repr(state) == "<GelState pressed 0.50 mm deep, simulated>"
 
 
 def test_arrays_of_another_type_or_layout_read_the_same() -> None:

@@ -55,6 +55,7 @@ _Single: TypeAlias = npt.NDArray[np.float32]
 _Bool: TypeAlias = npt.NDArray[np.bool_]
 _Floats: TypeAlias = npt.ArrayLike
 _Integers: TypeAlias = npt.ArrayLike
+_Number: TypeAlias = float | np.floating[Any] | np.integer[Any]
 
 @final
 class Sensor:
@@ -109,7 +110,7 @@ class Press:
         cls,
         indenter: str,
         *,
-        at_mm: tuple[float, float] = (0.0, 0.0),
+        at_mm: _Floats = (0.0, 0.0),
         depth_mm: float = 1.0,
         spin_rad: float = 0.0,
         speed_mm_per_s: float = 2.0,
@@ -345,10 +346,10 @@ class Reader:
     def read(self) -> Reading:
         """The next frame.
 
-        Raises `Error` for a sensor that has failed for 2 s on end, and for a reader that is closed.
+        Raises `Error` for a sensor that has failed or was silent for 2 s on end, and for a reader that is closed.
         """
     def close(self) -> None:
-        """Ends the reading. What is closed is not read again; closing it once more does nothing."""
+        """Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing."""
     def __iter__(self) -> Reader: ...
     def __next__(self) -> Reading: ...
     def __enter__(self) -> Reader:
@@ -568,6 +569,7 @@ class Prediction:
     @property
     def is_unlike(self) -> _Bool | None:
         """Whether the contact is too unlike for readings and intervals to be trusted, `[n_frames]`; `None` of a twin that does not know."""
+    def __len__(self) -> int: ...
 
 @final
 class TwinAtPlace:
@@ -687,8 +689,8 @@ class Pose:
     """
     def __new__(
         cls,
-        position_mm: tuple[float, float, float],
-        quaternion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0),
+        position_mm: _Floats,
+        quaternion: _Floats = (0.0, 0.0, 0.0, 1.0),
     ) -> Pose: ...
     @property
     def position_mm(self) -> tuple[float, float, float]:
@@ -713,7 +715,7 @@ class Shape:
     def cylinder(radius_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
         """A flat-ended upright cylinder, whose rims are rounded with `edge_radius_mm`."""
     @staticmethod
-    def box(size_mm: Sequence[float], edge_radius_mm: float) -> Shape:
+    def box(size_mm: _Floats, edge_radius_mm: float) -> Shape:
         """A box of this full size along x, y and z, mm, whose edges are rounded with `edge_radius_mm`."""
     @staticmethod
     def x(length_mm: float, width_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
@@ -853,7 +855,7 @@ class Imperfection:
 
     Raises `Error`, whose `field` is the one that cannot be.
     """
-    def __new__(cls, **fields: float) -> Imperfection: ...
+    def __new__(cls, **fields: _Number) -> Imperfection: ...
     @staticmethod
     def load(path: _Path) -> Imperfection:
         """Reads a file (TOML) with the table `[imperfection]`, as `twintac fast imperfection` makes them.
@@ -1004,16 +1006,16 @@ class Inverse:
 
     Raises `Error`, whose `field` is the setting that cannot be, for a shape that cannot be, and if there is no shape.
     """
-    def __new__(cls, gel: FastGel, shapes: Mapping[str, Shape], **settings: float) -> Inverse: ...
+    def __new__(cls, gel: FastGel, shapes: Mapping[str, Shape], **settings: _Number) -> Inverse: ...
     @staticmethod
-    def of_tables(tables: Mapping[str, ReadingTable], **settings: float) -> Inverse:
+    def of_tables(tables: Mapping[str, ReadingTable], **settings: _Number) -> Inverse:
         """By what is read of each shape, by name, at places and depths: measured, or simulated. Keywords are those of the class, which has the names of the settings.
 
         Raises `Error` for tables of different numbers of taxels, a setting that cannot be, and if there is no shape.
         """
     @staticmethod
     def of_twin(
-        folder: _Path, indenters: Sequence[str] = ..., *, progress: Progress = None, **settings: float
+        folder: _Path, indenters: Sequence[str] = ..., *, progress: Progress = None, **settings: _Number
     ) -> Inverse:
         """By the trained twin in a folder (`Run.model_folder`), whose memory is taken off the readings. Shapes are the named indenters of its sensor, or all of them, turned as described.
         Keywords are those of the class, which has the names of the settings; unless given, `noise_kpa` is 0.03, `model_part_of_largest` 0.02, `n_steps` 3 and
@@ -1030,7 +1032,7 @@ class Inverse:
         """Prepares maps of the pressure on the gel's floor under contacts, finer than the taxels: on a grid of this spacing, mm, in the middle of the gel. 0.5 mm makes about 2,500 points
         of PhysTac's floor.
 
-        Raises `Error` for a spacing that is not above 0, and for an inverse that is not of a fast gel.
+        Raises `Error` for a spacing that is not above 0 or makes more than ten million points, and for an inverse that is not of a fast gel.
         """
 
 @final
@@ -1063,7 +1065,7 @@ class FloorMap:
     def read(self, contact: Contact) -> _Single:
         """The map under a contact that the same inverse has found, kPa; `[n_rows, n_columns]`, the row of smallest y first. Each point is the mean over a disc as large as a port.
 
-        Raises `Error` for a contact of an inverse of other shapes.
+        Raises `Error` for a contact that another inverse has found.
         """
 
 @final
@@ -1123,4 +1125,4 @@ class Contact:
         """What the shape leaves of the readings, in deviations of a frame by itself: far above 1, something else touches."""
 
 def command() -> int:
-    """Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input."""
+    """Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input, 3 if a bench was stopped safely."""

@@ -1,6 +1,6 @@
 """Data sets on many machines: a plain task of Ray for each shard, onto any path that fsspec knows.
 
-`make_shard` is the task by itself, for other schedulers. `pip install 'twintac[ray]'` brings what this needs.
+`make_shard` is the task by itself, for other schedulers. It needs the packages ray and fsspec: `pip install './python[ray]'` in a checkout brings them.
 """
 
 import hashlib
@@ -141,5 +141,5 @@ def _needed(package: str) -> Any:
     try:
         return import_module(package)
     except ImportError as error:
-        message = f"twintac.ray needs {package}, which is not installed: pip install 'twintac[ray]'"
+        message = f"twintac.ray needs {package}, which is not installed: pip install ray fsspec"
         raise ImportError(message) from error

@@ -1,6 +1,6 @@
 """Trains a policy with Stable-Baselines3, and compares it with a script and with chance.
 
-pip install 'twintac[rl]' stable-baselines3 matplotlib
+pip install './python[rl]' stable-baselines3 matplotlib
 python python/examples/rl/train.py --task HoldForce --seed 1 --out runs/rl
 
 It writes `HoldForce-1.csv` (the learning curve), `HoldForce-1.png`, `HoldForce-1.zip` (the policy) and `HoldForce-1.pkl` (what it scales observations by) into a folder.

@@ -26,7 +26,7 @@ Single: TypeAlias = npt.NDArray[np.float32]
 def require_gymnasium() -> None:
     """Says how to install Gymnasium if it is missing."""
     if importlib.util.find_spec("gymnasium") is None:
-        raise ImportError("twintac.gymnasium needs the package gymnasium: pip install 'twintac[rl]'")
+        raise ImportError("twintac.gymnasium needs the package gymnasium: pip install gymnasium")
 
 
 def spaces(tasks: Tasks) -> tuple[gym.Space[Single], gym.Space[Single]]:

@@ -84,19 +84,20 @@ impl Error {
         match self {
             Self::Sensor(error) => of_description(error),
             Self::Shape(error) => of_shape(error),
-            Self::Path(error) => ErrorPlace {
-                field: Some(error.field.clone()),
-                ..ErrorPlace::default()
-            },
+            Self::Path(error) => of_field(&error.field),
+            Self::Gel(error) => of_simulation(error),
             #[cfg(feature = "recording")]
             Self::Recording(error) => of_recording(error),
             #[cfg(feature = "fast")]
             Self::Inverse(twintac_inverse::InverseError::Shape(error)) => of_shape(error),
             #[cfg(feature = "fast")]
-            Self::Inverse(twintac_inverse::InverseError::Setting { field, .. }) => ErrorPlace {
-                field: Some((*field).to_owned()),
-                ..ErrorPlace::default()
-            },
+            Self::Inverse(twintac_inverse::InverseError::Setting { field, .. }) => of_field(field),
+            #[cfg(feature = "map")]
+            Self::Picture(
+                twintac_plot::PlotError::Format { path } | twintac_plot::PlotError::Write { path, .. },
+            ) => of_file(path.display()),
+            #[cfg(feature = "twin")]
+            Self::Twin(error) => of_twin(error),
             #[cfg(feature = "run")]
             Self::Run(error) => of_run(error),
             _ => ErrorPlace::default(),
@@ -113,8 +114,35 @@ fn of_description(error: &twintac_sensor::SensorError) -> ErrorPlace {
 }
 
 fn of_shape(error: &twintac_shape::ShapeError) -> ErrorPlace {
+    of_field(&error.field)
+}
+
+fn of_simulation(error: &twintac_simulate::SimulateError) -> ErrorPlace {
+    match error {
+        twintac_simulate::SimulateError::NoIndenter { .. } => of_field("indenter"),
+        _ => ErrorPlace::default(),
+    }
+}
+
+#[cfg(feature = "twin")]
+fn of_twin(error: &digitac::DigitacError) -> ErrorPlace {
+    match error {
+        digitac::DigitacError::File { path, .. } | digitac::DigitacError::Model { path, .. } => of_file(path),
+        _ => ErrorPlace::default(),
+    }
+}
+
+fn of_field(field: &str) -> ErrorPlace {
     ErrorPlace {
-        field: Some(error.field.clone()),
+        field: Some(field.to_owned()),
+        ..ErrorPlace::default()
+    }
+}
+
+#[cfg(any(feature = "map", feature = "twin", feature = "run"))]
+fn of_file(file: impl std::fmt::Display) -> ErrorPlace {
+    ErrorPlace {
+        file: Some(file.to_string()),
         ..ErrorPlace::default()
     }
 }
@@ -150,12 +178,11 @@ fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
         Wrong::Config(error) => return of_description(error),
         Wrong::Recording(error) => return of_recording(error),
         Wrong::Shape(error) => return of_shape(error),
+        Wrong::Simulate(error) => return of_simulation(error),
+        Wrong::Twin(error) => return of_twin(error),
         Wrong::File { path, .. } | Wrong::Damaged { path, .. } | Wrong::Csv { path, .. } => path,
         Wrong::NotARun { folder, .. } | Wrong::Unfinished { folder, .. } => folder,
         _ => return ErrorPlace::default(),
     };
-    ErrorPlace {
-        file: Some(path.display().to_string()),
-        ..ErrorPlace::default()
-    }
+    of_file(path.display())
 }

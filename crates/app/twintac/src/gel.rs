@@ -76,7 +76,7 @@ impl Gel {
     }
 
     /// The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go,
-    /// at least one: the mesh is fine along the straight ways between them, and for the deepest of them. Takes a fraction of a second.
+    /// at least one: the mesh is fine along the straight ways between them, and for the deepest of them. Takes about a second.
     ///
     /// ```
     /// use twintac::{Error, Gel, Pose, Sensor, SimulateSettings};

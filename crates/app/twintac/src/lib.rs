@@ -5,7 +5,7 @@
 //!
 //! ```toml
 //! [dependencies]
-//! twintac = "0.1"
+//! twintac = { path = "crates/app/twintac" }  # of a checkout; twintac is not published yet
 //! ```
 //!
 //! A ball, pressed into PhysTac, and what reaches its eight ports:

@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::time::Duration;
 
-use twintac_live::{Known, Live, LiveError, Tare, Taring};
+use twintac_live::{Known, Live, Tare, Taring};
 use twintac_recording::Provenance;
 
 use crate::{Error, Sensor};
 
-/// How long to wait for a frame.
+/// How long to wait for a frame at a time.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Reads a sensor frame by frame: on an I²C bus of Linux, or emulated.
@@ -61,8 +61,9 @@ impl Reader {
     fn of(mut live: Live) -> Result<Self, Error> {
         let mut taring = Taring::default();
         loop {
-            let reading = live.source.next(PATIENCE)?.ok_or_else(silent)?;
-            if let Some(tare) = taring.push(&reading.frame) {
+            if let Some(reading) = live.source.next(PATIENCE)?
+                && let Some(tare) = taring.push(&reading.frame)
+            {
                 return Ok(Self { live, tare });
             }
         }
@@ -83,9 +84,13 @@ impl Reader {
     /// The next frame. Up to 256 wait for whom is late; more are missed.
     ///
     /// # Errors
-    /// A sensor that has failed for 2 s on end.
+    /// A sensor that has failed or was silent for 2 s on end.
     pub fn read(&mut self) -> Result<Reading, Error> {
-        self.wait(PATIENCE)?.ok_or_else(silent)
+        loop {
+            if let Some(reading) = self.wait(PATIENCE)? {
+                return Ok(reading);
+            }
+        }
     }
 
     /// The next frame, or `None` if none comes for so long.
@@ -105,9 +110,4 @@ impl Reader {
             temperatures_c: taxels.iter().map(|taxel| taxel.temperature_c).collect(),
         }))
     }
-}
-
-fn silent() -> Error {
-    let problem = format!("none came for {} s", PATIENCE.as_secs());
-    LiveError::Bus { problem }.into()
 }

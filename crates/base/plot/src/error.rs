@@ -23,7 +23,7 @@ pub enum PlotError {
         reason: String,
     },
     /// A file could not be written.
-    #[error("{path} could not be written: {source}")]
+    #[error("{path} could not be written")]
     Write {
         /// The file that was to be written.
         path: PathBuf,

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
@@ -16,12 +16,20 @@ use crate::{FrameReader, LiveError, Reading};
 const MOST_FAILURES: u32 = 40;
 const REST: Duration = Duration::from_millis(50);
 
+/// How long a sensor may be silent.
+const SILENCE: Duration = Duration::from_secs(2);
+
+/// How long the thread may take to end.
+const LEAVE: Duration = Duration::from_secs(1);
+
 /// A thread that reads a sensor as fast as it goes, and never waits for whom it reads for.
 #[derive(Debug)]
 pub struct FrameSource {
     readings: Receiver<Reading>,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<Result<(), LiveError>>>,
+    /// When the last frame was taken, or the thread was started.
+    heard: Instant,
 }
 
 /// What became of the frames so far.
@@ -76,16 +84,23 @@ impl FrameSource {
             readings,
             shared,
             thread: Some(thread),
+            heard: Instant::now(),
         })
     }
 
     /// The next frame, or `None` if none comes for so long.
     ///
     /// # Errors
-    /// [`LiveError::Bus`]: the sensor was given up, having failed for 2 s on end. [`LiveError::Thread`].
+    /// [`LiveError::Bus`]: the sensor was given up, having failed or been silent for 2 s on end. [`LiveError::Thread`].
     pub fn next(&mut self, timeout: Duration) -> Result<Option<Reading>, LiveError> {
         match self.readings.recv_timeout(timeout) {
-            Ok(reading) => Ok(Some(reading)),
+            Ok(reading) => {
+                self.heard = Instant::now();
+                Ok(Some(reading))
+            }
+            Err(RecvTimeoutError::Timeout) if self.heard.elapsed() >= SILENCE => Err(LiveError::Bus {
+                problem: format!("none came for {} s", SILENCE.as_secs()),
+            }),
             Err(RecvTimeoutError::Timeout) => Ok(None),
             Err(RecvTimeoutError::Disconnected) => {
                 let ended = self.thread.take().map(JoinHandle::join);
@@ -113,11 +128,19 @@ impl FrameSource {
     }
 }
 
-/// Ends the thread, after the frame that it is reading.
+/// Ends the thread, after the frame that it is reading. On a bus that hangs it is left to itself.
 impl Drop for FrameSource {
     fn drop(&mut self) {
         self.shared.is_over.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread.take() {
+        let end = Instant::now() + LEAVE;
+        let mut heard = Ok(());
+        while heard.is_ok() {
+            let left = end.saturating_duration_since(Instant::now());
+            heard = self.readings.recv_timeout(left).map(drop);
+        }
+        if heard == Err(RecvTimeoutError::Disconnected)
+            && let Some(thread) = self.thread.take()
+        {
             let _ = thread.join(); // nobody is left to hear how it went
         }
     }

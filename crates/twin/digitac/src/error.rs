@@ -65,7 +65,7 @@ pub enum DigitacError {
     #[error("the training was stopped")]
     Stopped,
     /// A file of a model cannot be read or written.
-    #[error("{path}: {source}")]
+    #[error("{path} cannot be read or written")]
     File {
         /// The file.
         path: String,

@@ -13,11 +13,13 @@ pub enum InverseError {
     #[error("no known shape: at least one is needed")]
     NoShape,
     /// A setting that can't be.
-    #[error("the inverse's `{field}` is {found}, expected a number above 0")]
+    #[error("the inverse's `{field}` is {found}, expected {expected}")]
     Setting {
         /// Its name.
         field: &'static str,
         /// What it is.
         found: f64,
+        /// What it may be.
+        expected: &'static str,
     },
 }

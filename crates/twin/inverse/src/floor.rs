@@ -4,8 +4,12 @@ use glam::DVec2;
 use twintac_fast::FastReader;
 
 use crate::contact::Contact;
+use crate::error::InverseError;
 use crate::fast_model::FastModel;
 use crate::inverse::Inverse;
+
+/// Points of the finest map.
+const MOST_POINTS: f64 = 1e7;
 
 /// Reads the floor's pressure on a grid: what the contact would make there by the fast gel.
 #[derive(Clone, Debug)]
@@ -21,27 +25,37 @@ pub struct FloorMap {
 impl Inverse<FastModel> {
     /// Prepares maps of the floor on a grid of this spacing, mm, in the middle of the gel. 0.5 mm makes about 2,500 points of PhysTac's floor.
     ///
-    /// # Panics
-    /// A spacing that is not above zero.
-    #[must_use]
-    pub fn floor_map(&self, spacing_mm: f64) -> FloorMap {
-        assert!(spacing_mm > 0.0, "a spacing above zero");
+    /// # Errors
+    /// [`InverseError::Setting`]: a spacing that is not above zero, or makes more than ten million points.
+    pub fn floor_map(&self, spacing_mm: f64) -> Result<FloorMap, InverseError> {
+        let refused = |expected| InverseError::Setting {
+            field: "spacing_mm",
+            found: spacing_mm,
+            expected,
+        };
+        if !(spacing_mm > 0.0 && spacing_mm.is_finite()) {
+            return Err(refused("a number above 0"));
+        }
         let [low, high] = self.model.gel().bounds_mm();
         let size = high - low;
-        let n = [size.x, size.y].map(|size| (size / spacing_mm).floor().max(1.0) as usize);
+        let n = [size.x, size.y].map(|size| (size / spacing_mm).floor().max(1.0));
+        if n[0] * n[1] > MOST_POINTS {
+            return Err(refused("a spacing that makes at most ten million points"));
+        }
+        let n = n.map(|n| n as usize);
         let first_mm = 0.5 * (low + high - spacing_mm * DVec2::new(n[0] as f64 - 1.0, n[1] as f64 - 1.0));
         let place = |i: usize, j: usize| first_mm + spacing_mm * DVec2::new(i as f64, j as f64);
         let places: Vec<DVec2> = (0..n[1])
             .flat_map(|j| (0..n[0]).map(move |i| place(i, j)))
             .collect();
-        FloorMap {
+        Ok(FloorMap {
             reader: self.model.gel().with_ports(&places).reader(),
             pressure_kpa: vec![0.0; places.len()],
             model: self.model.clone(),
             first_mm,
             spacing_mm,
             n,
-        }
+        })
     }
 }
 

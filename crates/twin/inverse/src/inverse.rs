@@ -30,7 +30,7 @@ impl Inverse<FastModel> {
     /// Of a fast gel and the shapes that may touch it, upright. Takes a fraction of a second for a few shapes, on all threads.
     ///
     /// # Errors
-    /// No shape, a shape that can't be, settings that are not above zero.
+    /// No shape, a shape that can't be, settings that can't be.
     pub fn of_fast_gel(
         gel: &FastGel,
         shapes: &[KnownShape],
@@ -48,7 +48,7 @@ impl<M: ContactModel> Inverse<M> {
     /// Of any model.
     ///
     /// # Errors
-    /// No shape, settings that are not above zero.
+    /// No shape, settings that can't be.
     pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
         settings.check()?;
         if model.n_shapes() == 0 {

@@ -63,9 +63,9 @@ impl InverseSettings {
     /// Whether these settings can be.
     ///
     /// # Errors
-    /// [`InverseError::Setting`], which names the first that is not above zero.
+    /// [`InverseError::Setting`], which names the first that is not finite, below zero, or zero where that has no meaning.
     pub fn check(&self) -> Result<(), InverseError> {
-        let positive = [
+        let above_zero = [
             ("noise_kpa", self.noise_kpa),
             ("correlated_s", self.correlated_s),
             ("shape_memory_s", self.shape_memory_s),
@@ -74,12 +74,28 @@ impl InverseSettings {
             ("n_starts", self.n_starts as f64),
             ("n_steps", self.n_steps as f64),
         ];
-        if let Some((field, found)) = positive
+        let from_zero_on = [
+            ("model_part", self.model_part),
+            ("model_part_of_largest", self.model_part_of_largest),
+            ("force_part", self.force_part),
+            ("place_walk_mm", self.place_walk_mm),
+            ("depth_walk_mm", self.depth_walk_mm),
+            ("spin_walk_rad", self.spin_walk_rad),
+        ];
+        let refuse = |(field, found), expected| InverseError::Setting {
+            field,
+            found,
+            expected,
+        };
+        let is_wrong = |number: &f64| !number.is_finite() || *number < 0.0;
+        let no_positive = above_zero
             .into_iter()
-            .find(|(_, value)| value.is_nan() || *value <= 0.0)
-        {
-            return Err(InverseError::Setting { field, found });
+            .find(|(_, number)| is_wrong(number) || *number == 0.0);
+        let negative = from_zero_on.into_iter().find(|(_, number)| is_wrong(number));
+        let refused = no_positive.map(|setting| refuse(setting, "a number above 0"));
+        match refused.or(negative.map(|setting| refuse(setting, "0 or a number above it"))) {
+            Some(error) => Err(error),
+            None => Ok(()),
         }
-        Ok(())
     }
 }

@@ -208,7 +208,7 @@ fn the_floor_is_highest_below_the_contact() {
         tracker.update(0.1, &readings_kpa);
     }
     let contact = tracker.update(0.1, &readings_kpa).unwrap();
-    let mut map = KNOWN.floor_map(0.5);
+    let mut map = KNOWN.floor_map(0.5).unwrap();
     assert_eq!(map.n(), [68, 36]);
     let floor_kpa = map.read(contact).to_vec();
     let largest = (0..floor_kpa.len())
@@ -224,10 +224,36 @@ fn what_cannot_be_is_an_error() {
     let new =
         |shapes: &[KnownShape], settings| Inverse::of_fast_gel(&gel, shapes, &Surfaces::new(), settings);
     assert_eq!(new(&[], settings()).unwrap_err(), InverseError::NoShape);
-    let silent = InverseSettings {
-        noise_kpa: 0.0,
+    for (field, wrong) in [
+        ("noise_kpa", serde_json::json!({"noise_kpa": 0.0})),
+        ("deepest_mm", serde_json::json!({"deepest_mm": -1.0})),
+        ("n_starts", serde_json::json!({"n_starts": 0})),
+        ("model_part", serde_json::json!({"model_part": -0.01})),
+        (
+            "model_part_of_largest",
+            serde_json::json!({"model_part_of_largest": -0.01}),
+        ),
+        ("force_part", serde_json::json!({"force_part": -0.01})),
+        ("place_walk_mm", serde_json::json!({"place_walk_mm": -3.0})),
+        ("depth_walk_mm", serde_json::json!({"depth_walk_mm": -3.0})),
+        ("spin_walk_rad", serde_json::json!({"spin_walk_rad": -3.0})),
+    ] {
+        let settings: InverseSettings = serde_json::from_value(wrong).unwrap();
+        let error = new(&shapes(), settings).unwrap_err();
+        assert!(
+            matches!(error, InverseError::Setting { field: named, .. } if named == field),
+            "{error}"
+        );
+    }
+    let endless = InverseSettings {
+        place_walk_mm: f64::INFINITY,
+        correlated_s: f64::NAN,
         ..settings()
     };
-    let error = new(&shapes(), silent).unwrap_err().to_string();
-    assert!(error.contains("noise_kpa"), "{error}");
+    let error = new(&shapes(), endless).unwrap_err().to_string();
+    assert!(error.contains("`correlated_s` is NaN"), "{error}");
+    for spacing_mm in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-3] {
+        let error = KNOWN.floor_map(spacing_mm).unwrap_err().to_string();
+        assert!(error.contains("`spacing_mm`"), "{error}");
+    }
 }
