@@ -98,7 +98,7 @@ impl Reader {
 
     /// The next frame.
     ///
-    /// Raises `Error` for a sensor that has failed or was silent for 2 s on end, and for a reader that is closed.
+    /// Raises `Error` for a sensor that has failed for 2 s on end or was silent for 3 s, and for a reader that is closed.
     fn read(&self, py: Python<'_>) -> PyResult<Reading> {
         self.next(py)?.ok_or_else(|| unusable(py, "reader", "is closed"))
     }

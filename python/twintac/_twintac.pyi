@@ -346,7 +346,7 @@ class Reader:
     def read(self) -> Reading:
         """The next frame.
 
-        Raises `Error` for a sensor that has failed or was silent for 2 s on end, and for a reader that is closed.
+        Raises `Error` for a sensor that has failed for 2 s on end or was silent for 3 s, and for a reader that is closed.
         """
     def close(self) -> None:
         """Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing."""

@@ -84,7 +84,7 @@ impl Reader {
     /// The next frame. Up to 256 wait for whom is late; more are missed.
     ///
     /// # Errors
-    /// A sensor that has failed or was silent for 2 s on end.
+    /// A sensor that has failed for 2 s on end or was silent for 3 s.
     pub fn read(&mut self) -> Result<Reading, Error> {
         loop {
             if let Some(reading) = self.wait(PATIENCE)? {

@@ -16,8 +16,8 @@ use crate::{FrameReader, LiveError, Reading};
 const MOST_FAILURES: u32 = 40;
 const REST: Duration = Duration::from_millis(50);
 
-/// How long a sensor may be silent.
-const SILENCE: Duration = Duration::from_secs(2);
+/// How long a sensor may be silent: longer than it may fail, so that a failure is told with its cause.
+const SILENCE: Duration = Duration::from_secs(3);
 
 /// How long the thread may take to end.
 const LEAVE: Duration = Duration::from_secs(1);
@@ -91,7 +91,7 @@ impl FrameSource {
     /// The next frame, or `None` if none comes for so long.
     ///
     /// # Errors
-    /// [`LiveError::Bus`]: the sensor was given up, having failed or been silent for 2 s on end. [`LiveError::Thread`].
+    /// [`LiveError::Bus`]: the sensor was given up, having failed for 2 s on end or been silent for 3 s. [`LiveError::Thread`].
     pub fn next(&mut self, timeout: Duration) -> Result<Option<Reading>, LiveError> {
         match self.readings.recv_timeout(timeout) {
             Ok(reading) => {

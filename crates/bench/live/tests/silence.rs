@@ -47,7 +47,7 @@ impl I2c for Hanging {
 }
 
 #[test]
-fn a_bus_that_hangs_is_given_up_after_two_seconds_and_left_behind() {
+fn a_bus_that_hangs_is_given_up_after_three_seconds_and_left_behind() {
     let clock = LabClock::real();
     let nowhere = TcpPose {
         position_mm: DVec3::ZERO,
@@ -81,15 +81,15 @@ fn a_bus_that_hangs_is_given_up_after_two_seconds_and_left_behind() {
     };
     let waited = start.elapsed();
     assert!(
-        matches!(&error, LiveError::Bus { problem } if problem.contains("2 s")),
+        matches!(&error, LiveError::Bus { problem } if problem.contains("3 s")),
         "{error}"
     );
     assert!(
-        waited > Duration::from_secs(1) && waited < Duration::from_secs(4),
+        waited > Duration::from_secs(2) && waited < Duration::from_secs(8),
         "{waited:?}"
     );
 
     let start = Instant::now();
     drop(source);
-    assert!(start.elapsed() < Duration::from_secs(3), "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(8), "{:?}", start.elapsed());
 }
