@@ -98,7 +98,6 @@ def train(kind: str, seed: int, imperfection: Imperfection | None, steps: int | 
     n_envs, total = own.pop("n_envs"), steps or own["steps"]
     del own["steps"]
     env = VecNormalize(TouchVecEnv(kind, n_envs, imperfection=imperfection, seed=1000 * seed), gamma=own["gamma"])
-    progress = {"learning_rate": lambda left: 1e-3 * left + 3e-5}
     model = PPO(
         "MlpPolicy",
         env,
@@ -107,8 +106,8 @@ def train(kind: str, seed: int, imperfection: Imperfection | None, steps: int | 
         batch_size=n_envs * own["n_steps"] // 8,
         n_epochs=8,
         policy_kwargs={"net_arch": [128, 128], "log_std_init": -0.7},
+        learning_rate=lambda left: 1e-3 * left + 3e-5,
         **own,
-        **progress,
     )
     curve = Curve(kind, total // 20)
     model.learn(total, callback=curve)
