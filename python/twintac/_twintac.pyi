@@ -61,11 +61,14 @@ _Number: TypeAlias = float | np.floating[Any] | np.integer[Any]
 class Sensor:
     """A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
 
-    `Sensor.phystac()` is built in; `Sensor.load` reads the description of any other.
+    `Sensor.phystac()` and `Sensor.phystac_tip()` are built in; `Sensor.load` reads the description of any other.
     """
     @staticmethod
     def phystac() -> Sensor:
         """PhysTac: eight barometers under a flat gel of 34 × 18 × 8.5 mm."""
+    @staticmethod
+    def phystac_tip() -> Sensor:
+        """PhysTac's fingertip: eight barometers under a dome, 19.2 mm high."""
     @staticmethod
     def load(path: _Path) -> Sensor:
         """Reads a description (TOML).
@@ -760,11 +763,14 @@ class Body:
 class FastGel:
     """A sensor's gel without finite elements: microseconds a reading, of bodies of any shape.
 
-    `FastGel.phystac()` is built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
+    `FastGel.phystac()` and `FastGel.phystac_tip()` are built in; `twintac fast train` makes that of another sensor, which `FastGel.load` reads. It does not relax; `Friction` adds friction.
     """
     @staticmethod
     def phystac() -> FastGel:
         """The fast gel of PhysTac, which is built in."""
+    @staticmethod
+    def phystac_tip() -> FastGel:
+        """The fast gel of PhysTac's fingertip, which is built in."""
     @staticmethod
     def load(path: _Path) -> FastGel:
         """Reads a file that `twintac fast train` has made.
