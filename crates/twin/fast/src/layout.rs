@@ -116,3 +116,19 @@ impl Layout {
         inputs.push(self.coarseness(edge_mm));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use twintac_sensor::SensorFile;
+
+    #[test]
+    fn the_finest_meshes_are_what_readings_assume_on_gels_of_any_height() {
+        for file in [SensorFile::phystac().unwrap(), SensorFile::phystac_tip().unwrap()] {
+            let layout = Layout::of(&file.sensor);
+            let finest_mm = finest_edge_mm(layout.surroundings.height_mm()) as f32;
+            assert!(layout.coarseness(finest_mm).abs() < 1e-6, "{}", file.sensor.name);
+            assert!((layout.coarseness(1.5 * finest_mm) - 0.3).abs() < 1e-6);
+        }
+    }
+}

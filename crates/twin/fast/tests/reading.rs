@@ -233,7 +233,7 @@ fn a_contact_unlike_what_was_taught_is_new() {
 }
 
 #[test]
-fn the_built_in_fingertip_carries_a_ball_about_as_the_solved_gel() {
+fn the_built_in_fingertip_carries_a_ball_about_as_a_half_space_does() {
     let sensor = SensorFile::phystac_tip().unwrap().sensor;
     let gel = FastGel::phystac_tip().unwrap();
     assert_eq!(

@@ -199,6 +199,7 @@ impl SensorBatch {
     }
 
     /// One more moment in which everything stays where it was in the last step, as a step with the same touches would have it: gels are not read anew.
+    /// Sensors that were replaced since then have to be stepped first.
     ///
     /// - `since_previous_s`, `readings_kpa`: as [`Self::step`] takes them.
     ///

@@ -26,7 +26,7 @@ pub(crate) struct Dataset {
     /// Seed of all random choices.
     #[arg(long, default_value_t = 1, conflicts_with_all = ["check", "merge"])]
     pub(crate) seed: u64,
-    /// Press a gel without finite elements, much quicker: PhysTac's, or that of a file of `twintac fast train`.
+    /// Press a gel without finite elements, much quicker: PhysTac's or its fingertip's, or that of a file of `twintac fast train`.
     #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["check", "merge"])]
     pub(crate) fast: Option<Option<PathBuf>>,
     /// Folder of a trained twin: readings are its barometers', with their memory [default: the pressures at the ports].

@@ -184,9 +184,10 @@ fn of_twin(
 fn fast_gel(source: &FastSource, sensor: &SensorFile) -> Result<(FastTables, String), RunError> {
     match source {
         FastSource::BuiltIn => {
-            let tip = FastGel::phystac_tip()?;
-            let is_tip = tip.sensor() == sensor.sensor.name;
-            let fast = if is_tip { tip } else { FastGel::phystac()? };
+            let fast = match sensor.sensor.name.as_str() {
+                "phystac-tip" => FastGel::phystac_tip()?,
+                _ => FastGel::phystac()?,
+            };
             let hash = sha256(&fast.to_bytes()?);
             Ok((
                 FastTables::of(fast, &sensor.sensor, "the fast gel that is built in")?,
