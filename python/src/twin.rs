@@ -237,9 +237,9 @@ impl TwinAtPlace {
 
     /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
     #[getter]
-    fn half_widths_kpa<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+    fn half_width_kpa<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.twin
-            .half_widths_kpa()
+            .half_width_kpa()
             .map(|widths| PyArray1::from_slice(py, widths))
     }
 

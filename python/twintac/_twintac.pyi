@@ -590,7 +590,7 @@ class TwinAtPlace:
     def force_n(self) -> float:
         """Force of the indenter into the gel at the last frame, N."""
     @property
-    def half_widths_kpa(self) -> _Float | None:
+    def half_width_kpa(self) -> _Float | None:
         """Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know."""
     @property
     def unlikeness(self) -> tuple[float, bool] | None:

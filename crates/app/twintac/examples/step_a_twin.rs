@@ -21,7 +21,7 @@ pub fn step(model: &Path) -> Result<Vec<f64>, Error> {
         println!(
             "{depth_mm:.3} mm, {:.3} N, {readings_kpa:.2?} ± {:.2?} kPa",
             pressed.force_n(),
-            pressed.half_widths_kpa().unwrap_or_default()
+            pressed.half_width_kpa().unwrap_or_default()
         );
         if let Some((unlikeness, true)) = pressed.unlikeness() {
             println!("unlike what taught: {unlikeness:.1}");

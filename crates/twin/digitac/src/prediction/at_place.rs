@@ -133,7 +133,7 @@ impl TwinAtPlace {
 
     /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
     #[must_use]
-    pub fn half_widths_kpa(&self) -> Option<&[f64]> {
+    pub fn half_width_kpa(&self) -> Option<&[f64]> {
         let sureness = self.sureness.as_ref()?;
         Some(&sureness.half_widths_kpa)
     }
