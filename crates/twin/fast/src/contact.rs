@@ -10,15 +10,15 @@ use crate::distance::{Body, Field, Form, REACH_MM};
 use crate::engine::dispatch;
 use crate::surface::SurfaceGrid;
 
-/// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses. Over gels that are higher
-/// than [`HEIGHT_MM`] they lie in proportion to the height.
+/// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses. Where points are farther
+/// apart than [`SPACING_MM`], they lie in proportion.
 const LEVELS_MM: [f32; N_CHANNELS] = [0.0, -1.5, -3.0];
 
 /// Deeper points are no deeper to the network, mm; in the same proportion.
 const DEEPEST_MM: f32 = 4.0;
 
-/// Height of the gel for which both are, mm: PhysTac's.
-const HEIGHT_MM: f32 = 8.5;
+/// Distance of the points for which both are, mm.
+const SPACING_MM: f32 = 2.0;
 
 /// Gaps up to which something may touch between points, and beyond which nothing does, in distances of points: an end with a radius of 2.5 mm, in the middle of four points
 /// of PhysTac's grid, has a gap of a fifth to them when it touches.
@@ -91,7 +91,7 @@ impl ContactGrid {
     fn new(grid: &SurfaceGrid) -> Self {
         let height_mm: Vec<f32> = grid.height_mm.iter().map(|height| *height as f32).collect();
         let highest_mm = height_mm.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let scale = (highest_mm / HEIGHT_MM).max(1.0);
+        let scale = (grid.spacing_mm as f32 / SPACING_MM).max(1.0);
         Self {
             first_mm: grid.first_mm.map(|first| first as f32),
             spacing_mm: grid.spacing_mm as f32,

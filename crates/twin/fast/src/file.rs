@@ -83,10 +83,13 @@ impl FastGel {
         };
         let header = serde_json::to_string(&header).map_err(FastFileError::new)?;
         let mut tensors = Vec::new();
-        for (name, network) in [
-            ("pressure", &self.networks.pressure),
-            ("wrench", &self.networks.wrench),
-        ] {
+        let networks = [
+            ("pressure", Some(&self.networks.pressure)),
+            ("wrench", Some(&self.networks.wrench)),
+            ("taxels", self.networks.taxels.as_ref()),
+        ];
+        for (name, network) in networks {
+            let Some(network) = network else { continue };
             let layers = std::iter::once(&network.point).chain(&network.rest.layers);
             for (index, Linear { weight, bias }) in layers.enumerate() {
                 let tensor = |part: &str| format!("{name}.{index}.{part}");
@@ -139,6 +142,11 @@ impl FastGel {
         let networks = Networks {
             pressure: network(&tensors, "pressure", [n_patch, n_inputs[0]], 1)?,
             wrench: network(&tensors, "wrench", [n_grid, n_inputs[1]], 6)?,
+            taxels: tensors
+                .tensor("taxels.0.weight")
+                .is_ok()
+                .then(|| network(&tensors, "taxels", [n_grid, n_inputs[1]], header.ports_mm.len()))
+                .transpose()?,
         };
         let novelty = Novelty {
             kept: Matrix {

@@ -8,16 +8,18 @@ use crate::contact::N_CHANNELS;
 use crate::network::{Patch, Surroundings, Turn};
 use crate::surface::SurfaceGrid;
 
-/// Height of the gel for which edges have these lengths, mm: PhysTac's.
-const HEIGHT_MM: f64 = 8.5;
+/// The shortest edges of lessons over the gel's height: 0.6 mm of PhysTac's. Over a high gel they are bounded by its width, in proportion to which
+/// shapes are drawn: 0.75 mm of the fingertip's.
+const OF_HEIGHT: f64 = 0.6 / 8.5;
+const OF_WIDTH: f64 = 0.03;
 
-/// The shortest edges under a shape, mm. The networks are told how much longer they are, and read as if they were not.
-const FINEST_MM: f64 = 0.6;
+/// What the networks are told of edges twice as long as the shortest.
+const TWICE: f64 = 0.6;
 
-/// Length of the shortest edges of the meshes that networks are taught with, mm, of a gel of some height, mm.
+/// Length of the shortest edges of the meshes that networks are taught with, mm, of a gel of some height and width, the root of its area in plan, mm.
 #[must_use]
-pub fn finest_edge_mm(height_mm: f64) -> f64 {
-    height_mm / HEIGHT_MM * FINEST_MM
+pub fn finest_edge_mm(height_mm: f64, width_mm: f64) -> f64 {
+    (OF_HEIGHT * height_mm).min(OF_WIDTH * width_mm)
 }
 
 /// How what touches is laid out for the networks.
@@ -65,19 +67,36 @@ impl Layout {
         &self.grids[0]
     }
 
-    /// Whether the grid is its own mirror image about a place.
-    pub(crate) fn is_symmetric(&self, center_mm: DVec3) -> bool {
-        (0..2).all(|axis| {
-            let grid = self.grid();
+    /// Whether the first grid and the heights of its points are their own mirror images, across x and across y, about a place.
+    pub(crate) fn is_symmetric(&self, center_mm: DVec3) -> [bool; 2] {
+        let grid = self.grid();
+        let [n_x, n_y] = grid.n;
+        [0, 1].map(|axis| {
             let last_mm = grid.first_mm[axis] + grid.spacing_mm * (grid.n[axis] - 1) as f64;
-            (0.5 * (grid.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6
+            let is_central = (0.5 * (grid.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6;
+            let mirror = |i: usize, j: usize| {
+                if axis == 0 {
+                    [n_x - 1 - i, j]
+                } else {
+                    [i, n_y - 1 - j]
+                }
+            };
+            is_central
+                && (0..grid.len()).all(|point| {
+                    let [i, j] = mirror(point % n_x, point / n_x);
+                    (grid.height_mm[point] - grid.height_mm[j * n_x + i]).abs() < 1e-6
+                })
         })
     }
 
-    /// How much longer edges are than the shortest, mm on a gel as high as PhysTac's.
+    fn finest_edge_mm(&self) -> f64 {
+        finest_edge_mm(self.surroundings.height_mm(), self.surroundings.width_mm())
+    }
+
+    /// How much longer edges are than the shortest. The networks are told it, and read as if it were zero.
     fn coarseness(&self, edge_mm: f32) -> f32 {
-        let finest_mm = finest_edge_mm(self.surroundings.height_mm());
-        (FINEST_MM * (f64::from(edge_mm) / finest_mm - 1.0)) as f32
+        let finest_mm = self.finest_edge_mm();
+        (TWICE * (f64::from(edge_mm) / finest_mm - 1.0)) as f32
     }
 
     /// Appends the inputs of the network of pressures for a place on a grid.
@@ -126,7 +145,7 @@ mod tests {
     fn the_finest_meshes_are_what_readings_assume_on_gels_of_any_height() {
         for file in [SensorFile::phystac().unwrap(), SensorFile::phystac_tip().unwrap()] {
             let layout = Layout::of(&file.sensor);
-            let finest_mm = finest_edge_mm(layout.surroundings.height_mm()) as f32;
+            let finest_mm = layout.finest_edge_mm() as f32;
             assert!(layout.coarseness(finest_mm).abs() < 1e-6, "{}", file.sensor.name);
             assert!((layout.coarseness(1.5 * finest_mm) - 0.3).abs() < 1e-6);
         }

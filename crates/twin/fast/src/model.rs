@@ -11,9 +11,6 @@ use crate::networks::Networks;
 use crate::novelty::Novelty;
 use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
-/// What part of the places that are shown is the taxels', where some reach over the gel's side: what they feel there is felt in few other places.
-const PART_AT_SIDE: f64 = 0.5;
-
 /// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FastGel {
@@ -43,33 +40,34 @@ impl FastGel {
         progress: &mut dyn FnMut(TrainProgress),
     ) -> Result<Self, ShapeError> {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let taxels = sensor.taxels.iter();
         let layout = Layout::of(sensor);
         let center_mm = (0.5 * (low + high)).with_z(high.z);
         let places_mm = lesson_places_mm(sensor);
-        let part_of_taxels = if sensor.has_port_at_side() {
-            PART_AT_SIDE
-        } else {
-            0.0
-        };
         let places = (&places_mm[..], sensor.taxels.len());
-        let frames = Frames::of(lessons, &layout, places, part_of_taxels, center_mm)?;
-        let is_symmetric = matches!(sensor.gel.solid, Solid::Block { .. }) && layout.is_symmetric(center_mm);
+        let frames = Frames::of(lessons, &layout, places, center_mm)?;
+        // A surface of triangles may have the heights of its mirror image, and other sides.
+        let has_known_sides = !matches!(sensor.gel.solid, Solid::Stl { .. });
+        let is_symmetric = layout.is_symmetric(center_mm).map(|is| is && has_known_sides);
+        let ports_mm: Vec<DVec2> = taxels.map(|taxel| taxel.position_mm.truncate()).collect();
+        let mirrored = |axis: usize| {
+            let images = is_symmetric[axis].then(|| mirror_images(&ports_mm, center_mm.truncate(), axis));
+            images.flatten()
+        };
         let course = Course {
             frames: &frames,
             layout: &layout,
             settings,
             is_symmetric,
+            // What a port feels over the gel's side is felt in few other places: patches do not tell it.
+            mirrored_taxels: sensor.has_port_at_side().then(|| [0, 1].map(mirrored)),
             seed,
         };
-        let networks = train(course, progress);
+        let networks = train(&course, progress);
         Ok(Self {
             novelty: Novelty::of(&frames, layout.grid()),
             sensor: sensor.name.clone(),
-            ports_mm: sensor
-                .taxels
-                .iter()
-                .map(|taxel| taxel.position_mm.truncate())
-                .collect(),
+            ports_mm,
             layout,
             center_mm,
             networks,
@@ -91,13 +89,14 @@ impl FastGel {
     }
 
     /// The same gel with its ports at other places of the floor, mm, instead of the taxels': a reading is the pressure over a disc as large as a
-    /// port there. Ports on a regular grid share what they need: thousands take a few MB.
+    /// port there. Ports on a regular grid share what they need: thousands take a few MB. Where taxels reach over the gel's side, pressures at other places are
+    /// less exact than the taxels' own.
     #[must_use]
     pub fn with_ports(&self, places_mm: &[DVec2]) -> Self {
-        Self {
-            ports_mm: places_mm.to_vec(),
-            ..self.clone()
-        }
+        let mut gel = self.clone();
+        gel.ports_mm = places_mm.to_vec();
+        gel.networks.taxels = None;
+        gel
     }
 
     /// Corners of the gel in plan, mm.
@@ -112,4 +111,14 @@ impl FastGel {
     pub fn height_mm_at(&self, place_mm: DVec2) -> f64 {
         self.layout.grid().height_mm_at(place_mm)
     }
+}
+
+/// For each place, the number of its mirror image about a center across an axis; `None` if one of them has none.
+fn mirror_images(places_mm: &[DVec2], center_mm: DVec2, axis: usize) -> Option<Vec<usize>> {
+    let image = |at: &DVec2| {
+        let mut image_mm = *at;
+        image_mm[axis] = 2.0 * center_mm[axis] - at[axis];
+        places_mm.iter().position(|at| at.distance(image_mm) < 1e-6)
+    };
+    places_mm.iter().map(image).collect()
 }

@@ -4,11 +4,11 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use twintac_sensor::Sensor;
 
-/// Distance of the grid's points along x and along y, mm; more over a gel that is higher than six of them, whose floor feels nothing so small.
+/// Distance of the grid's points along x and along y, mm; more over a gel that is higher than ten of them, whose floor feels nothing so small.
 const SPACING_MM: f64 = 2.0;
 
 /// The largest distance of the points, of the gel's height.
-const SPACING_OF_HEIGHT: f64 = 1.0 / 6.0;
+const SPACING_OF_HEIGHT: f64 = 1.0 / 10.0;
 
 /// A grid of points on the undeformed gel's surface, row by row along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -112,11 +112,6 @@ impl SurfaceGrid {
         };
         let row = |j: i32| height_mm(i, j) + part.x * (height_mm(i + 1, j) - height_mm(i, j));
         row(j) + part.y * (row(j + 1) - row(j))
-    }
-
-    /// Whether the points are as far apart as they are only over high gels.
-    pub(crate) fn is_coarse(&self) -> bool {
-        self.spacing_mm > SPACING_MM
     }
 
     /// Number of points.

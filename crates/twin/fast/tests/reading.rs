@@ -10,11 +10,12 @@ use twintac_shape::{Pose, Shape, Surfaces};
 /// A gel whose floor reads how deep a ball is, the less the further away.
 fn lessons(sensor: &Sensor) -> Vec<Lesson> {
     let places = lesson_places_mm(sensor);
+    let top_mm = sensor.gel.solid.bounds_mm(&sensor.surfaces).1.z;
     let lesson = |number: u32| {
         let at = DVec3::new(
             f64::from(number % 5) * 6.0 - 12.0,
             f64::from(number % 3) * 5.0 - 5.0,
-            8.5,
+            top_mm,
         );
         let frame = |depth_mm: f64| {
             let gel_from_indenter = Pose::from_position(at - DVec3::Z * depth_mm);
@@ -39,14 +40,17 @@ fn lessons(sensor: &Sensor) -> Vec<Lesson> {
 }
 
 fn gel(n_steps: usize) -> (FastGel, Vec<Lesson>) {
-    let sensor = SensorFile::phystac().unwrap().sensor;
+    gel_of(&SensorFile::phystac().unwrap().sensor, n_steps)
+}
+
+fn gel_of(sensor: &Sensor, n_steps: usize) -> (FastGel, Vec<Lesson>) {
     let settings = TrainSettings {
         n_steps,
         n_frames: 16,
         ..TrainSettings::default()
     };
-    let lessons = lessons(&sensor);
-    let gel = FastGel::train(&sensor, &lessons, &settings, 1, &mut |_| ()).unwrap();
+    let lessons = lessons(sensor);
+    let gel = FastGel::train(sensor, &lessons, &settings, 1, &mut |_| ()).unwrap();
     (gel, lessons)
 }
 
@@ -77,6 +81,42 @@ fn a_file_reads_the_same_bits() {
     assert_eq!(again, gel);
     let (pose, ball) = (Pose::from_position(DVec3::new(-4.0, 4.0, 6.5)), ball());
     assert_eq!(read(&again, &[(&ball, pose)]), read(&gel, &[(&ball, pose)]));
+}
+
+#[test]
+fn taxels_that_reach_over_the_gels_side_are_read_together() {
+    let sensor = SensorFile::phystac_tip().unwrap().sensor;
+    let (gel, lessons) = gel_of(&sensor, 200);
+    let judged = gel.judge(&lessons, &Surfaces::new()).unwrap();
+    assert!(judged.overall.nearest_percent < 12.0, "{judged:?}");
+
+    let again = FastGel::from_bytes(&gel.to_bytes().unwrap()).unwrap();
+    assert_eq!(again, gel);
+    let ball = ball();
+    let there = [(&ball, Pose::from_position(DVec3::new(-4.0, 4.0, 17.0)))];
+    let own = read(&gel, &there);
+    assert_eq!(read(&again, &there), own);
+
+    // Other places are read by the network of all places, the force as before.
+    let (as_places_kpa, wrench) = read(&gel.with_ports(gel.ports_mm()), &there);
+    assert_ne!(as_places_kpa, own.0);
+    assert_eq!(wrench, own.1);
+
+    // A sensor of many reads what it reads alone.
+    let bodies = [ball.clone()];
+    let touch = |sensor: u32| Touch {
+        body: 0,
+        gel_from_body: Pose::from_position(DVec3::new(f64::from(sensor) - 8.0, 2.0, 17.0)),
+    };
+    let touches: Vec<Touch> = (0..21).map(touch).collect();
+    let ends: Vec<usize> = (1..=21).collect();
+    let (mut pressure_kpa, mut wrench) = (vec![0.0; 8 * 21], vec![[0.0; 6]; 21]);
+    gel.reader()
+        .read_many(&bodies, &touches, &ends, &mut pressure_kpa, &mut wrench);
+    for (sensor, pressure_kpa) in pressure_kpa.chunks_exact(8).enumerate() {
+        let alone = read(&gel, &[(&ball, touches[sensor].gel_from_body)]);
+        assert_eq!((pressure_kpa, wrench[sensor]), (&alone.0[..], alone.1));
+    }
 }
 
 #[test]

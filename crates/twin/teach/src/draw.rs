@@ -57,7 +57,7 @@ pub(crate) struct Slide {
 }
 
 /// Counts how presses have been drawn and solved: those of another version are other presses, though number and seed be the same.
-pub const DRAW_VERSION: u32 = 3;
+pub const DRAW_VERSION: u32 = 4;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,21 +110,31 @@ fn height_mm(sensor: &Sensor) -> f64 {
     high.z - low.z
 }
 
-/// By how much shapes are larger than the sizes below.
-pub(crate) fn scale(sensor: &Sensor) -> f64 {
+/// Root of the gel's area in plan, mm.
+fn width_mm(sensor: &Sensor) -> f64 {
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-    (high - low).truncate().element_product().sqrt() / WIDTH_MM
+    (high - low).truncate().element_product().sqrt()
 }
 
-/// Lengths of a mesh's edges away from the shape, over the gel's height, and under it, mm, for a press that was drawn with these under it. Where the side
-/// of the gel meets the floor, pressure grows without end the closer it is looked at: what a port there reads depends on the edges. With such a port, all
-/// edges of all meshes are alike.
-pub(crate) fn edges(sensor: &Sensor, edge_mm: f64) -> (f64, f64) {
+/// The shortest edges under a shape, mm.
+fn finest_mm(sensor: &Sensor) -> f64 {
+    finest_edge_mm(height_mm(sensor), width_mm(sensor))
+}
+
+/// By how much shapes are larger than the sizes below.
+pub(crate) fn scale(sensor: &Sensor) -> f64 {
+    width_mm(sensor) / WIDTH_MM
+}
+
+/// Edges over the gel's height away from the shape, for a press that was drawn with edges of this length under it, mm. Where the side of the gel meets
+/// the floor, pressure grows without end the closer it is looked at: what a port there reads depends on the edges. With such a port, all edges of a mesh
+/// are alike, so that it does not depend on the place of the press too.
+pub(crate) fn edges_per_height(sensor: &Sensor, edge_mm: f64) -> f64 {
     if sensor.has_port_at_side() {
-        let finest_mm = finest_edge_mm(height_mm(sensor));
-        return (height_mm(sensor) / finest_mm, finest_mm);
+        height_mm(sensor) / edge_mm
+    } else {
+        EDGES_PER_HEIGHT
     }
-    (EDGES_PER_HEIGHT, edge_mm)
 }
 
 /// Draws a press for a sensor.
@@ -156,8 +166,7 @@ pub(crate) fn draw(sensor: &Sensor, purpose: Purpose, random: &mut impl Rng) -> 
         place_mm: low.truncate() + size_mm * within,
         rotation,
         depth_mm: deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0),
-        edge_mm: finest_edge_mm(height_mm(sensor))
-            * coarseness.map_or(1.0, |[least, most]| random.random_range(least..most)),
+        edge_mm: finest_mm(sensor) * coarseness.map_or(1.0, |[least, most]| random.random_range(least..most)),
         slide: (purpose == Purpose::Slide).then(|| {
             // Towards the middle, so that it stays on the gel.
             let inwards = (DVec2::splat(0.5) - within).to_angle() + random.random_range(-1.0..1.0);
@@ -177,7 +186,7 @@ pub(crate) fn upright(sensor: &Sensor, shape: &Shape, place_mm: DVec2, spin_rad:
         place_mm,
         rotation: DQuat::from_rotation_z(spin_rad),
         depth_mm,
-        edge_mm: finest_edge_mm(height_mm(sensor)),
+        edge_mm: finest_mm(sensor),
         slide: None,
     }
 }

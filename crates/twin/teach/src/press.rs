@@ -10,7 +10,7 @@ use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSett
 
 use crate::Strange;
 use crate::boulder::exam_surfaces;
-use crate::draw::{Draw, Purpose, Slide, draw, edges, own, upright};
+use crate::draw::{Draw, Purpose, Slide, draw, edges_per_height, own, upright};
 
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
@@ -172,17 +172,16 @@ impl Teacher {
 
     /// Straight down, as far as the solver comes.
     fn press(&self, drawn: &Draw) -> Result<Lesson, TeachError> {
-        let (edges_per_height, edge_mm) = edges(&self.sensor, drawn.edge_mm);
         let settings = SimulateSettings {
-            edges_per_height,
-            contact_edge_mm: Some(edge_mm),
+            edges_per_height: edges_per_height(&self.sensor, drawn.edge_mm),
+            contact_edge_mm: Some(drawn.edge_mm),
             max_nodes: MAX_NODES,
             ..SimulateSettings::default()
         };
         let gel = Gel::new(Arc::clone(&self.sensor), settings);
         let mut lesson = Lesson {
             shape: drawn.shape.clone(),
-            edge_mm,
+            edge_mm: drawn.edge_mm,
             frames: Vec::new(),
         };
         let above = Pose {

@@ -13,7 +13,7 @@ use twintac_learn::Linear;
 use crate::FastGel;
 use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
-use crate::network::Turn;
+use crate::network::{LocalNetwork, Turn};
 use crate::networks::{PRESSURE_KPA, WRENCH};
 use dense::padded;
 use places::Places;
@@ -28,6 +28,8 @@ const MOST_PORTS: usize = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct Engine {
     pressure: Sparse,
+    /// Whether one row has all ports, instead of a row for each.
+    has_all_ports: bool,
     wrench: Sparse,
     n_points: usize,
     n_ports: usize,
@@ -45,18 +47,25 @@ impl Engine {
     pub(crate) fn of(gel: &FastGel) -> Self {
         let (layout, networks) = (&gel.layout, &gel.networks);
         let (n_points, n_offsets) = (layout.n_points(), layout.patch.offsets.len());
-        Self {
-            pressure: Sparse::of(&networks.pressure, n_offsets, |rows, [n_own, n_hidden]| {
+        let of_patches = || {
+            Sparse::of(&networks.pressure, n_offsets, |rows, [n_own, n_hidden]| {
                 let places = Places::around(&gel.ports_mm, layout, rows, n_own);
                 let first = &networks.pressure.rest.layers[0];
                 let n_others = n_offsets * (n_own / n_hidden);
                 let bias = |at: &DVec2| bias_at(*at, layout, first, n_others, n_hidden);
                 (places, gel.ports_mm.iter().flat_map(bias).collect())
-            }),
-            wrench: Sparse::of(&networks.wrench, layout.grid().len(), |_, [_, n_hidden]| {
-                let bias = &networks.wrench.rest.layers[0].bias;
+            })
+        };
+        let of_grid = |network: &LocalNetwork| {
+            Sparse::of(network, layout.grid().len(), |_, [_, n_hidden]| {
+                let bias = &network.rest.layers[0].bias;
                 (Places::everywhere(layout), padded(bias, n_hidden).collect())
-            }),
+            })
+        };
+        Self {
+            pressure: networks.taxels.as_ref().map_or_else(of_patches, of_grid),
+            has_all_ports: networks.taxels.is_some(),
+            wrench: of_grid(&networks.wrench),
             n_points,
             n_ports: gel.ports_mm.len(),
         }
@@ -138,10 +147,14 @@ impl WithSimd for Reading<'_> {
         } = self;
         scratch.near.find(inputs, engine.n_points);
         let near = &scratch.near;
+        let n_ports_of_row = if engine.has_all_ports { engine.n_ports } else { 1 };
         engine
             .pressure
-            .read(simd, near, &mut scratch.pressure, |port, outputs| {
-                pressure_kpa[port] = outputs.map_or(0.0, |outputs| PRESSURE_KPA * outputs[0]);
+            .read(simd, near, &mut scratch.pressure, |row, outputs| {
+                let ports = &mut pressure_kpa[row * n_ports_of_row..][..n_ports_of_row];
+                for (port, pressure_kpa) in ports.iter_mut().enumerate() {
+                    *pressure_kpa = outputs.map_or(0.0, |outputs| PRESSURE_KPA * outputs[port]);
+                }
             });
         engine
             .wrench

@@ -33,13 +33,9 @@ pub(crate) struct Turn {
 }
 
 impl Patch {
-    /// All points of a grid within reach, over a gel of this height: a high gel bends as a whole, and its floor feels what presses anywhere.
+    /// All points of a grid within reach, over a gel of this height.
     pub(crate) fn round(grid: &SurfaceGrid, height_mm: f64) -> Self {
-        let reach = if grid.is_coarse() {
-            grid.n[0].max(grid.n[1]) as i32
-        } else {
-            (REACH_OF_HEIGHT * height_mm / grid.spacing_mm).round() as i32
-        };
+        let reach = (REACH_OF_HEIGHT * height_mm / grid.spacing_mm).round() as i32;
         let reach = reach.max(LEAST_REACH);
         let within = |[i, j]: &[i32; 2]| i * i + j * j <= reach * reach + 1;
         let all = (-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| [i, j]));
@@ -116,6 +112,11 @@ impl Surroundings {
     /// Height of the gel, mm.
     pub(crate) fn height_mm(&self) -> f64 {
         self.height_mm
+    }
+
+    /// Root of the gel's area in plan, mm.
+    pub(crate) fn width_mm(&self) -> f64 {
+        (self.high_mm - self.low_mm).element_product().sqrt()
     }
 
     /// The gel's lowest corner in plan, mm.

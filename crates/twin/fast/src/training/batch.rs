@@ -16,7 +16,7 @@ pub(super) struct PressurePick {
 }
 
 /// A frame, as it is shown.
-pub(super) struct WrenchPick {
+pub(super) struct GridPick {
     frame: usize,
     mirrored: [bool; 2],
 }
@@ -39,6 +39,16 @@ pub(super) struct WrenchBatch {
     pub(super) wrench: Vec<[f32; 6]>,
     /// The largest force of each press, N. `[n_picks]`
     pub(super) largest_n: Vec<f32>,
+}
+
+/// What is learned of all taxels at once.
+pub(super) struct TaxelBatch {
+    /// What touches anywhere. `[n_picks][n_field_inputs]`
+    pub(super) inputs: Matrix,
+    /// Their pressures over the largest of the press. `[n_picks * n_taxels]`
+    pub(super) pressure: Vec<f32>,
+    /// The largest pressure of each press, kPa. `[n_picks]`
+    pub(super) largest_kpa: Vec<f32>,
 }
 
 impl PressureBatch {
@@ -81,36 +91,76 @@ impl PressureBatch {
     }
 }
 
-impl WrenchBatch {
-    /// So many frames, mirrored where the gel is symmetric.
+impl GridPick {
+    /// So many frames, mirrored across x and across y where that is allowed.
     pub(super) fn picks(
         frames: &Frames,
         n_frames: usize,
-        is_symmetric: bool,
+        is_symmetric: [bool; 2],
         random: &mut RandomStream,
-    ) -> Vec<WrenchPick> {
-        let picks = (0..n_frames).map(|_| WrenchPick {
+    ) -> Vec<Self> {
+        let picks = (0..n_frames).map(|_| Self {
             frame: frames.any(random),
-            mirrored: [0, 1].map(|_| is_symmetric && random.random_bool(0.5)),
+            mirrored: is_symmetric.map(|is| is && random.random_bool(0.5)),
         });
         picks.collect()
     }
 
-    pub(super) fn of(frames: &Frames, layout: &Layout, picks: &[WrenchPick]) -> Self {
-        let mut batch = Self {
-            inputs: Matrix::zeros(0, layout.n_field_inputs()),
-            wrench: Vec::with_capacity(picks.len()),
-            largest_n: Vec::with_capacity(picks.len()),
-        };
-        let inputs = &mut batch.inputs.values;
-        inputs.reserve(picks.len() * layout.n_field_inputs());
-        for WrenchPick { frame, mirrored } in picks {
-            let frame = &frames.frames[*frame];
-            layout.put_field(&frame.inputs, frame.edge_mm, *mirrored, inputs);
-            batch.wrench.push(mirror_wrench(frame.wrench, *mirrored));
-            batch.largest_n.push(frame.largest_n);
+    /// The whole grid of each pick.
+    fn inputs(frames: &Frames, layout: &Layout, picks: &[Self]) -> Matrix {
+        let mut inputs = Matrix::zeros(0, layout.n_field_inputs());
+        inputs.values.reserve(picks.len() * layout.n_field_inputs());
+        for pick in picks {
+            let frame = &frames.frames[pick.frame];
+            layout.put_field(&frame.inputs, frame.edge_mm, pick.mirrored, &mut inputs.values);
         }
-        batch
+        inputs
+    }
+}
+
+impl WrenchBatch {
+    pub(super) fn of(frames: &Frames, layout: &Layout, picks: &[GridPick]) -> Self {
+        let shown = |pick: &GridPick| mirror_wrench(frames.frames[pick.frame].wrench, pick.mirrored);
+        Self {
+            inputs: GridPick::inputs(frames, layout, picks),
+            wrench: picks.iter().map(shown).collect(),
+            largest_n: picks
+                .iter()
+                .map(|pick| frames.frames[pick.frame].largest_n)
+                .collect(),
+        }
+    }
+}
+
+impl TaxelBatch {
+    /// `mirrored_taxels`: which taxel each is in the mirror image across x and across y.
+    pub(super) fn of(
+        frames: &Frames,
+        layout: &Layout,
+        mirrored_taxels: &[Option<Vec<usize>>; 2],
+        picks: &[GridPick],
+    ) -> Self {
+        let mut pressure = Vec::with_capacity(picks.len() * frames.n_taxels);
+        for pick in picks {
+            let frame = &frames.frames[pick.frame];
+            let share = |mut taxel: usize| {
+                for (mirrored, image) in pick.mirrored.into_iter().zip(mirrored_taxels) {
+                    if let (true, Some(image)) = (mirrored, image) {
+                        taxel = image[taxel];
+                    }
+                }
+                frame.floor_kpa[taxel] / frame.largest_kpa
+            };
+            pressure.extend((0..frames.n_taxels).map(share));
+        }
+        Self {
+            inputs: GridPick::inputs(frames, layout, picks),
+            pressure,
+            largest_kpa: picks
+                .iter()
+                .map(|pick| frames.frames[pick.frame].largest_kpa)
+                .collect(),
+        }
     }
 }
 

@@ -43,9 +43,7 @@ pub(crate) struct Frames {
     /// Places whose pressure is taught, those of the taxels first.
     pub(crate) places: Vec<TaughtPlace>,
     /// How many of them are a taxel's.
-    n_taxels: usize,
-    /// What part of the places that are shown is drawn from the taxels' alone.
-    part_of_taxels: f64,
+    pub(crate) n_taxels: usize,
 }
 
 /// A place of the floor that is below a point of a grid.
@@ -62,14 +60,7 @@ pub(crate) struct TaughtPlace {
 impl Frames {
     /// A place at random.
     pub(crate) fn any_place(&self, random: &mut RandomStream) -> usize {
-        let is_taxel = self.part_of_taxels > 0.0 && random.random_bool(self.part_of_taxels);
-        random.random_range(
-            0..if is_taxel {
-                self.n_taxels
-            } else {
-                self.places.len()
-            },
-        )
+        random.random_range(0..self.places.len())
     }
 
     /// The number of a frame at random.
@@ -81,7 +72,6 @@ impl Frames {
         lessons: &[Lesson],
         layout: &Layout,
         (places_mm, n_taxels): (&[DVec2], usize),
-        part_of_taxels: f64,
         center_mm: DVec3,
     ) -> Result<Self, ShapeError> {
         let points = ContactPoints::new(&layout.grids);
@@ -141,7 +131,6 @@ impl Frames {
             places: on_grid.collect(),
             frames,
             n_taxels,
-            part_of_taxels,
         })
     }
 }

@@ -8,7 +8,7 @@ use twintac_learn::{AdamW, AdamWSettings, Matrix};
 use twintac_random::{RandomStream, digest_stream};
 
 use super::Frames;
-use super::batch::{PressureBatch, WrenchBatch};
+use super::batch::{GridPick, PressureBatch, TaxelBatch, WrenchBatch};
 use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::LocalNetwork;
@@ -83,76 +83,101 @@ pub struct TrainProgress {
 pub const REPORT_STEPS: usize = 100;
 
 /// What is trained on, and how.
-#[derive(Clone, Copy)]
 pub(crate) struct Course<'a> {
     pub(crate) frames: &'a Frames,
     pub(crate) layout: &'a Layout,
     pub(crate) settings: &'a TrainSettings,
-    /// Whether the gel is its own mirror image.
-    pub(crate) is_symmetric: bool,
+    /// Whether the gel is its own mirror image across x and across y.
+    pub(crate) is_symmetric: [bool; 2],
+    /// Whether taxels get a network of their own: which taxel each is in the mirror image across x and across y, if they have one.
+    pub(crate) mirrored_taxels: Option<[Option<Vec<usize>>; 2]>,
     pub(crate) seed: u64,
 }
 
-/// Trains the two networks side by side; neither knows of the other.
-pub(crate) fn train(course: Course<'_>, progress: &mut dyn FnMut(TrainProgress)) -> Networks {
-    let mut pressure = Training::new("pressure", course, |layout, settings| {
-        let (n_points, n_inputs) = (layout.patch.offsets.len(), layout.patch.n_inputs());
-        ([n_points, n_inputs], &settings.pressure_hidden, 1)
-    });
-    let mut wrench = Training::new("wrench", course, |layout, settings| {
-        let (n_points, n_inputs) = (layout.grid().len(), layout.n_field_inputs());
-        ([n_points, n_inputs], &settings.wrench_hidden, 6)
-    });
+/// Trains the networks side by side; none knows of the others.
+pub(crate) fn train(course: &Course<'_>, progress: &mut dyn FnMut(TrainProgress)) -> Networks {
     let Course {
         frames,
         layout,
         settings,
         is_symmetric,
+        mirrored_taxels,
         ..
     } = course;
+    let n_field = [layout.grid().len(), layout.n_field_inputs()];
+    let n_patch = [layout.patch.offsets.len(), layout.patch.n_inputs()];
+    let mut pressure = Training::new("pressure", course, n_patch, &settings.pressure_hidden, 1);
+    let mut wrench = Training::new("wrench", course, n_field, &settings.wrench_hidden, 6);
+    let mut taxels = mirrored_taxels.as_ref().map(|mirrored| {
+        let training = Training::new(
+            "taxels",
+            course,
+            n_field,
+            &settings.pressure_hidden,
+            frames.n_taxels,
+        );
+        (mirrored, training)
+    });
     let sizes = [settings.n_frames, settings.n_places];
     let mut step = 0;
     while step < settings.n_steps {
         let next = (step + REPORT_STEPS).min(settings.n_steps);
-        let (pressure_error, wrench_error) = rayon::join(
-            || {
-                pressure.steps(
-                    step..next,
-                    settings,
-                    |random| PressureBatch::picks(frames, sizes, random),
-                    |picks| {
-                        let batch = PressureBatch::of(frames, layout, picks);
-                        (batch.inputs, move |output: &Matrix| {
-                            pressure_loss(output, &batch.pressure, &batch.largest_kpa)
-                        })
-                    },
-                )
-            },
-            || {
-                wrench.steps(
-                    step..next,
-                    settings,
-                    |random| WrenchBatch::picks(frames, settings.n_frames, is_symmetric, random),
-                    |picks| {
-                        let batch = WrenchBatch::of(frames, layout, picks);
-                        (batch.inputs, move |output: &Matrix| {
-                            wrench_loss(output, &batch.wrench, &batch.largest_n)
-                        })
-                    },
-                )
-            },
-        );
+        let mut pressure_steps = || {
+            pressure.steps(
+                step..next,
+                settings,
+                |random| PressureBatch::picks(frames, sizes, random),
+                |picks| {
+                    let batch = PressureBatch::of(frames, layout, picks);
+                    (batch.inputs, move |output: &Matrix| {
+                        pressure_loss(output, &batch.pressure, &batch.largest_kpa)
+                    })
+                },
+            )
+        };
+        let mut wrench_steps = || {
+            wrench.steps(
+                step..next,
+                settings,
+                |random| GridPick::picks(frames, settings.n_frames, *is_symmetric, random),
+                |picks| {
+                    let batch = WrenchBatch::of(frames, layout, picks);
+                    (batch.inputs, move |output: &Matrix| {
+                        wrench_loss(output, &batch.wrench, &batch.largest_n)
+                    })
+                },
+            )
+        };
+        let mut taxel_steps = || {
+            let (mirrored, training) = taxels.as_mut()?;
+            let is_symmetric = [0, 1].map(|axis| mirrored[axis].is_some());
+            Some(training.steps(
+                step..next,
+                settings,
+                |random| GridPick::picks(frames, settings.n_frames, is_symmetric, random),
+                |picks| {
+                    let batch = TaxelBatch::of(frames, layout, mirrored, picks);
+                    (batch.inputs, move |output: &Matrix| {
+                        pressure_loss(output, &batch.pressure, &batch.largest_kpa)
+                    })
+                },
+            ))
+        };
+        let (pressure_error, (wrench_error, taxel_error)) = rayon::join(&mut pressure_steps, || {
+            rayon::join(&mut wrench_steps, &mut taxel_steps)
+        });
         step = next;
         progress(TrainProgress {
             step,
             of: settings.n_steps,
-            pressure: pressure_error,
+            pressure: taxel_error.unwrap_or(pressure_error),
             wrench: wrench_error,
         });
     }
     Networks {
         pressure: pressure.network,
         wrench: wrench.network,
+        taxels: taxels.map(|(_, training)| training.network),
     }
 }
 
@@ -165,14 +190,15 @@ struct Training {
 }
 
 impl Training {
-    /// Random weights. `sizes` gives the numbers of points and of all inputs, hidden units, and the number of outputs.
-    fn new<'a>(
+    /// Random weights for so many points and inputs in all, hidden units and outputs.
+    fn new(
         name: &str,
-        course: Course<'a>,
-        sizes: impl Fn(&'a Layout, &'a TrainSettings) -> ([usize; 2], &'a Vec<usize>, usize),
+        course: &Course<'_>,
+        [n_points, n_inputs]: [usize; 2],
+        hidden: &[usize],
+        n_outputs: usize,
     ) -> Self {
         let mut random = digest_stream(course.seed, &format!("fast twin, {name}"));
-        let ([n_points, n_inputs], hidden, n_outputs) = sizes(course.layout, course.settings);
         let n_others = n_inputs - n_points * N_CHANNELS;
         let inputs = [n_points, course.settings.n_features, n_others];
         let network = LocalNetwork::new(inputs, hidden, n_outputs, &mut random);
@@ -241,18 +267,20 @@ fn size(error: f32) -> (f32, f32) {
     (size, error / size)
 }
 
-/// Sum of errors over the press's largest pressure, and the slope of the outputs.
+/// Sum over rows of the mean error over the press's largest pressure, and the slope of the outputs. `pressure` has as many rows and columns as the output.
 fn pressure_loss(output: &Matrix, pressure: &[f32], largest_kpa: &[f32]) -> (f32, Matrix) {
-    let mut slope = Matrix::zeros(output.n_rows(), 1);
+    let n_columns = output.n_columns;
+    let mut slope = Matrix::zeros(output.n_rows(), n_columns);
     let mut sum = 0.0;
-    for (row, (pressure, largest_kpa)) in pressure.iter().zip(largest_kpa).enumerate() {
-        let scale = PRESSURE_KPA / largest_kpa;
-        let error = output.values[row] * scale - pressure;
+    let share = 1.0 / n_columns as f32;
+    for (index, pressure) in pressure.iter().enumerate() {
+        let scale = PRESSURE_KPA / largest_kpa[index / n_columns];
+        let error = output.values[index] * scale - pressure;
         let (size, direction) = size(error);
         sum += size;
-        slope.values[row] = direction * scale * (QUIET + pressure.max(0.0));
+        slope.values[index] = share * direction * scale * (QUIET + pressure.max(0.0));
     }
-    (sum, slope)
+    (sum * share, slope)
 }
 
 /// Sum over frames of the mean error over the press's largest force, and the slope of the outputs.
