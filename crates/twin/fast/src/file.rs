@@ -19,7 +19,7 @@ use crate::surface::SurfaceGrid;
 const ENTRY: &str = "twintac-fast";
 
 /// Version of the file's layout.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// Bytes that are no fast gel: what is wrong with them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -48,7 +48,7 @@ struct Header {
 /// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
 const PHYSTAC: &[u8] = include_bytes!("../built_in/phystac.safetensors");
 
-/// The fingertip's, made by `twintac fast train --sensor sensors/phystac-tip.toml --lessons 1090 --exams 50 --slides 8 --steps 30000`.
+/// The fingertip's, made by `twintac fast train --sensor sensors/phystac-tip.toml --lessons 800 --exams 50 --slides 8 --steps 8000`.
 const PHYSTAC_TIP: &[u8] = include_bytes!("../built_in/phystac-tip.safetensors");
 
 impl FastGel {

@@ -122,7 +122,7 @@ fn taxels_that_reach_over_the_gels_side_are_read_together() {
 #[test]
 fn a_file_of_another_version_says_what_to_do() {
     let mut bytes = gel(3).0.to_bytes().unwrap();
-    let number = br#"\"version\":4"#;
+    let number = br#"\"version\":5"#;
     let at = bytes
         .windows(number.len())
         .position(|window| window == number)

@@ -45,7 +45,7 @@ impl Certainty {
 
     /// Half the widths of the intervals around the readings of a frame, kPa; `[n_taxels]`. `rates_kpa_per_s` are the readings' changes since the frame before.
     /// Allocates nothing.
-    pub fn half_widths_kpa(
+    pub(crate) fn half_widths_kpa(
         &self,
         (unlikeness, depth_mm): (f64, f64),
         readings_kpa: &[f64],
