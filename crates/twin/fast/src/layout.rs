@@ -8,18 +8,19 @@ use crate::contact::N_CHANNELS;
 use crate::network::{Patch, Surroundings, Turn};
 use crate::surface::SurfaceGrid;
 
-/// The shortest edges of lessons over the gel's height: 0.6 mm of PhysTac's. Over a high gel they are bounded by its width, in proportion to which
-/// shapes are drawn: 0.75 mm of the fingertip's.
-const OF_HEIGHT: f64 = 0.6 / 8.5;
-const OF_WIDTH: f64 = 0.03;
+/// Height of PhysTac's gel, mm.
+const HEIGHT_MM: f64 = 8.5;
 
-/// What the networks are told of edges twice as long as the shortest.
-const TWICE: f64 = 0.6;
+/// The shortest edges under a shape on that gel, mm. The networks are told how much longer edges are, and read as if they were not.
+const FINEST_MM: f64 = 0.6;
+
+/// The shortest edges over a gel's width, in proportion to which shapes are drawn: they bound those of a high gel, 0.75 mm of the fingertip's.
+const FINEST_OF_WIDTH: f64 = 0.03;
 
 /// Length of the shortest edges of the meshes that networks are taught with, mm, of a gel of some height and width, the root of its area in plan, mm.
 #[must_use]
 pub fn finest_edge_mm(height_mm: f64, width_mm: f64) -> f64 {
-    (OF_HEIGHT * height_mm).min(OF_WIDTH * width_mm)
+    (height_mm / HEIGHT_MM * FINEST_MM).min(FINEST_OF_WIDTH * width_mm)
 }
 
 /// How what touches is laid out for the networks.
@@ -93,10 +94,10 @@ impl Layout {
         finest_edge_mm(self.surroundings.height_mm(), self.surroundings.width_mm())
     }
 
-    /// How much longer edges are than the shortest. The networks are told it, and read as if it were zero.
+    /// How much longer edges are than the shortest, mm on a gel as high as PhysTac's.
     fn coarseness(&self, edge_mm: f32) -> f32 {
         let finest_mm = self.finest_edge_mm();
-        (TWICE * (f64::from(edge_mm) / finest_mm - 1.0)) as f32
+        (FINEST_MM * (f64::from(edge_mm) / finest_mm - 1.0)) as f32
     }
 
     /// Appends the inputs of the network of pressures for a place on a grid.
