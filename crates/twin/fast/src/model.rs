@@ -40,7 +40,6 @@ impl FastGel {
         progress: &mut dyn FnMut(TrainProgress),
     ) -> Result<Self, ShapeError> {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
-        let taxels = sensor.taxels.iter();
         let layout = Layout::of(sensor);
         let center_mm = (0.5 * (low + high)).with_z(high.z);
         let places_mm = lesson_places_mm(sensor);
@@ -49,7 +48,7 @@ impl FastGel {
         // A surface of triangles may have the heights of its mirror image, and other sides.
         let has_known_sides = !matches!(sensor.gel.solid, Solid::Stl { .. });
         let is_symmetric = layout.is_symmetric(center_mm).map(|is| is && has_known_sides);
-        let ports_mm: Vec<DVec2> = taxels.map(|taxel| taxel.position_mm.truncate()).collect();
+        let ports_mm = ports_mm(sensor);
         let mirrored = |axis: usize| {
             let images = is_symmetric[axis].then(|| mirror_images(&ports_mm, center_mm.truncate(), axis));
             images.flatten()
@@ -113,6 +112,12 @@ impl FastGel {
     }
 }
 
+/// Where a sensor's ports are, mm.
+fn ports_mm(sensor: &Sensor) -> Vec<DVec2> {
+    let taxels = sensor.taxels.iter();
+    taxels.map(|taxel| taxel.position_mm.truncate()).collect()
+}
+
 /// For each place, the number of its mirror image about a center across an axis; `None` if one of them has none.
 fn mirror_images(places_mm: &[DVec2], center_mm: DVec2, axis: usize) -> Option<Vec<usize>> {
     let image = |at: &DVec2| {
@@ -121,4 +126,21 @@ fn mirror_images(places_mm: &[DVec2], center_mm: DVec2, axis: usize) -> Option<V
         places_mm.iter().position(|at| at.distance(image_mm) < 1e-6)
     };
     places_mm.iter().map(image).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use twintac_sensor::SensorFile;
+
+    #[test]
+    fn the_fingertip_is_its_mirror_image_across_y_alone() {
+        let sensor = SensorFile::phystac_tip().unwrap().sensor;
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let center_mm = (0.5 * (low + high)).with_z(high.z);
+        assert_eq!(Layout::of(&sensor).is_symmetric(center_mm), [false, true]);
+        let images = |axis| mirror_images(&ports_mm(&sensor), center_mm.truncate(), axis);
+        assert_eq!(images(1), Some(vec![2, 1, 0, 5, 4, 3, 7, 6]));
+        assert_eq!(images(0), None);
+    }
 }

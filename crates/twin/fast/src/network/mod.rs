@@ -1,4 +1,4 @@
-//! The two networks: one reads a place of the floor from what touches around it, the other the force from what touches anywhere.
+//! The networks: one reads a place of the floor from what touches around it, others the force, or all taxels, from what touches anywhere.
 
 mod local;
 mod patch;
