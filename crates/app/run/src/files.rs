@@ -38,7 +38,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if let Some(folder) = folder {
         fs::create_dir_all(folder).map_err(RunError::file("creating", folder))?;
     }
-    twintac_files::write_whole(path, bytes).map_err(RunError::file("writing", path))
+    twintac_store::write_whole(path, bytes).map_err(RunError::file("writing", path))
 }
 
 /// SHA-256 as hexadecimal digits.

@@ -10,7 +10,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
-use twintac_files::PartialFile;
+use twintac_store::PartialFile;
 
 use super::schema;
 use super::write::put_column;

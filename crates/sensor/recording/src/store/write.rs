@@ -12,7 +12,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::ColumnPath;
-use twintac_files::PartialFile;
+use twintac_store::PartialFile;
 
 use super::seal::Sealing;
 use super::{Column, schema, table};
