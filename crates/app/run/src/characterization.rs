@@ -80,7 +80,7 @@ impl Recorded {
     /// A file that cannot be written.
     pub fn write(&self, found: &Characterization, sensor: &Sensor, folder: &Path) -> Result<(), RunError> {
         write_pages(folder, found, &self.recording, sensor)?;
-        write_json(&folder.join("characterization.json"), found)
+        Ok(write_json(&folder.join("characterization.json"), found)?)
     }
 }
 

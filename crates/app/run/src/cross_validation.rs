@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use digitac::{Bench, Contact, Errors, Fold, HeldOut, Judgement, Places, SplitSettings, Variant, judge};
+use digitac::{Bench, Errors, Fold, HeldOut, Judgement, Places, SplitSettings, Variant, judge};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthTable, DepthTableSource};
@@ -15,7 +15,11 @@ use crate::files::{write_file, write_json};
 use crate::metrics::names;
 use crate::progress::Work;
 use crate::settings::ports_mm;
+use crate::stages::simulation::{Simulation, contacts};
 use crate::{Run, RunError, RunSettings};
+
+/// The folder of what was judged.
+const FOLDER: &str = "cross_validation";
 
 /// What to judge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -184,12 +188,12 @@ impl Run {
     /// The run is not simulated yet; too few files, places or indenters for what is to be held out.
     pub fn cross_validate(&self, plan: &CrossValidationPlan) -> Result<CrossValidation, RunError> {
         let recording = self.recording()?;
-        let simulation = self.simulation(&recording)?;
-        let settings = self.resolved(&recording, &simulation.places);
+        let simulation = Simulation::read(&self.simulation()?)?;
+        let settings = self.setup().resolved(&recording, &simulation.places);
         let tables = self.tables_of_radii(&settings, &simulation.places, simulation.tables)?;
         let rows = rows(plan, &settings, &recording, &self.left_out())?;
-        let ports_mm = ports_mm(&self.sensor.sensor);
-        let contacts = self.contacts(&simulation.places)?;
+        let ports_mm = ports_mm(&self.sensor().sensor);
+        let contacts = contacts(&simulation.places, self.sensor(), self.settings())?;
 
         let jobs: Vec<(&Row, &(u64, Fold))> = rows
             .iter()
@@ -222,20 +226,15 @@ impl Run {
             .collect::<Result<_, _>>()?;
         let mut judgements = judgements.into_iter();
         let found = CrossValidation {
-            sensor: self.record.sensor.clone(),
+            sensor: self.record().sensor.clone(),
             provenance: recording.provenance,
             taxels_left_out: names(self.left_out(), &recording.taxels),
             rows: rows.iter().map(|row| row.gather(&mut judgements)).collect(),
         };
-        let folder = self.stage("cross_validation");
+        let folder = self.folder().join(FOLDER);
         write_json(&folder.join("result.json"), &found)?;
         write_file(&folder.join("errors.png"), &png(&found.plot().scene(), 2.0)?)?;
         Ok(found)
-    }
-
-    /// Where and with what the places are touched; `[n_places]`.
-    pub(crate) fn contacts(&self, places: &Places) -> Result<Vec<Contact>, RunError> {
-        Ok(Contact::of_places(places, &self.gel())?)
     }
 
     /// Tables of all places for each radius that the tip may have, or those that are there.
@@ -249,11 +248,11 @@ impl Run {
         if radii_mm.len() < 2 {
             return Ok(vec![there]);
         }
-        let gel = self.gel();
         let _work = Work::start(self.progress(), "simulating", 0);
-        let folder = self.stage("cross_validation").join("depth_tables");
-        let fast = self.fast()?;
-        let store = DepthTableStore::new(&gel, folder, self.progress()).with_fast(fast.as_ref());
+        let folder = self.folder().join(FOLDER).join("depth_tables");
+        let store = DepthTableStore::of(self.gel(), self.progress())?
+            .kept_in(&folder, &self.caller().program)
+            .with_fast(self.fast().map(|fast| &**fast));
         let mut requests = Vec::new();
         for radius_mm in radii_mm {
             requests.extend(places.requests.iter().cloned().map(|request| {

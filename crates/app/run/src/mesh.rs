@@ -73,7 +73,7 @@ impl MeshedGel {
             vtk::write(&self.mesh, &[], &[])?.as_bytes(),
         )?;
         write_file(&folder.join("gel.stl"), &stl::write(&self.mesh))?;
-        write_json(&folder.join("quality.json"), &self.quality)
+        Ok(write_json(&folder.join("quality.json"), &self.quality)?)
     }
 }
 

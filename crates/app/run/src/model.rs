@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use digitac::Model;
 use twintac_simulate::{Gel, SimulateSettings};
+use twintac_store::StoreError;
 
 use crate::{RunError, SensorFile};
 
@@ -17,7 +18,7 @@ pub(crate) fn gel_of(model: &Model, folder: &Path) -> Result<Gel, RunError> {
 /// The gel of another sensor, simulated in the same way.
 pub(crate) fn gel_like(model: &Model, folder: &Path, sensor: &SensorFile) -> Result<Gel, RunError> {
     let settings: SimulateSettings =
-        serde_json::from_value(model.record.simulation.clone()).map_err(|source| RunError::Damaged {
+        serde_json::from_value(model.record.simulation.clone()).map_err(|source| StoreError::Damaged {
             path: folder.join("twin.json"),
             source,
         })?;

@@ -77,7 +77,14 @@ impl RunSettings {
     }
 
     /// The settings with all that depends on the seed, the sensor and the presses filled in.
-    pub(crate) fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
+    pub(crate) fn resolve(
+        &self,
+        sensor: &Sensor,
+        recording: &Recording,
+        n_places: usize,
+        seed: u64,
+        is_fast: bool,
+    ) -> Self {
         let mut resolved = self.clone();
         resolved.split.seed = seed;
         resolved.train.seed = seed;
@@ -86,7 +93,7 @@ impl RunSettings {
         if !has_unknown_tip(sensor, recording) {
             resolved.bench.tip_radii_mm.clear();
         }
-        if self.fast_gel.is_some() {
+        if is_fast {
             // It has no stress features.
             resolved
                 .train

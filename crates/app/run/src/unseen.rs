@@ -10,7 +10,6 @@ use digitac::{
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::{Press, Provenance, Recording};
-use twintac_simulate::Gel;
 
 use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
@@ -65,11 +64,8 @@ pub fn evaluate_elsewhere(
     refuse_known(recording, record)?;
     let gel = gel_of(&model, model_folder)?;
     let left_out = left_out(gel.sensor());
-    let folder = tempfile::tempdir().map_err(RunError::file(
-        "making",
-        Path::new("a temporary folder for simulations"),
-    ))?;
-    let (places, tables) = simulate(&gel, recording, &record.bench, folder.path(), progress)?;
+    let store = DepthTableStore::of(gel.clone(), progress)?;
+    let (places, tables) = simulate(&store, recording, &record.bench, progress)?;
     let pressed = Pressed {
         recording,
         places: &places,
@@ -133,17 +129,15 @@ pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Resul
     )))
 }
 
-/// A table over depth for each place that a recording presses; tables are kept in a folder.
+/// A table over depth for each place that a recording presses.
 pub(crate) fn simulate(
-    gel: &Gel,
+    store: &DepthTableStore<'_>,
     recording: &Recording,
     bench: &BenchEstimate,
-    folder: &Path,
     progress: &dyn Progress,
 ) -> Result<(Places, Vec<DepthTable>), RunError> {
     let _work = Work::start(progress, "simulating", 0);
-    let store = DepthTableStore::new(gel, folder.to_owned(), progress);
-    let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?.at_bench(bench);
+    let places = Places::of(recording, store, &digitac::PlaceSettings::default())?.at_bench(bench);
     let tables = store.depth_tables(&places.requests)?;
     Ok((places, tables))
 }

@@ -172,7 +172,7 @@ fn of_recording(error: &twintac_recording::RecordingError) -> ErrorPlace {
 
 #[cfg(feature = "run")]
 fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
-    use twintac_run::RunError as Wrong;
+    use twintac_run::{RunError as Wrong, StoreError};
     let path = match error {
         Wrong::In { source, .. } => return of_run(source),
         Wrong::Config(error) => return of_description(error),
@@ -180,8 +180,9 @@ fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
         Wrong::Shape(error) => return of_shape(error),
         Wrong::Simulate(error) => return of_simulation(error),
         Wrong::Twin(error) => return of_twin(error),
-        Wrong::File { path, .. } | Wrong::Damaged { path, .. } | Wrong::Csv { path, .. } => path,
-        Wrong::NotARun { folder, .. } | Wrong::Unfinished { folder, .. } => folder,
+        Wrong::Store(StoreError::File { path, .. } | StoreError::Damaged { path, .. })
+        | Wrong::Csv { path, .. } => path,
+        Wrong::Store(StoreError::InUse { folder, .. }) | Wrong::NotARun { folder, .. } => folder,
         _ => return ErrorPlace::default(),
     };
     of_file(path.display())

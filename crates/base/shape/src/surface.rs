@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use serde::{Serialize, Serializer};
 
 use crate::bvh::Bvh;
 use crate::surface_error::SurfaceError;
@@ -26,6 +27,13 @@ pub struct TriangleSurface {
     vertex_normals: Vec<DVec3>,
     bvh: Bvh,
     volume_mm3: f64,
+}
+
+/// A surface is written as its vertices and triangles, from which all else follows.
+impl Serialize for TriangleSurface {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (&self.vertices_mm, &self.triangles).serialize(serializer)
+    }
 }
 
 /// What part of a triangle is closest.

@@ -172,12 +172,19 @@ mod tests {
         assert_eq!((get(1.5).value, get(1.5).value, n_made()), (2.25, 2.25, 1));
         assert_eq!((get(2.5).value, n_made()), (6.25, 2));
         let other = Store::new(folder.path(), "another");
-        assert_eq!((other.get(&Square { of: 1.5 }).unwrap().value, n_made()), (2.25, 3));
+        assert_eq!(
+            (other.get(&Square { of: 1.5 }).unwrap().value, n_made()),
+            (2.25, 3)
+        );
 
         let path = store.path("../of 1.5", &MadeFrom::of("this", &Square { of: 1.5 }).unwrap());
         assert!(path.starts_with(folder.path()) && path.exists());
         let whole = fs::read_to_string(&path).unwrap();
-        for damaged in [whole.replace("2.25", "2.75"), whole[..whole.len() / 2].to_owned(), String::new()] {
+        for damaged in [
+            whole.replace("2.25", "2.75"),
+            whole[..whole.len() / 2].to_owned(),
+            String::new(),
+        ] {
             fs::write(&path, damaged).unwrap();
             let kept = get(1.5);
             assert!(kept.value == 2.25 && kept.made_again.unwrap().contains("damaged"));

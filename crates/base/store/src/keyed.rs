@@ -27,6 +27,30 @@ impl<T: Serialize> Keyed<T> {
     }
 }
 
+impl<T> Keyed<T> {
+    /// A value that follows from these bytes alone, such as what a file says.
+    #[must_use]
+    pub fn of_bytes(value: T, bytes: &[u8]) -> Self {
+        let digest = Digest::of(bytes);
+        Self { value, digest }
+    }
+
+    /// A value that follows from others alone, which `from` has.
+    ///
+    /// # Errors
+    /// A value that JSON has no form for.
+    pub fn from_inputs(value: T, from: &impl Serialize) -> Result<Self, StoreError> {
+        let Keyed { digest, .. } = Keyed::new(from)?;
+        Ok(Self { value, digest })
+    }
+
+    /// What tells it from others.
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        self.digest
+    }
+}
+
 impl<T> Deref for Keyed<T> {
     type Target = T;
 

@@ -108,10 +108,16 @@ mod tests {
         other.lock().unwrap();
         fs::write(folder.path().join(FILE), "12").unwrap();
         let error = Owner::of(folder.path()).unwrap_err().to_string();
-        assert!(error.contains("in use by another program (process 12)"), "{error}");
+        assert!(
+            error.contains("in use by another program (process 12)"),
+            "{error}"
+        );
         drop(other);
 
-        let (one, two) = (Owner::of(folder.path()).unwrap(), Owner::of(folder.path()).unwrap());
+        let (one, two) = (
+            Owner::of(folder.path()).unwrap(),
+            Owner::of(folder.path()).unwrap(),
+        );
         drop(one);
         assert!(open().unwrap().try_lock().is_err());
         drop(two);

@@ -222,7 +222,9 @@ mod tests {
                 write_file(&folder.join("begun"), self.text.as_bytes())?;
             }
             if fails.load(Ordering::Relaxed) {
-                return Err(StoreError::file("writing", folder)(std::io::ErrorKind::StorageFull.into()));
+                return Err(StoreError::file("writing", folder)(
+                    std::io::ErrorKind::StorageFull.into(),
+                ));
             }
             write_file(&folder.join("deep/out.txt"), self.text.as_bytes())
         }
@@ -247,7 +249,10 @@ mod tests {
     }
 
     fn stages(root: &Path) -> Stages<'_> {
-        Stages { root, program: "this" }
+        Stages {
+            root,
+            program: "this",
+        }
     }
 
     #[test]
@@ -293,11 +298,20 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let old = root.path().join("old");
         let works = AtomicBool::new(false);
-        let missing = stages(&old).current(&First { text: "a" }).unwrap_err().to_string();
-        assert!(missing.contains("not made yet") && missing.contains("`program first`"), "{missing}");
+        let missing = stages(&old)
+            .current(&First { text: "a" })
+            .unwrap_err()
+            .to_string();
+        assert!(
+            missing.contains("not made yet") && missing.contains("`program first`"),
+            "{missing}"
+        );
         let (_, first) = stages(&old).run(&First { text: "a" }, &works).unwrap();
         assert_eq!(stages(&old).run(&Second { first }, &()).unwrap().0, Outcome::Ran);
-        let other = stages(&old).current(&First { text: "b" }).unwrap_err().to_string();
+        let other = stages(&old)
+            .current(&First { text: "b" })
+            .unwrap_err()
+            .to_string();
         assert!(other.contains("another text"), "{other}");
 
         let new = root.path().join("new");
@@ -305,7 +319,10 @@ mod tests {
         let first = stages(&new).current(&First { text: "a" }).unwrap();
         assert_eq!(stages(&new).run(&Second { first }, &()).unwrap().0, Outcome::Kept);
         fs::write(new.join("first/begun"), "meddled").unwrap();
-        let changed = stages(&new).current(&First { text: "a" }).unwrap_err().to_string();
+        let changed = stages(&new)
+            .current(&First { text: "a" })
+            .unwrap_err()
+            .to_string();
         assert!(changed.contains("changed since"), "{changed}");
     }
 }

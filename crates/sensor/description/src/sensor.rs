@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use twintac_shape::{Shape, Solid, Surfaces};
 
 use crate::GelMaterial;
@@ -11,8 +11,9 @@ use crate::GelMaterial;
 /// Points of a port's rim.
 const RIM_POINTS: u32 = 16;
 
-/// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole.
-#[derive(Clone, Debug)]
+/// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole. It is written with all that it consists of, surfaces with their corners: what is
+/// made from a sensor is told by that from what is made from another.
+#[derive(Clone, Debug, Serialize)]
 pub struct Sensor {
     /// A short name, fit for file names.
     pub name: String,
@@ -39,6 +40,7 @@ pub struct Sensor {
     /// Path, relative to the description, of the import description that reads recordings of this sensor.
     pub import: Option<String>,
     /// The triangle surfaces that the gel and the indenters name.
+    #[serde(serialize_with = "written")]
     pub surfaces: Surfaces,
 }
 
@@ -63,8 +65,13 @@ impl Sensor {
     }
 }
 
+/// Surfaces as the corners of their triangles.
+fn written<S: Serializer>(surfaces: &Surfaces, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(surfaces.iter().map(|(name, surface)| (name, &**surface)))
+}
+
 /// The soft part. It is bonded to the board at z = 0 and to the inclusions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Gel {
     /// Its undeformed shape.
     pub solid: Solid,

@@ -12,7 +12,6 @@ use super::files::expand;
 use crate::Program;
 use crate::arguments::Adapt;
 use crate::output::print;
-use crate::progress::Bars;
 
 pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
     if let Some(run) = &arguments.run {
@@ -35,7 +34,7 @@ pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
         seed: arguments.seed,
         out: &arguments.out,
     };
-    let found = adapt_model(&plan, &Bars::default())?;
+    let found = adapt_model(&plan, &program.caller()?)?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
     }
@@ -48,7 +47,7 @@ fn curve(arguments: &Adapt, run: &Path, program: &Program) -> Result<()> {
         presses: arguments.curve.iter().map(|count| *count as usize).collect(),
         seeds: arguments.seeds,
     };
-    let found = adaptation_curve(&arguments.model, &run, &plan, &arguments.out, &Bars::default())?;
+    let found = adaptation_curve(&arguments.model, &run, &plan, &arguments.out)?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
     }

@@ -5,12 +5,12 @@ use twintac_fast::{GroupErrors, Judgement};
 use twintac_run::SensorFile;
 use twintac_run::fast::{FAST_GEL, FastSettings, Told, train_fast};
 
+use crate::Program;
 use crate::arguments::FastTrain;
 use crate::output::print;
-use crate::progress::Bars;
 
 /// Trains, and prints how far the fast twin is from the solved gel.
-pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
+pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let mut settings = FastSettings::default();
     settings.n_lessons = arguments.lessons.unwrap_or(settings.n_lessons);
@@ -25,7 +25,7 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
         &arguments.out,
         &settings,
         arguments.seed,
-        &Bars::default(),
+        &program.caller()?,
     )?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);

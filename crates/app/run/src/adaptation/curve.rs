@@ -7,13 +7,15 @@ use rayon::prelude::*;
 use serde::Serialize;
 use twintac_plot::{Ink, Panel, Panels, Scene, Series, png, svg};
 use twintac_recording::Provenance;
+use twintac_store::Owner;
 
 use super::new_gel::NewGel;
 use crate::cross_validation::Spread;
 use crate::files::{write_file, write_json};
 use crate::metrics::{Figures, names};
 use crate::progress::Work;
-use crate::{Progress, Run, RunError};
+use crate::stages::training::HELD_OUT;
+use crate::{Run, RunError};
 
 /// Which numbers of presses to adapt with, and how often.
 #[derive(Clone, Debug)]
@@ -84,11 +86,11 @@ pub fn adaptation_curve(
     run: &Run,
     plan: &CurvePlan,
     out: &Path,
-    progress: &dyn Progress,
 ) -> Result<AdaptationCurve, RunError> {
+    let _owner = Owner::of(out)?;
     let model = Model::load(model_folder)?;
     let (recording, metrics) = (run.recording()?, run.metrics()?);
-    let split = Model::load(&run.stage("training").join("held-out"))?.record.split;
+    let split = Model::load(&run.training()?.file(HELD_OUT))?.record.split;
     let teachers = [&split.train[..], &split.validation].concat();
     if let Some(most) = plan.presses.iter().find(|count| **count > teachers.len()) {
         return Err(RunError::Input(format!(
@@ -102,10 +104,14 @@ pub fn adaptation_curve(
         Some(run.sensor()),
         &recording,
         &tables,
-        progress,
+        run.caller(),
     )?;
     let as_learned = gel.judge_as_learned(&split.test)?;
-    let work = Work::start(progress, "adapting", plan.presses.len() * plan.seeds as usize);
+    let work = Work::start(
+        run.progress(),
+        "adapting",
+        plan.presses.len() * plan.seeds as usize,
+    );
     let one = |n_presses: usize, seed: u64| -> Result<SeedOfPoint, RunError> {
         let used = gel.choose(&teachers, n_presses, seed)?;
         let evaluation = gel.judge(&gel.adapt(&used)?, &split.test)?;

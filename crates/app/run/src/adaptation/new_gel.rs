@@ -10,11 +10,12 @@ use digitac::{
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
 
+use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
 use crate::model::{gel_like, gel_of};
 use crate::settings::ports_mm;
 use crate::unseen::{Pressed, refuse_known, refuse_other_taxels, simulate};
-use crate::{Progress, RunError, SensorFile};
+use crate::{Caller, RunError, SensorFile};
 
 /// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
 const SOFTEST: f64 = 0.7;
@@ -38,7 +39,7 @@ impl<'a> NewGel<'a> {
         sensor: Option<&SensorFile>,
         recording: &'a Recording,
         tables_folder: &Path,
-        progress: &dyn Progress,
+        caller: &Caller,
     ) -> Result<Self, RunError> {
         let record = &model.record;
         if record.variant == Variant::Paper {
@@ -61,12 +62,14 @@ impl<'a> NewGel<'a> {
             }),
             ..bench.clone()
         };
-        let (places, tables) = simulate(&gel, recording, &softer, tables_folder, progress)?;
+        let (left_out, progress) = (left_out(gel.sensor()), &*caller.progress);
+        let store = DepthTableStore::of(gel, progress)?.kept_in(tables_folder, &caller.program);
+        let (places, tables) = simulate(&store, recording, &softer, progress)?;
         Ok(Self {
             recording,
             twin: &model.twin,
             bench,
-            left_out: left_out(gel.sensor()),
+            left_out,
             places,
             tables,
         })

@@ -30,7 +30,7 @@ impl Run {
         interrupt: &AtomicBool,
         mount: &mut dyn FnMut(&str) -> Mounting,
     ) -> Result<RunSummary, RunError> {
-        let limits = sensor_limits(&self.sensor.sensor)?;
+        let limits = sensor_limits(&self.sensor().sensor)?;
         let runner = Runner::new(settings, limits, self.description(bench))?;
         let logs = self.logs_folder();
         let mut attendant = Attendant {
@@ -55,11 +55,11 @@ impl Run {
 
     /// What the logs are about.
     fn description(&self, bench: &OpenBench) -> Description {
-        let sensor = &self.sensor.sensor;
+        let sensor = &self.sensor().sensor;
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Description {
             sensor: sensor.name.clone(),
-            sensor_toml: self.sensor.text.clone(),
+            sensor_toml: self.sensor().text.clone(),
             provenance: bench.provenance,
             taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
             transfer: Some(twintac_live::confirmed_transfer(&bench.transfer)),

@@ -1,16 +1,15 @@
 //! Whether a fast gel tells contacts that it was not taught from those that it was.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use digitac::area_under_curve;
 use serde::{Deserialize, Serialize};
 use twintac_fast::{Body, FastGel, FastReader, GroupErrors, Lesson};
 use twintac_shape::{ShapeError, Surfaces};
-use twintac_teach::{Strange, Teacher};
+use twintac_teach::Strange;
 
-use super::presses::presses;
-use crate::{Progress, RunError};
+use super::presses::{PressKind, Solved};
+use crate::RunError;
 
 /// How well contacts unlike all that was taught are told from presses like lessons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,17 +35,10 @@ pub struct ToldKind {
 
 /// Presses unlike all that is taught, kind by kind; so many of each.
 pub(super) fn strange_presses(
-    teacher: &Teacher,
+    solved: &Solved<'_>,
     n_of_kind: u64,
-    folder: &Path,
-    seed: u64,
-    progress: &dyn Progress,
 ) -> Result<Vec<(Strange, Vec<Lesson>)>, RunError> {
-    let of_kind = |kind: Strange| {
-        let solve = |number| teacher.strange(kind, seed, number);
-        let name = format!("strange/{}", kind.name());
-        Ok((kind, presses(&name, n_of_kind, folder, progress, &solve)?))
-    };
+    let of_kind = |kind: Strange| Ok((kind, solved.presses(PressKind::Strange(kind), n_of_kind)?));
     Strange::ALL.into_iter().map(of_kind).collect()
 }
 

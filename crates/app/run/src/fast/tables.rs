@@ -9,6 +9,7 @@ use twintac_fast::{Body, FastGel, FastReader};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, ShapeError};
 use twintac_simulate::{Gel, PressPlace};
+use twintac_store::Keyed;
 
 use crate::RunError;
 
@@ -30,15 +31,16 @@ struct Reading {
 }
 
 impl FastTables {
-    /// The fast gel of a file.
+    /// The fast gel of a file, and the file's bytes.
     ///
     /// # Errors
     /// A file that cannot be read or is something else, and a fast gel whose ports are elsewhere than the sensor's.
-    pub(crate) fn read(path: &Path, sensor: &Sensor) -> Result<Self, RunError> {
+    pub(crate) fn read(path: &Path, sensor: &Sensor) -> Result<(Keyed<Self>, Vec<u8>), RunError> {
         let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
         let fast = FastGel::from_bytes(&bytes)
             .map_err(|error| RunError::Input(format!("{}: {error}", path.display())))?;
-        Self::of(fast, sensor, &path.display().to_string())
+        let tables = Self::of(fast, sensor, &path.display().to_string())?;
+        Ok((Keyed::of_bytes(tables, &bytes), bytes))
     }
 
     /// A fast gel, which is called so in errors.

@@ -36,7 +36,7 @@ impl Default for PlaceSettings {
 }
 
 /// The distinct places of a recording.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Places {
     /// What to simulate, in the order in which the recording comes to it.
     pub requests: Vec<DepthTableRequest>,

@@ -116,6 +116,6 @@ impl FoundImperfection {
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), RunError> {
-        write_file(path, self.text.as_bytes())
+        Ok(write_file(path, self.text.as_bytes())?)
     }
 }
