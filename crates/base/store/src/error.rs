@@ -44,6 +44,14 @@ pub enum StoreError {
         /// Who says to be at work there: ` (process 12)`, or nothing.
         by: String,
     },
+    /// A folder has contents that were made from something else.
+    #[error("{} holds what was made from another {differences}; give another folder", folder.display())]
+    OtherContents {
+        /// The folder.
+        folder: PathBuf,
+        /// Names of the inputs that differ.
+        differences: String,
+    },
     /// What a stage needs is not there, or is not as its inputs say.
     #[error(transparent)]
     NotCurrent(#[from] crate::NotCurrent),

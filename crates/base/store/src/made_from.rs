@@ -1,11 +1,15 @@
 //! What a value is made from.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{Digest, StoreError};
+use crate::{Digest, StoreError, read_json, write_json};
+
+/// The file in which a folder says what its contents are made from.
+const CLAIM: &str = "made_from.json";
 
 /// The inputs of a kept value: the digest of each, by its name. Two values of the same inputs are the same.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,6 +22,17 @@ impl MadeFrom {
     /// # Errors
     /// A value that JSON has no form for.
     pub fn of(program: &str, inputs: &impl Serialize) -> Result<Self, StoreError> {
+        let mut made_from = Self::without_program(inputs)?;
+        let program = Digest::of(program.as_bytes());
+        made_from.0.insert("program".to_owned(), program);
+        Ok(made_from)
+    }
+
+    /// Each field of `inputs` is an input, whatever program works with them.
+    ///
+    /// # Errors
+    /// A value that JSON has no form for.
+    pub fn without_program(inputs: &impl Serialize) -> Result<Self, StoreError> {
         let failed = |what: &str| {
             let what = what.to_owned();
             move |source| StoreError::Json { what, source }
@@ -27,12 +42,32 @@ impl MadeFrom {
             Value::Object(fields) => fields.into_iter().collect(),
             other => BTreeMap::from([("input".to_owned(), other)]),
         };
-        let mut parts = BTreeMap::from([("program".to_owned(), Digest::of(program.as_bytes()))]);
+        let mut parts = BTreeMap::new();
         for (name, field) in fields {
             let digest = Digest::of_value(&field).map_err(failed(&name))?;
             parts.insert(name, digest);
         }
         Ok(Self(parts))
+    }
+
+    /// Takes a folder for contents that are made from this, or makes sure that its contents are. It says so in `made_from.json`.
+    ///
+    /// # Errors
+    /// [`StoreError::OtherContents`] names what differs; a folder that cannot be read or written.
+    pub fn claim(&self, folder: &Path) -> Result<(), StoreError> {
+        let path = folder.join(CLAIM);
+        if !path.exists() {
+            return write_json(&path, self);
+        }
+        let there: Self = read_json(&path)?;
+        let differences = self.differences(&there);
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(StoreError::OtherContents {
+            folder: folder.to_owned(),
+            differences: differences.join(", "),
+        })
     }
 
     /// One digest of all.
@@ -89,6 +124,11 @@ mod tests {
         let deeper = MadeFrom::of("a", &deeper).unwrap();
         assert_eq!(one.differences(&deeper), ["depth_mm"]);
         assert_ne!(one.digest(), deeper.digest());
+        let folder = tempfile::tempdir().unwrap();
+        one.claim(folder.path()).unwrap();
+        one.claim(folder.path()).unwrap();
+        let refused = deeper.claim(folder.path()).unwrap_err().to_string();
+        assert!(refused.contains("another depth_mm"), "{refused}");
         let other = MadeFrom::of("a", &7).unwrap();
         assert_eq!(one.differences(&other), ["depth_mm", "input", "shape"]);
     }

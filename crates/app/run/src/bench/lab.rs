@@ -96,6 +96,7 @@ impl OpenBench {
             provenance: Provenance::Emulated,
             notes: connected.notes,
             robot: addresses.commands,
+            reality: Some(reality.clone()),
             selector: Some(selector),
             _emulated: Some(devices),
         })
