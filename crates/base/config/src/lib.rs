@@ -11,6 +11,7 @@
 //! assert_eq!(error.to_string(), "gel.toml:2: `height_mm` is -1 mm; give a height above zero");
 //! ```
 
+mod checked;
 mod place;
 
 use std::path::Path;
@@ -18,6 +19,8 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
+
+pub use checked::{Checked, Number, Problem, Ranges};
 
 /// A parsed file together with its text, so that later findings can name the line.
 #[derive(Clone, Debug)]
