@@ -176,7 +176,7 @@ pub(crate) struct Reproduce {
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
-    #[arg(long, requires = "paper")]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) quick: bool,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE", required_unless_present = "paper")]
@@ -239,10 +239,10 @@ pub(crate) struct Mesh {
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
     /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
-    #[arg(long, value_name = "DIR", conflicts_with = "sensor")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out", "path", "settings", "vtk", "seed"])]
     pub(crate) run: Option<PathBuf>,
     /// Sensor description (TOML).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", required_unless_present = "run")]
     pub(crate) sensor: Option<PathBuf>,
     /// Press protocol (TOML).
     #[arg(long, value_name = "FILE", requires = "sensor", requires = "out")]

@@ -42,7 +42,7 @@ fn a_twin_of_a_real_gel_stays_under_its_error() {
             ..BenchSettings::default()
         },
         train: TrainSettings {
-            variants: vec![Variant::PressureMemory],
+            variants: Some(vec![Variant::PressureMemory]),
             ..TrainSettings::default()
         },
         ..RunSettings::default()
@@ -52,7 +52,7 @@ fn a_twin_of_a_real_gel_stays_under_its_error() {
     let run = Run::start(folder.path(), sensor, "gel D", 1, settings, Caller::default()).unwrap();
     run.import(&root().join("imports/strip4.toml"), &files).unwrap();
     let metrics = run.finish().unwrap();
-    let percent = metrics.twin.overall.nearest_in_contact_percent;
+    let percent = metrics.twin.overall.nearest_in_contact_percent.unwrap();
     assert!(percent < LARGEST_PERCENT, "{percent} %");
     assert_eq!(metrics.twin.frames_not_simulated, 0);
     finds_places_and_depths(folder.path());
