@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use twintac_config::Checked;
 use twintac_recording::Recording;
 use twintac_simulate::Gel;
 use twintac_store::{Finished, Keyed, Owner, Stage, Stages, read_json, write_file, write_json};
@@ -59,7 +60,7 @@ impl Run {
     /// in words where the presses come from. The surfaces of the sensor are copied into the folder, and the fast gel of the settings.
     ///
     /// # Errors
-    /// A folder that cannot be written, or in which another process works; a fast gel of another sensor.
+    /// A setting that makes no sense; a folder that cannot be written, or in which another process works; a fast gel of another sensor.
     pub fn start(
         folder: &Path,
         sensor: impl Into<SensorFile>,
@@ -68,6 +69,7 @@ impl Run {
         settings: RunSettings,
         caller: Caller,
     ) -> Result<Self, RunError> {
+        settings.checked()?;
         let owner = Owner::of(folder)?;
         let path = folder.join(SENSOR);
         let sensor = sensor.into().kept_as(&path)?;
@@ -110,6 +112,8 @@ impl Run {
             folder: folder.to_owned(),
             source: Box::new(source.into()),
         })?;
+        let path = folder.join("run.json");
+        record.settings.checked().at(|| path.display().to_string())?;
         let owner = Owner::of(folder)?;
         let sensor = SensorFile::read(&folder.join(SENSOR))?;
         let fast = match &record.settings.fast_gel {

@@ -13,7 +13,7 @@ use crate::depth_tables::DepthTableStore;
 use crate::fast::tables::FastTables;
 use crate::progress::Work;
 use crate::run::gel_of;
-use crate::settings::is_static;
+use crate::settings::ResolvedSettings;
 use crate::{Progress, Run, RunError, RunSettings, SensorFile};
 
 /// What stages after the recordings depend on.
@@ -28,16 +28,11 @@ pub(crate) struct Setup<'a> {
 }
 
 impl Setup<'_> {
-    /// The settings with what depends on sensor and presses filled in.
-    pub(crate) fn resolved(&self, recording: &Recording, places: &Places) -> RunSettings {
-        let n_places = if is_static(recording) {
-            places.requests.len()
-        } else {
-            0
-        };
+    /// The settings for the sensor, its presses and the seed: what stages compute from.
+    pub(crate) fn resolved(&self, recording: &Recording) -> Result<ResolvedSettings, RunError> {
+        let sensor = &self.sensor.sensor;
         let is_fast = self.fast.is_some();
-        self.settings
-            .resolve(&self.sensor.sensor, recording, n_places, self.seed, is_fast)
+        Ok(self.settings.resolve(sensor, recording, self.seed, is_fast)?)
     }
 }
 
@@ -62,14 +57,15 @@ impl Stage for Simulating<'_> {
         let store = DepthTableStore::of(gel, progress)?
             .kept_in(&folder.join("depth_tables"), Self::NAME)
             .with_fast(setup.fast.map(|fast| &**fast));
-        let places = Places::of(&recording, &store, &setup.settings.places)?;
-        let settings = setup.resolved(&recording, &places);
-        let split = Split::new(&recording, &settings.split)?;
+        let settings = setup.resolved(&recording)?;
+        let places = Places::of(&recording, &store, &settings.places)?;
+        let split = Split::new(&recording, &settings.split, settings.seed)?;
         let teachers = [&split.train[..], &split.validation].concat();
-        let bench = fit_bench(&recording, &places, &teachers, &store, &settings.bench)?;
+        let (how, taxels) = (&settings.bench, &settings.taxels);
+        let bench = fit_bench(&recording, &places, &teachers, &store, how, taxels)?;
         let places = places.at_bench(&bench);
         let tables = store.depth_tables(&places.requests)?;
-        let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, &settings.bench)?;
+        let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, how, taxels)?;
         write_json(&folder.join("split.json"), &split)?;
         write_json(&folder.join("bench.json"), &bench)?;
         write_json(&folder.join("places.json"), &places)?;

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use digitac::{
-    BenchSettings, Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale,
-    Score, Split, TrainSettings, Trained, Variant, calibrate,
+    Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split,
+    TrainSettings, Trained, TrainedWith, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
@@ -17,6 +17,7 @@ use super::simulation::{Setup, Simulation, contacts};
 use crate::doubtful::left_out;
 use crate::press_checksum::press_checksum;
 use crate::progress::Work;
+use crate::settings::ResolvedSettings;
 use crate::{Progress, Run, RunError};
 
 /// How each variant did: `variants.json`.
@@ -66,8 +67,8 @@ impl Stage for TrainingStage<'_> {
         let training = Training::open(&self.teaching)?;
         let work = Work::start(progress, "training", training.n_epochs());
         let split = &training.simulation.split;
-        let trained = training.train(split, &training.settings, &work)?;
-        let chosen = digitac::choose(&trained).ok_or_else(nothing_trained)?;
+        let trained = training.train(split, &training.settings.train, &work)?;
+        let chosen = digitac::choose(&trained)?;
         write_json(
             &folder.join("variants.json"),
             &training.variants(&trained, chosen),
@@ -78,8 +79,8 @@ impl Stage for TrainingStage<'_> {
 
         let everything = training.everything();
         let again = TrainSettings {
-            variants: vec![chosen.twin.variant()],
-            ..training.settings.clone()
+            variants: Some(vec![chosen.twin.variant()]),
+            ..training.settings.train.clone()
         };
         let complete = training.train(&everything, &again, &work)?;
         let complete = complete.first().ok_or_else(nothing_trained)?;
@@ -104,10 +105,10 @@ impl Stage for PaperTwin<'_> {
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
         let training = Training::open(&self.teaching)?;
-        let work = Work::start(progress, "training", training.settings.epochs);
+        let work = Work::start(progress, "training", training.settings.train.epochs);
         let settings = TrainSettings {
-            variants: vec![Variant::Paper],
-            ..training.settings.clone()
+            variants: Some(vec![Variant::Paper]),
+            ..training.settings.train.clone()
         };
         let everything = training.everything();
         let trained = training.train(&everything, &settings, &work)?;
@@ -160,7 +161,7 @@ impl Run {
 }
 
 fn nothing_trained() -> RunError {
-    RunError::Input("no variant was trained; `train.variants` in the settings names none".to_owned())
+    RunError::Input("no variant was trained".to_owned())
 }
 
 /// All that twins are trained with.
@@ -170,8 +171,7 @@ struct Training<'a> {
     simulation: Simulation,
     presses: Vec<PairedPress>,
     contacts: Vec<Contact>,
-    settings: TrainSettings,
-    bench: BenchSettings,
+    settings: ResolvedSettings,
     block_mm: f64,
     scale: Scale,
 }
@@ -182,18 +182,17 @@ impl<'a> Training<'a> {
         let recording = read_recording(&teaching.recordings)?;
         let simulation = Simulation::read(&teaching.simulation)?;
         let presses = read_pairs(&teaching.pairs)?;
-        let settings = setup.resolved(&recording, &simulation.places);
+        let settings = setup.resolved(&recording)?;
         let contacts = contacts(&simulation.places, setup.sensor, setup.settings)?;
         let scale = Scale::of(&presses, left_out(&setup.sensor.sensor));
         Ok(Self {
             setup,
+            block_mm: settings.split.block_mm_of(&recording)?,
             recording,
             simulation,
             presses,
             contacts,
-            settings: settings.train,
-            bench: settings.bench,
-            block_mm: settings.split.block_mm,
+            settings,
             scale,
         })
     }
@@ -215,8 +214,10 @@ impl<'a> Training<'a> {
             tables: &self.simulation.tables,
             contacts: &self.contacts,
             bench: &self.simulation.bench,
-            bench_settings: &self.bench,
-            train: &self.settings,
+            bench_settings: &self.settings.bench,
+            taxels: &self.settings.taxels,
+            train: &self.settings.train,
+            seed: self.settings.seed,
             block_mm: self.block_mm,
             scale: &self.scale,
         }
@@ -224,7 +225,9 @@ impl<'a> Training<'a> {
 
     /// Epochs of all variants, and of the chosen one once more.
     fn n_epochs(&self) -> usize {
-        self.settings.epochs * (self.settings.variants.len() + 1)
+        let TrainSettings { epochs, variants, .. } = &self.settings.train;
+        let n_variants = variants.as_ref().map_or(Variant::ALL.len(), Vec::len);
+        epochs * (n_variants + 1)
     }
 
     fn train(
@@ -244,6 +247,7 @@ impl<'a> Training<'a> {
             split,
             &self.scale,
             settings,
+            self.settings.seed,
             &mut follow,
         )?)
     }
@@ -281,7 +285,10 @@ impl<'a> Training<'a> {
                 source,
             })?,
             bench: self.simulation.bench.clone(),
-            settings: self.settings.clone(),
+            settings: TrainedWith {
+                settings: self.settings.train.clone(),
+                seed: self.settings.seed,
+            },
             provenance: self.recording.provenance,
             files: files(&self.recording),
             taught_by: split
