@@ -1,5 +1,6 @@
 //! A sensor description with its text.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -133,8 +134,9 @@ impl SensorFile {
 
     /// The files of surfaces (STL) that the description names: their names, and where they are.
     pub fn surfaces(&self) -> impl Iterator<Item = (&String, PathBuf)> {
-        let names = self.sensor.surfaces.keys();
-        names.map(|name| (name, self.folder.join(name)))
+        let files = self.sensor.surface_files().into_iter();
+        let names: BTreeSet<&String> = files.map(|(_, file)| &file.path).collect();
+        names.into_iter().map(|name| (name, self.folder.join(name)))
     }
 
     /// The file that says how to read recordings of the sensor, if the description names one.
