@@ -8,7 +8,7 @@ use glam::DVec3;
 use numpy::ndarray::{ArrayView1, Ix1, Ix2};
 use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
-use twintac::{Part, Surfaces, TriangleSurface};
+use twintac::{LengthUnit, Part, SurfaceFile, Surfaces, TriangleSurface};
 
 use crate::array::{Numbers, few};
 use crate::error::{OrRaise, unreadable, unusable};
@@ -45,7 +45,7 @@ impl Shape {
         let lowest_mm = surface.vertices_mm().iter().map(|corner| corner.z);
         let lowest_mm = lowest_mm.fold(f64::INFINITY, f64::min);
         let part = Part {
-            shape: twintac::Shape::Stl { path: path.clone() },
+            shape: twintac::Shape::Stl(SurfaceFile::new(path.clone())),
             whole_from_part: twintac::Pose::from_position(lowest_mm * DVec3::Z),
         };
         let surfaces = Surfaces::from([(path, Arc::new(surface))]);
@@ -147,16 +147,25 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// A closed triangle surface in an STL file, in mm; its lowest point is moved to the origin's z.
+    /// A closed triangle surface in an STL file, whose `unit` is "mm", "cm", "m" or "inch", or in which a length of 1 is `scale` mm; its lowest point is
+    /// moved to the origin's z.
     ///
-    /// Raises `Error` with the file if it cannot be read or its surface is not closed.
+    /// Raises `Error` with the file if it cannot be read, its surface is not closed, or its size cannot be in that unit.
     #[staticmethod]
-    fn stl(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, unit=None, scale=None))]
+    fn stl(py: Python<'_>, path: PathBuf, unit: Option<&str>, scale: Option<f64>) -> PyResult<Self> {
+        let unit = unit.map(str::parse::<LengthUnit>).transpose();
+        let file = SurfaceFile {
+            path: path.display().to_string(),
+            unit: unit.map_err(|problem| unusable(py, "unit", &format!("is {problem}")))?,
+            scale,
+        };
+        file.validate().or_raise(py)?;
         let bytes = std::fs::read(&path).map_err(|error| unreadable(py, &path, &error))?;
-        let surface = TriangleSurface::from_stl(&bytes).map_err(|error| unreadable(py, &path, &error))?;
-        let path = path.display().to_string();
-        let surfaces = Surfaces::from([(path.clone(), Arc::new(surface))]);
-        Self::of(py, twintac::Shape::Stl { path }, surfaces)
+        let surface = TriangleSurface::from_stl(&bytes, file.mm_per_unit());
+        let surface = surface.map_err(|error| unreadable(py, &path, &error))?;
+        let surfaces = Surfaces::from([(file.name().into_owned(), Arc::new(surface))]);
+        Self::of(py, twintac::Shape::Stl(file), surfaces)
     }
 
     /// A closed surface of triangles: places of its corners, mm, `[n_vertices, 3]`, and the corners of each triangle, counter-clockwise seen from outside,

@@ -278,7 +278,18 @@ def test_a_surface_presses_as_the_box_that_it_is(tmp_path: Path) -> None:
     (tmp_path / "box.stl").write_text("\n".join([*lines, "endsolid box"]))
     surface, box = Shape.stl(tmp_path / "box.stl"), Shape.box([8.0, 8.0, 8.0], 0.0)
     whole = Shape.union([(surface, Pose((0.0, 0.0, 0.0)))])
+    tenth = Shape.stl(tmp_path / "box.stl", scale=0.1)
+    with pytest.raises(Error, match="0.008 × 0.008 × 0.008 mm large.*`unit = \"m\"`"):
+        Shape.stl(tmp_path / "box.stl", scale=1e-3)
+    with pytest.raises(Error, match="8000 × 8000 × 8000 mm large"):
+        Shape.stl(tmp_path / "box.stl", unit="m")
+    with pytest.raises(Error, match="`feet` is no unit, expected one of mm, cm, m, inch"):
+        Shape.stl(tmp_path / "box.stl", unit="feet")
+    with pytest.raises(Error, match="one of the two"):
+        Shape.stl(tmp_path / "box.stl", unit="m", scale=2.0)
     reader, pose = FastGel.phystac().reader(), Pose((0.0, 0.0, 7.5))
     expected_kpa = reader.read([(Body(box), pose)])[0]
+    small_kpa = reader.read([(Body(Shape.box([0.8, 0.8, 0.8], 0.0)), pose)])[0]
+    assert reader.read([(Body(tenth), pose)])[0] == pytest.approx(small_kpa, abs=0.05)
     for shape in (surface, whole):
         assert reader.read([(Body(shape), pose)])[0] == pytest.approx(expected_kpa, abs=0.05)

@@ -735,10 +735,11 @@ class Shape:
     def wedge(angle_rad: float, length_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
         """A roof-shaped wedge that touches with its ridge, which lies along y."""
     @staticmethod
-    def stl(path: _Path) -> Shape:
-        """A closed triangle surface in an STL file, in mm; its lowest point is moved to the origin's z.
+    def stl(path: _Path, *, unit: str | None = None, scale: float | None = None) -> Shape:
+        """A closed triangle surface in an STL file, whose `unit` is "mm", "cm", "m" or "inch", or in which a length of 1 is `scale` mm; its lowest point is
+        moved to the origin's z.
 
-        Raises `Error` with the file if it cannot be read or its surface is not closed.
+        Raises `Error` with the file if it cannot be read, its surface is not closed, or its size cannot be in that unit.
         """
     @staticmethod
     def surface(vertices_mm: _Floats, triangles: _Integers) -> Shape:

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 pub(crate) use dataset::Dataset;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use twintac_run::mesh::LengthUnit;
 
 /// Barometric touch sensors and their digital twin.
 ///
@@ -233,6 +234,9 @@ pub(crate) struct Mesh {
     /// Read a Gmsh file instead and print its quality.
     #[arg(long, value_name = "FILE")]
     pub(crate) check: Option<PathBuf>,
+    /// Unit of the lengths in that file: mm, cm, m or inch.
+    #[arg(long, value_name = "UNIT", default_value = "mm", requires = "check")]
+    pub(crate) unit: LengthUnit,
     /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
     #[arg(long, value_name = "DIR", conflicts_with = "check")]
     pub(crate) out: Option<PathBuf>,

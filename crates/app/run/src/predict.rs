@@ -62,7 +62,7 @@ impl Predictor {
         let mut gel = gel_of(&model, model_folder)?;
         let added = indenter.map(IndenterFile::read).transpose()?;
         if let Some(added) = &added {
-            let sensor = Arc::new(added.added_to(gel.sensor()));
+            let sensor = Arc::new(added.added_to(gel.sensor())?);
             gel = gel.with_sensor(sensor);
         }
         Ok(Self {

@@ -216,7 +216,7 @@ pub use twintac_run::{
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
-pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
+pub use twintac_shape::{LengthUnit, Part, Pose, Shape, SurfaceFile, Surfaces, TriangleSurface};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "tasks")]
 pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize, Serializer};
-use twintac_shape::{Shape, Solid, Surfaces};
+use twintac_shape::{Shape, Solid, SurfaceFile, Surfaces};
 
 use crate::GelMaterial;
 
@@ -51,6 +51,11 @@ impl Sensor {
         self.indenters.iter().find(|indenter| indenter.name == name)
     }
 
+    /// The surfaces (STL) that the gel and the indenters name, each with the field of its path.
+    pub(crate) fn surface_files(&self) -> Vec<(String, &SurfaceFile)> {
+        surface_files(&self.gel.solid, &self.indenters)
+    }
+
     /// Whether a port reaches out of the gel, over its side: it feels what gel there is below it.
     #[must_use]
     pub fn has_port_at_side(&self) -> bool {
@@ -68,6 +73,22 @@ impl Sensor {
 /// Surfaces as the corners of their triangles.
 fn written<S: Serializer>(surfaces: &Surfaces, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(surfaces.iter().map(|(name, surface)| (name, &**surface)))
+}
+
+/// The surfaces (STL) that a gel and indenters name, each with the field of its path in a description.
+pub(crate) fn surface_files<'a>(
+    solid: &'a Solid,
+    indenters: &'a [Indenter],
+) -> Vec<(String, &'a SurfaceFile)> {
+    let of_gel = match solid {
+        Solid::Stl(file) => Some(("gel.solid.path".to_owned(), file)),
+        _ => None,
+    };
+    let of_indenters = indenters.iter().enumerate().flat_map(|(index, indenter)| {
+        let files = indenter.shape.surface_files().into_iter();
+        files.map(move |(field, file)| (format!("indenters[{index}].shape.{field}"), file))
+    });
+    of_gel.into_iter().chain(of_indenters).collect()
 }
 
 /// The soft part. It is bonded to the board at z = 0 and to the inclusions.

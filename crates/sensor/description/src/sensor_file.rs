@@ -1,7 +1,7 @@
 //! A sensor description with its text.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -65,7 +65,9 @@ impl SensorFile {
         let sensor = Sensor::parse(&file, text, &load)?;
         let text = Sensor::text_with_material(&file, text, &load)?;
         let mut surfaces: BTreeMap<String, Arc<[u8]>> = loaded.into_inner();
-        surfaces.retain(|name, _| sensor.surfaces.contains_key(name));
+        let named = sensor.surface_files().into_iter();
+        let named: BTreeSet<&String> = named.map(|(_, file)| &file.path).collect();
+        surfaces.retain(|name, _| named.contains(name));
         Ok(Self {
             sensor: Arc::new(sensor),
             text,

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 use twintac_fast::finest_edge_mm;
 use twintac_sensor::Sensor;
-use twintac_shape::{Part, Pose, Shape};
+use twintac_shape::{Part, Pose, Shape, SurfaceFile};
 
 use crate::boulder;
 
@@ -253,9 +253,9 @@ fn unseen(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
             height_mm,
             edge_radius_mm,
         },
-        _ => Shape::Stl {
-            path: boulder::name(random.random_range(0..boulder::N)),
-        },
+        _ => Shape::Stl(SurfaceFile::new(boulder::name(
+            random.random_range(0..boulder::N),
+        ))),
     }
 }
 
