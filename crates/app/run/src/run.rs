@@ -49,6 +49,8 @@ pub struct Run {
     record: RunRecord,
     /// Those of the record, without the path of the fast gel, which the folder has a copy of.
     settings: RunSettings,
+    /// The same with the default of what comes after the simulation.
+    simulation_settings: RunSettings,
     sensor: Arc<Keyed<SensorFile>>,
     fast: Option<Arc<Keyed<FastTables>>>,
     caller: Caller,
@@ -95,6 +97,7 @@ impl Run {
         Ok(Self {
             folder: folder.to_owned(),
             settings: without_path(&record.settings),
+            simulation_settings: of_simulation(&record.settings),
             record,
             sensor: Arc::new(keyed(sensor)),
             fast,
@@ -125,6 +128,7 @@ impl Run {
         Ok(Self {
             folder: folder.to_owned(),
             settings: without_path(&record.settings),
+            simulation_settings: of_simulation(&record.settings),
             record,
             sensor: Arc::new(keyed(sensor)),
             fast,
@@ -175,6 +179,11 @@ impl Run {
     /// Settings as an input of stages.
     pub(crate) fn settings(&self) -> &RunSettings {
         &self.settings
+    }
+
+    /// Settings as an input of the simulation.
+    pub(crate) fn simulation_settings(&self) -> &RunSettings {
+        &self.simulation_settings
     }
 
     /// The sensor as an input of stages.
@@ -262,6 +271,15 @@ fn without_path(settings: &RunSettings) -> RunSettings {
     RunSettings {
         fast_gel: None,
         ..settings.clone()
+    }
+}
+
+fn of_simulation(settings: &RunSettings) -> RunSettings {
+    let RunSettings { pair, train, .. } = RunSettings::default();
+    RunSettings {
+        pair,
+        train,
+        ..without_path(settings)
     }
 }
 

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use sha2::{Digest, Sha256};
 use toml::{Table, Value};
-use twintac_store::Digest;
 
 use crate::{Sensor, SensorError};
 
@@ -163,7 +163,6 @@ impl SensorFile {
                 ..self.clone()
             });
         }
-        let kept_name = |bytes: &[u8]| format!("{SURFACES}/{}.stl", Digest::of(bytes).short());
         let names: BTreeMap<&str, String> = self
             .surfaces
             .iter()
@@ -206,6 +205,13 @@ impl SensorFile {
     pub fn import(&self) -> Option<PathBuf> {
         self.sensor.import.as_ref().map(|path| self.folder.join(path))
     }
+}
+
+/// A name that tells a surface from every other.
+fn kept_name(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    let digits: String = digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    format!("{SURFACES}/{digits}.stl")
 }
 
 /// Gives surfaces other names, wherever a shape names one.

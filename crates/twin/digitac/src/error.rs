@@ -9,6 +9,9 @@ pub enum DigitacError {
     /// The simulation could not deliver.
     #[error("the simulation failed: {0}")]
     Simulation(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// A model's folder could not be written.
+    #[error(transparent)]
+    Store(#[from] twintac_store::StoreError),
     /// The simulation delivered another number of tables over depth than was asked for.
     #[error("expected {expected} tables over depth, found {found}")]
     DepthTableCount {

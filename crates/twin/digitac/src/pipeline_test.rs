@@ -1,6 +1,6 @@
 //! From a recording to a twin, against formulas whose truth is known.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
 use twintac_config::Checked;
@@ -275,6 +275,7 @@ fn a_model_survives_its_folder_and_notices_damage() {
     let settings = settings(&[Variant::PressureMemoryMlp], 3);
     let trained = train_quietly(&made, &settings).remove(0);
     let origin = Origin {
+        surfaces: BTreeMap::new(),
         sensor: "name = \"formula\"".into(),
         simulation: serde_json::json!({"edge_mm": 1.0}),
         bench: made.bench.clone(),
@@ -368,6 +369,7 @@ fn saved(folder: &std::path::Path) -> Model {
     let settings = settings(&[Variant::PressureMemoryMlp], 1);
     let trained = train_quietly(&made, &settings).remove(0);
     let origin = Origin {
+        surfaces: BTreeMap::new(),
         sensor: "name = \"formula\"".into(),
         simulation: serde_json::json!({}),
         bench: made.bench.clone(),

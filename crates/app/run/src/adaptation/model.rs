@@ -84,10 +84,17 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
     let as_learned = (!rest.is_empty())
         .then(|| gel.judge_as_learned(&rest))
         .transpose()?;
+    let folder = plan.out.join("model");
+    let (sensor, surfaces) = match plan.sensor {
+        Some(sensor) => {
+            let kept = sensor.kept_as(&folder.join("twin.json"))?;
+            (kept.text.clone(), kept.surfaces().clone())
+        }
+        None => (record.sensor.clone(), model.surfaces.clone()),
+    };
     let origin = Origin {
-        sensor: plan
-            .sensor
-            .map_or_else(|| record.sensor.clone(), |sensor| sensor.text.clone()),
+        sensor,
+        surfaces,
         simulation: record.simulation.clone(),
         bench: adapted.bench.clone(),
         settings: record.settings.clone(),
@@ -104,7 +111,6 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
         },
         certainty: None,
     };
-    let folder = plan.out.join("model");
     let definition = taught.twin.definition.clone();
     Model::new(adapted.twin.clone(), origin, taught.twin, judged.as_ref()).save(&folder)?;
     let found = AdaptedModel {

@@ -126,7 +126,10 @@ impl Run {
 
     fn simulating(&self) -> Result<Simulating<'_>, RunError> {
         Ok(Simulating {
-            setup: self.setup(),
+            setup: Setup {
+                settings: self.simulation_settings(),
+                ..self.setup()
+            },
             recordings: self.recordings()?,
         })
     }

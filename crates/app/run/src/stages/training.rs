@@ -280,6 +280,7 @@ impl<'a> Training<'a> {
         let settings = self.setup.settings;
         let origin = Origin {
             sensor: self.setup.sensor.text.clone(),
+            surfaces: self.setup.sensor.surfaces().clone(),
             simulation: serde_json::to_value(&settings.simulate).map_err(|source| StoreError::Json {
                 what: "the settings of the simulation".to_owned(),
                 source,

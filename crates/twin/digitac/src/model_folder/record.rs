@@ -1,6 +1,7 @@
 //! A twin with all that is needed to use it, and to know where it comes from.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
@@ -15,6 +16,8 @@ pub struct Model {
     pub record: ModelRecord,
     /// The twin itself.
     pub twin: Twin,
+    /// The surfaces (STL) that the sensor description names: names relative to the model's folder, and contents.
+    pub surfaces: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// Everything about a twin but its weights.
@@ -68,6 +71,8 @@ pub(crate) struct Start {
 pub struct Origin {
     /// The sensor description, as text.
     pub sensor: String,
+    /// The surfaces (STL) that it names: names relative to the model's folder, and contents.
+    pub surfaces: BTreeMap<String, Arc<[u8]>>,
     /// Settings of the mesh and the simulation.
     pub simulation: serde_json::Value,
     /// What was found about the bench.
@@ -113,6 +118,10 @@ impl Model {
                 hidden: twin.parameters().hidden(),
             },
         };
-        Self { record, twin }
+        Self {
+            record,
+            twin,
+            surfaces: origin.surfaces,
+        }
     }
 }
