@@ -62,7 +62,7 @@ impl Inverse {
         shapes: BTreeMap<String, Shape>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = checked(py, InverseSettings::default(), settings.as_ref())?;
+        let settings = over(InverseSettings::default(), settings.as_ref(), py)?;
         let (gel, n_taxels) = (gel.gel.clone(), gel.gel.n_taxels());
         let names = shapes.keys().cloned().collect();
         let surfaces: Surfaces = shapes.values().flat_map(|shape| shape.surfaces.clone()).collect();
@@ -91,7 +91,7 @@ impl Inverse {
         tables: BTreeMap<String, ReadingTable>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = checked(py, InverseSettings::default(), settings.as_ref())?;
+        let settings = over(InverseSettings::default(), settings.as_ref(), py)?;
         let (shapes, tables): (Vec<String>, Vec<ReadingTable>) = tables.into_iter().unzip();
         let n_taxels = tables.first().map_or(0, ReadingTable::n_taxels);
         if let Some(other) = tables.iter().map(ReadingTable::n_taxels).find(|n| *n != n_taxels) {
@@ -126,7 +126,7 @@ impl Inverse {
         progress: Option<Bound<'_, PyAny>>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = checked(py, Locator::settings(None).or_raise(py)?, settings.as_ref())?;
+        let settings = over(Locator::settings(None).or_raise(py)?, settings.as_ref(), py)?;
         let locator = followed(py, progress.as_ref(), move |progress| {
             Locator::open(&folder, &indenters, settings, progress.as_ref())
         })?;
@@ -180,17 +180,6 @@ impl Inverse {
     }
 }
 
-/// Settings but for those of keywords, if they can be.
-fn checked(
-    py: Python<'_>,
-    base: InverseSettings,
-    own: Option<&Bound<'_, PyDict>>,
-) -> PyResult<InverseSettings> {
-    let settings = over(base, own, py)?;
-    settings.check().or_raise(py)?;
-    Ok(settings)
-}
-
 /// Follows the contact of one sensor, frame by frame: what `Inverse.start` returns.
 #[pyclass(module = "twintac")]
 pub(crate) struct Tracker {
@@ -233,14 +222,20 @@ impl Tracker {
         }
         let tracker = &mut self.tracker;
         let contact = py.detach(|| match tracker {
-            Follower::Fast(tracker) => tracker.update(since_previous_s, &readings_kpa).cloned(),
-            Follower::Tables(tracker) => tracker.update(since_previous_s, &readings_kpa).cloned(),
+            Follower::Fast(tracker) => tracker
+                .update(since_previous_s, &readings_kpa)
+                .map(Option::<&_>::cloned),
+            Follower::Tables(tracker) => tracker
+                .update(since_previous_s, &readings_kpa)
+                .map(Option::<&_>::cloned),
             Follower::Twin(tracker) => {
                 let valid: Vec<bool> = readings_kpa.iter().map(|kpa| kpa.is_finite()).collect();
-                tracker.update(since_previous_s, &readings_kpa, &valid).cloned()
+                tracker
+                    .update(since_previous_s, &readings_kpa, &valid)
+                    .map(Option::<&_>::cloned)
             }
         });
-        Ok(contact.map(|contact| Contact {
+        Ok(contact.or_raise(py)?.map(|contact| Contact {
             shapes: Arc::clone(&self.shapes),
             provenance: self.provenance.to_string(),
             contact,

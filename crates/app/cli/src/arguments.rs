@@ -1,5 +1,7 @@
 //! What can be typed.
 
+#[cfg(test)]
+mod conflicts;
 mod dataset;
 
 use std::path::PathBuf;
@@ -176,7 +178,7 @@ pub(crate) struct Reproduce {
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
-    #[arg(long, requires = "paper")]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) quick: bool,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE", required_unless_present = "paper")]
@@ -191,7 +193,7 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the figures of --paper as JSON.
-    #[arg(long, requires = "paper")]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) start: Start,
@@ -232,14 +234,14 @@ pub(crate) struct Mesh {
     #[arg(long, value_name = "FILE")]
     pub(crate) check: Option<PathBuf>,
     /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with = "check")]
     pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
     /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
-    #[arg(long, value_name = "DIR", conflicts_with = "sensor")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out", "path", "settings", "vtk", "seed"])]
     pub(crate) run: Option<PathBuf>,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE")]
@@ -251,13 +253,13 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "DIR", requires = "protocol")]
     pub(crate) out: Option<PathBuf>,
     /// Path of one indenter (TOML): prints force and pressures along it.
-    #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with = "protocol")]
+    #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with_all = ["protocol", "out", "vtk", "seed"])]
     pub(crate) path: Option<PathBuf>,
     /// Print what the computing time of a path's frames is spent on.
-    #[arg(long, requires = "path")]
+    #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) profile: bool,
     /// Print the results of a path as JSON.
-    #[arg(long, requires = "path")]
+    #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) json: bool,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE", requires = "sensor")]
@@ -288,7 +290,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) y_mm: f64,
     /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter", "x_mm", "y_mm"])]
     pub(crate) curves: Option<PathBuf>,
     /// Free parameters: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
     /// bulk_modulus_kpa), poissons_ratio, friction, depth_offset_mm, force_scale, force_offset_n.
@@ -354,10 +356,10 @@ pub(crate) struct Record {
     #[arg(long)]
     pub(crate) dry_run: bool,
     /// Faults of the emulated bench (TOML), in tables [[faults]].
-    #[arg(long, value_name = "FILE", requires = "lab")]
+    #[arg(long, value_name = "FILE", requires = "lab", conflicts_with_all = ["scale", "altitude_m"])]
     pub(crate) faults: Option<PathBuf>,
     /// Compute what the emulated bench would record, without devices and without waiting.
-    #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json"])]
+    #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json", "scale", "altitude_m"])]
     pub(crate) at_once: bool,
     /// Print the result as one line of JSON.
     #[arg(long)]
@@ -453,13 +455,13 @@ pub(crate) struct Adapt {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// With --run: errors over these numbers of presses.
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', requires = "run", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', requires = "run", conflicts_with_all = ["recordings", "sensor", "import"], value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) curve: Vec<u64>,
     /// Folder of an evaluated run of the new sensor: its teaching presses adapt, its held-out presses judge, beside its own twin.
     #[arg(long, value_name = "DIR", requires = "curve", conflicts_with = "recordings")]
     pub(crate) run: Option<PathBuf>,
     /// With --curve: how many times presses are chosen, with seeds from 1 on.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), requires = "curve")]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), requires = "curve", conflicts_with_all = ["recordings", "presses", "seed"])]
     pub(crate) seeds: u64,
     /// Print everything as JSON.
     #[arg(long)]
@@ -506,7 +508,7 @@ pub(crate) struct Predict {
     #[arg(long, value_name = "FILE")]
     pub(crate) indenter: Option<PathBuf>,
     /// Seed of the protocol's random places.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, conflicts_with = "path")]
     pub(crate) seed: u64,
     /// Draw depth, force and readings over time into this PNG or SVG file.
     #[arg(long, value_name = "FILE", value_parser = picture)]
@@ -582,10 +584,10 @@ pub(crate) struct Stream {
     #[arg(long, value_enum)]
     pub(crate) format: Option<RowFormat>,
     /// End after so many rows.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format", conflicts_with = "out")]
     pub(crate) frames: Option<u64>,
     /// End after so long, s.
-    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format")]
+    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format", conflicts_with = "out")]
     pub(crate) seconds: Option<f64>,
     /// Folder of the dashboard's recordings (MCAP).
     #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]

@@ -86,6 +86,9 @@ pub enum RunError {
     /// What was given cannot be used: what is wrong, and what to do.
     #[error("{0}")]
     Input(String),
+    /// A setting cannot be what it is.
+    #[error("setting {0}")]
+    Setting(#[from] twintac_config::Problem),
     /// A file that people write is wrong.
     #[error(transparent)]
     Config(#[from] twintac_config::ConfigError),

@@ -4,8 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use digitac::Model;
+use twintac_config::Checked;
 use twintac_simulate::{Gel, SimulateSettings};
 
+use crate::error::At;
 use crate::{RunError, SensorFile};
 
 /// The gel of a model's sensor, simulated as it was for training.
@@ -21,5 +23,18 @@ pub(crate) fn gel_like(model: &Model, folder: &Path, sensor: &SensorFile) -> Res
             path: folder.join("twin.json"),
             source,
         })?;
+    let path = folder.join("twin.json");
+    settings
+        .checked()
+        .at(|| format!("{}, simulation", path.display()))?;
+    let taxels = sensor.sensor.taxels.iter().map(|taxel| &taxel.name);
+    if !taxels.eq(&model.record.taxels) {
+        return Err(RunError::Input(format!(
+            "the twin in {} reads the taxels {}, which are not those of the sensor `{}`",
+            folder.display(),
+            model.record.taxels.join(", "),
+            sensor.sensor.name
+        )));
+    }
     Ok(Gel::new(Arc::clone(&sensor.sensor), settings))
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use twintac_config::Checked;
 use twintac_recording::Recording;
 use twintac_simulate::Gel;
 
@@ -49,7 +50,7 @@ impl Run {
     /// in words where the presses come from.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// The folder cannot be written; a setting that makes no sense.
     pub fn start(
         folder: &Path,
         sensor: impl Into<SensorFile>,
@@ -58,6 +59,7 @@ impl Run {
         settings: RunSettings,
         caller: Caller,
     ) -> Result<Self, RunError> {
+        settings.checked()?;
         std::fs::create_dir_all(folder).map_err(RunError::file("creating", folder))?;
         let sensor = sensor.into();
         let record = RunRecord {
@@ -94,6 +96,8 @@ impl Run {
             folder: folder.to_owned(),
             source: Box::new(source),
         })?;
+        let path = folder.join("run.json");
+        record.settings.checked().at(|| path.display().to_string())?;
         let sensor = SensorFile::read(&folder.join("sensor.toml"))?;
         Ok(Self {
             folder: folder.to_owned(),

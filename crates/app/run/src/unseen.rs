@@ -61,7 +61,7 @@ pub fn evaluate_elsewhere(
 ) -> Result<UnseenEvaluation, RunError> {
     let model = Model::load(model_folder)?;
     let record = &model.record;
-    refuse_other_taxels(recording, record)?;
+    refuse_unfit(recording, record)?;
     refuse_known(recording, record)?;
     let gel = gel_of(&model, model_folder)?;
     let left_out = left_out(gel.sensor());
@@ -103,8 +103,14 @@ pub fn evaluate_elsewhere(
     })
 }
 
-/// A model reads the taxels that it was trained with.
-pub(crate) fn refuse_other_taxels(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
+/// A model reads the taxels that it was trained with, of one press at least.
+pub(crate) fn refuse_unfit(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
+    if recording.presses.is_empty() {
+        return Err(RunError::Input(format!(
+            "the recordings of `{}` have no press: give some that have",
+            recording.sensor
+        )));
+    }
     if recording.taxels == record.taxels {
         return Ok(());
     }

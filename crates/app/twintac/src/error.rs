@@ -91,7 +91,10 @@ impl Error {
             #[cfg(feature = "fast")]
             Self::Inverse(twintac_inverse::InverseError::Shape(error)) => of_shape(error),
             #[cfg(feature = "fast")]
-            Self::Inverse(twintac_inverse::InverseError::Setting { field, .. }) => of_field(field),
+            Self::Inverse(
+                twintac_inverse::InverseError::Setting(problem)
+                | twintac_inverse::InverseError::Frame(problem),
+            ) => of_field(&problem.field),
             #[cfg(feature = "map")]
             Self::Picture(
                 twintac_plot::PlotError::Format { path } | twintac_plot::PlotError::Write { path, .. },
@@ -128,6 +131,7 @@ fn of_simulation(error: &twintac_simulate::SimulateError) -> ErrorPlace {
 fn of_twin(error: &digitac::DigitacError) -> ErrorPlace {
     match error {
         digitac::DigitacError::File { path, .. } | digitac::DigitacError::Model { path, .. } => of_file(path),
+        digitac::DigitacError::Setting(problem) => of_field(&problem.field),
         _ => ErrorPlace::default(),
     }
 }
@@ -176,6 +180,7 @@ fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
     let path = match error {
         Wrong::In { source, .. } => return of_run(source),
         Wrong::Config(error) => return of_description(error),
+        Wrong::Setting(problem) => return of_field(&problem.field),
         Wrong::Recording(error) => return of_recording(error),
         Wrong::Shape(error) => return of_shape(error),
         Wrong::Simulate(error) => return of_simulation(error),

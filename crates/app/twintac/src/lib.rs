@@ -89,7 +89,9 @@
 //!
 //! let run = Run::demo(Path::new("runs/demo"), 1, Caller::default())?;
 //! let metrics = run.finish()?;
-//! println!("errs by {:.1} % on presses that it never saw", metrics.twin.overall.nearest_in_contact_percent);
+//! if let Some(percent) = metrics.twin.overall.nearest_in_contact_percent {
+//!     println!("errs by {percent:.1} % on presses that it never saw");
+//! }
 //! let twin = Twin::load(run.model_folder())?;
 //! let predicted = twin.predict(&Press::with("sphere-25").depth_mm(1.2).hold_s(1.0))?;
 //! println!("{:?} kPa at first touch", predicted.readings_kpa[0]);
@@ -140,7 +142,7 @@
 //! let ball = KnownShape { name: "ball".into(), shape: Shape::Sphere { radius_mm: 5.0 } };
 //! let inverse = Inverse::of_fast_gel(&FastGel::phystac()?, &[ball], &Default::default(), InverseSettings::default())?;
 //! let mut tracker = inverse.start();
-//! if let Some(contact) = tracker.update(0.01, &[0.1, 0.9, 1.0, 0.1, 0.8, 8.7, 0.9, 0.2]) {
+//! if let Some(contact) = tracker.update(0.01, &[0.1, 0.9, 1.0, 0.1, 0.8, 8.7, 0.9, 0.2])? {
 //!     println!("{:.1} mm, {:.2} mm deep, {:.2} N", contact.place_mm, contact.depth_mm, contact.force_n);
 //! }
 //! # }

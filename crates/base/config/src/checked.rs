@@ -36,7 +36,7 @@ pub trait Checked {
     fn checked(&self) -> Result<(), Problem> {
         let mut ranges = Ranges::default();
         self.check(&mut ranges);
-        ranges.first.map_or(Ok(()), Err)
+        ranges.finish()
     }
 }
 
@@ -92,13 +92,7 @@ impl Ranges {
     }
 
     /// A list of so many numbers at most, each in a range.
-    pub fn numbers<N: Number>(
-        &mut self,
-        field: &str,
-        values: &[N],
-        most: usize,
-        range: RangeInclusive<f64>,
-    ) {
+    pub fn numbers<N: Number>(&mut self, field: &str, values: &[N], most: usize, range: RangeInclusive<f64>) {
         self.that(
             field,
             values.len() <= most,
@@ -129,6 +123,14 @@ impl Ranges {
         self.inside = outside;
     }
 
+    /// The first number that is beyond its range, if there is one.
+    ///
+    /// # Errors
+    /// That number.
+    pub fn finish(self) -> Result<(), Problem> {
+        self.first.map_or(Ok(()), Err)
+    }
+
     /// Anything else that has to hold of a field: otherwise, what is wrong and what to do.
     pub fn that<P: Into<String>, H: Into<String>>(
         &mut self,
@@ -138,11 +140,7 @@ impl Ranges {
         hint: impl FnOnce() -> H,
     ) {
         if !is_right && self.first.is_none() {
-            self.first = Some(Problem::new(
-                format!("{}{field}", self.inside),
-                problem(),
-                hint(),
-            ));
+            self.first = Some(Problem::new(format!("{}{field}", self.inside), problem(), hint()));
         }
     }
 }

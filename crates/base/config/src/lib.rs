@@ -13,6 +13,7 @@
 
 mod checked;
 mod place;
+mod tried;
 
 use std::path::Path;
 
@@ -21,6 +22,7 @@ use serde::de::DeserializeOwned;
 use toml::de::DeTable;
 
 pub use checked::{Checked, Number, Problem, Ranges};
+pub use tried::with_each_number;
 
 /// A parsed file together with its text, so that later findings can name the line.
 #[derive(Clone, Debug)]

@@ -41,16 +41,9 @@ pub enum DigitacError {
         /// What is there.
         found: String,
     },
-    /// A setting is out of its range.
-    #[error("setting `{setting}`: expected {expected}, found {found}")]
-    Setting {
-        /// Name of the setting.
-        setting: &'static str,
-        /// Its range.
-        expected: &'static str,
-        /// Its value.
-        found: String,
-    },
+    /// A setting cannot be what it is.
+    #[error("setting {0}")]
+    Setting(#[from] twintac_config::Problem),
     /// The loss became infinite or NaN.
     #[error("training of variant `{variant}` diverged in epoch {epoch}: the loss is {loss}")]
     Diverged {

@@ -36,7 +36,7 @@ pub use adaptation::{Adaptation, Adapted, NewSensor, adapt, choose_presses};
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
     BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate,
-    SmoothFactor, features, fit_bench, refine_bench,
+    SmoothFactor, Taxels, features, fit_bench, refine_bench,
 };
 pub use certainty::{
     Certainty, CertaintyScore, Contact, Lessons, PressCertainty, area_under_curve, calibrate, score_certainty,
@@ -54,5 +54,5 @@ pub use prediction::{
     Prediction, TwinAtPlace, TwinState, WithoutMemory, at_place, predict, simulated_recording, unread_press,
 };
 pub use training::{
-    Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train,
+    Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, TrainedWith, choose, train,
 };

@@ -1,8 +1,9 @@
 //! What can be wrong with an inverse.
 
+use twintac_config::Problem;
 use twintac_shape::ShapeError;
 
-/// Why there is no inverse.
+/// Why there is no inverse, or no contact.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InverseError {
@@ -13,13 +14,9 @@ pub enum InverseError {
     #[error("no known shape: at least one is needed")]
     NoShape,
     /// A setting that can't be.
-    #[error("the inverse's `{field}` is {found}, expected {expected}")]
-    Setting {
-        /// Its name.
-        field: &'static str,
-        /// What it is.
-        found: f64,
-        /// What it may be.
-        expected: &'static str,
-    },
+    #[error("the inverse's setting {0}")]
+    Setting(Problem),
+    /// A frame that can't be.
+    #[error("a frame's {0}")]
+    Frame(Problem),
 }

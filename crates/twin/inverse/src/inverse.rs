@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use twintac_config::Checked;
 use twintac_fast::FastGel;
 use twintac_shape::Surfaces;
 
@@ -37,6 +38,7 @@ impl Inverse<FastModel> {
         surfaces: &Surfaces,
         settings: InverseSettings,
     ) -> Result<Self, InverseError> {
+        settings.checked().map_err(InverseError::Setting)?;
         Self::new(
             FastModel::new(gel, shapes, surfaces, settings.deepest_mm)?,
             settings,
@@ -50,7 +52,7 @@ impl<M: ContactModel> Inverse<M> {
     /// # Errors
     /// No shape, settings that can't be.
     pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
-        settings.check()?;
+        settings.checked().map_err(InverseError::Setting)?;
         if model.n_shapes() == 0 {
             return Err(InverseError::NoShape);
         }

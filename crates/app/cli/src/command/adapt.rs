@@ -11,7 +11,7 @@ use twintac_run::{
 use super::files::expand;
 use crate::Program;
 use crate::arguments::Adapt;
-use crate::output::print;
+use crate::output::{percent, print};
 use crate::progress::Bars;
 
 pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
@@ -100,11 +100,11 @@ fn adapted(found: &AdaptedModel) -> String {
     }));
     if let (Some(twin), Some(learned)) = (&found.twin, &found.as_learned) {
         lines.push(format!(
-            "nearest in contact {:6.2} %, all {:6.2} %, on {} presses that it was not adapted with; as learned {:.2} %",
-            twin.overall.nearest_in_contact_percent,
-            twin.overall.all_percent,
+            "nearest in contact {}, all {}, on {} presses that it was not adapted with; as learned {}",
+            percent(twin.overall.nearest_in_contact_percent),
+            percent(twin.overall.all_percent),
             found.judged_presses,
-            learned.nearest_in_contact_percent
+            percent(learned.nearest_in_contact_percent).trim_start()
         ));
         lines.push(found.definition.clone());
     }
@@ -119,20 +119,27 @@ fn table(found: &AdaptationCurve) -> String {
             found.sensor, found.provenance, found.judged_presses
         ),
         format!(
-            "as learned         {:6.2} %",
-            found.as_learned.nearest_in_contact_percent
+            "as learned         {}",
+            percent(found.as_learned.nearest_in_contact_percent)
         ),
     ];
     lines.extend(found.points.iter().map(|point| {
-        let error = &point.nearest_in_contact;
+        let Some(error) = &point.nearest_in_contact else {
+            return format!("{:3} presses        {}", point.presses, percent(None));
+        };
+        let over = point.over_trained_on_all;
         format!(
-            "{:3} presses        {:6.2} ± {:4.2} %   {:.2} times",
-            point.presses, error.mean_percent, error.deviation_percent, point.over_trained_on_all
+            "{:3} presses        {:6.2} ± {:4.2} %   {}",
+            point.presses,
+            error.mean_percent,
+            error.deviation_percent,
+            over.map_or_else(String::new, |over| format!("{over:.2} times"))
         )
     }));
     lines.push(format!(
-        "trained on all {:3} {:6.2} %",
-        found.teaching_presses, found.trained_on_all.nearest_in_contact_percent
+        "trained on all {:3} {}",
+        found.teaching_presses,
+        percent(found.trained_on_all.nearest_in_contact_percent)
     ));
     lines.push(found.definition.clone());
     lines.join("\n")

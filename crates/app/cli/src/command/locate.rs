@@ -75,23 +75,27 @@ fn row(out: &mut String, located: &Located, press: &LocatedPress, frame: &Locate
 
 /// How far off places and depths are, in a line for presses that taught the twin and one for those that did not.
 fn summary(located: &Located) -> String {
+    let told = |value: Option<f64>, decimals: usize| match value {
+        Some(value) => format!("{value:.decimals$}"),
+        None => "none".to_owned(),
+    };
     let line = |name: &str, errors: &Option<LocationErrors>| {
         let Some(errors) = errors else {
             return String::new();
         };
         format!(
-            "{name}: {} presses, {} frames; place off by {:.2} mm (90 of 100: {:.2}), depth by {:.1} % of the deepest ({:.1}), at the deepest by {:.1} % ({:.1}); \
-             within two deviations {:.0} and {:.0} %\n",
+            "{name}: {} presses, {} frames; place off by {} mm (90 of 100: {}), depth by {} % of the deepest ({}), at the deepest by {} % ({}); \
+             within two deviations {} and {} %\n",
             errors.presses,
             errors.frames,
-            errors.place_mm.median,
-            errors.place_mm.of_90_percent,
-            errors.depth_percent.median,
-            errors.depth_percent.of_90_percent,
-            errors.depth_at_peak_percent.median,
-            errors.depth_at_peak_percent.of_90_percent,
-            errors.place_within_two_deviations_percent,
-            errors.depth_within_two_deviations_percent,
+            told(errors.place_mm.median, 2),
+            told(errors.place_mm.of_90_percent, 2),
+            told(errors.depth_percent.median, 1),
+            told(errors.depth_percent.of_90_percent, 1),
+            told(errors.depth_at_peak_percent.median, 1),
+            told(errors.depth_at_peak_percent.of_90_percent, 1),
+            told(errors.place_within_two_deviations_percent, 0),
+            told(errors.depth_within_two_deviations_percent, 0),
         )
     };
     format!(

@@ -6,7 +6,7 @@ use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_fil
 use super::files::expand;
 use crate::Program;
 use crate::arguments::{Align, Evaluate, Report, Train};
-use crate::output::print;
+use crate::output::{percent, print};
 use crate::progress::Bars;
 
 /// Everything after the recordings; prints the headline.
@@ -90,8 +90,9 @@ fn headline(metrics: &Metrics) -> String {
     ];
     lines.extend(rows.iter().map(|(name, figures)| {
         format!(
-            "{name:<width$}  {:6.2} %  {:6.2} %",
-            figures.nearest_in_contact_percent, figures.all_percent
+            "{name:<width$}  {}  {}",
+            percent(figures.nearest_in_contact_percent),
+            percent(figures.all_percent)
         )
     }));
     let beyond = metrics.twin.frames_not_simulated;
@@ -113,12 +114,13 @@ fn unseen(found: &UnseenEvaluation) -> String {
             found.presses, found.provenance, found.variant
         ),
         format!(
-            "nearest in contact {:6.2} %, all {:6.2} %",
-            figures.nearest_in_contact_percent, figures.all_percent
+            "nearest in contact {}, all {}",
+            percent(figures.nearest_in_contact_percent),
+            percent(figures.all_percent)
         ),
         format!(
-            "all as at training: nearest in contact {:6.2} %",
-            found.uncalibrated.nearest_in_contact_percent
+            "all as at training: nearest in contact {}",
+            percent(found.uncalibrated.nearest_in_contact_percent)
         ),
     ];
     for contact in &found.contact {

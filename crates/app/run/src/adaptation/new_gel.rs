@@ -13,7 +13,7 @@ use twintac_recording::Recording;
 use crate::doubtful::left_out;
 use crate::model::{gel_like, gel_of};
 use crate::settings::ports_mm;
-use crate::unseen::{Pressed, refuse_known, refuse_other_taxels, simulate};
+use crate::unseen::{Pressed, refuse_known, refuse_unfit, simulate};
 use crate::{Progress, RunError, SensorFile};
 
 /// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
@@ -47,7 +47,7 @@ impl<'a> NewGel<'a> {
                 model_folder.display()
             )));
         }
-        refuse_other_taxels(recording, record)?;
+        refuse_unfit(recording, record)?;
         refuse_known(recording, record)?;
         let gel = match sensor {
             Some(sensor) => gel_like(model, model_folder, sensor)?,

@@ -13,11 +13,12 @@ use twintac_sensors::Imperfection;
 use twintac_simulate::{Gel, SimulateSettings};
 
 use super::plan::{DatasetPlan, FastSource};
+use crate::RunError;
 use crate::fast::tables::FastTables;
 use crate::files::{read_text, sha256};
 use crate::model::{gel_like, gel_of};
 use crate::protocol::target;
-use crate::{RunError, RunSettings};
+use crate::settings::simulate_settings;
 
 /// All that a plan names.
 pub(super) struct Inputs {
@@ -75,7 +76,7 @@ impl Inputs {
                     Some(sensor) => sensor,
                     None => SensorFile::phystac()?,
                 };
-                let simulate = RunSettings::read(plan.settings.as_deref())?.simulate;
+                let simulate = simulate_settings(SimulateSettings::default(), plan.settings.as_deref())?;
                 let gel = Gel::new(std::sync::Arc::clone(&sensor.sensor), simulate.clone());
                 (sensor, gel, simulate)
             }

@@ -195,12 +195,12 @@ fn results(jobs: &[Job], confusions: Vec<Confusion>) -> Vec<ShapesResult> {
         let accuracy = confusion.accuracy_percent();
         match results.last_mut().filter(|last| last.mixture == job.mixture) {
             Some(last) => {
-                last.accuracy_percent.push(accuracy);
+                last.accuracy_percent.extend(accuracy);
                 last.confusion.add(&confusion);
             }
             None => results.push(ShapesResult {
                 mixture: job.mixture,
-                accuracy_percent: vec![accuracy],
+                accuracy_percent: accuracy.into_iter().collect(),
                 confusion,
             }),
         }

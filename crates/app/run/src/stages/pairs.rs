@@ -25,7 +25,7 @@ impl Run {
                 &simulation.places,
                 &simulation.tables,
                 &simulation.bench,
-                &self.record.settings.pair,
+                &self.resolved(&recording)?.pair,
             )?;
             write_json(&folder.join("paired.json"), &pairs)?;
             twintac_report::warp_plot(&pairs).write(&folder.join("warps.svg"))?;

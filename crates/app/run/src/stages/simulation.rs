@@ -9,8 +9,8 @@ use crate::fast::FAST_GEL;
 use crate::files::{read_json, write_json};
 use crate::mesh::{Fineness, MeshedGel};
 use crate::progress::{Silent, Work};
-use crate::settings::is_static;
-use crate::{Run, RunError, RunSettings};
+use crate::settings::ResolvedSettings;
+use crate::{Run, RunError};
 
 /// What the simulation stage left.
 pub(crate) struct Simulation {
@@ -59,18 +59,19 @@ impl Run {
         }
         self.run_stage("simulation", inputs, |folder| {
             let recording = self.recording()?;
+            let settings = self.resolved(&recording)?;
             let gel = self.gel();
             let _work = Work::start(self.progress(), "simulating", 0);
             let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress())
                 .with_fast(fast.as_ref());
-            let places = Places::of(&recording, &store, &self.record.settings.places)?;
-            let settings = self.resolved(&recording, &places);
-            let split = Split::new(&recording, &settings.split)?;
+            let places = Places::of(&recording, &store, &settings.places)?;
+            let split = Split::new(&recording, &settings.split, settings.seed)?;
             let teachers = [&split.train[..], &split.validation].concat();
-            let bench = fit_bench(&recording, &places, &teachers, &store, &settings.bench)?;
+            let (how, taxels) = (&settings.bench, &settings.taxels);
+            let bench = fit_bench(&recording, &places, &teachers, &store, how, taxels)?;
             let places = places.at_bench(&bench);
             let tables = store.depth_tables(&places.requests)?;
-            let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, &settings.bench)?;
+            let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, how, taxels)?;
             write_json(&folder.join("split.json"), &split)?;
             write_json(&folder.join("bench.json"), &bench)?;
             write_json(&folder.join("places.json"), &tables)?;
@@ -84,7 +85,8 @@ impl Run {
         let bench: BenchEstimate = read_json(&folder.join("bench.json"))?;
         let gel = self.gel();
         let store = DepthTableStore::new(&gel, folder.join("depth_tables"), &Silent);
-        let places = Places::of(recording, &store, &self.record.settings.places)?.at_bench(&bench);
+        let settings = self.resolved(recording)?;
+        let places = Places::of(recording, &store, &settings.places)?.at_bench(&bench);
         Ok(Simulation {
             split: read_json(&folder.join("split.json"))?,
             bench,
@@ -93,15 +95,9 @@ impl Run {
         })
     }
 
-    /// The settings with what depends on sensor and presses filled in.
-    pub(crate) fn resolved(&self, recording: &Recording, places: &Places) -> RunSettings {
-        let n_places = if is_static(recording) {
-            places.requests.len()
-        } else {
-            0
-        };
-        self.record
-            .settings
-            .resolve(&self.sensor.sensor, recording, n_places, self.record.seed)
+    /// The settings for the run's sensor, presses and seed: what its stages compute from.
+    pub(crate) fn resolved(&self, recording: &Recording) -> Result<ResolvedSettings, RunError> {
+        let settings = &self.record.settings;
+        Ok(settings.resolve(&self.sensor.sensor, recording, self.record.seed)?)
     }
 }

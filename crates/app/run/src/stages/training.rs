@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use digitac::{
-    BenchSettings, Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale,
-    Score, Split, TrainSettings, Trained, Variant, calibrate,
+    Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split,
+    TrainSettings, Trained, TrainedWith, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
@@ -14,6 +14,7 @@ use super::simulation::Simulation;
 use crate::files::write_json;
 use crate::press_checksum::press_checksum;
 use crate::progress::Work;
+use crate::settings::ResolvedSettings;
 use crate::{Run, RunError};
 
 /// Stage that has the paper's twin.
@@ -52,8 +53,8 @@ impl Run {
             let training = Training::open(self)?;
             let work = Work::start(self.progress(), "training", training.n_epochs());
             let split = &training.simulation.split;
-            let trained = training.train(split, &training.settings, &work)?;
-            let chosen = digitac::choose(&trained).ok_or_else(nothing_trained)?;
+            let trained = training.train(split, &training.settings.train, &work)?;
+            let chosen = digitac::choose(&trained)?;
             write_json(
                 &folder.join("variants.json"),
                 &training.variants(&trained, chosen),
@@ -66,8 +67,8 @@ impl Run {
             everything.train.append(&mut everything.test);
             everything.train.sort_unstable();
             let again = TrainSettings {
-                variants: vec![chosen.twin.variant()],
-                ..training.settings.clone()
+                variants: Some(vec![chosen.twin.variant()]),
+                ..training.settings.train.clone()
             };
             let complete = training.train(&everything, &again, &work)?;
             let complete = complete.first().ok_or_else(nothing_trained)?;
@@ -83,13 +84,13 @@ impl Run {
         let inputs = self.inputs().stage(&self.stage("training"))?;
         self.run_stage(PAPER_TWIN, inputs, |folder| {
             let training = Training::open(self)?;
-            let work = Work::start(self.progress(), "training", training.settings.epochs);
+            let work = Work::start(self.progress(), "training", training.settings.train.epochs);
             let mut everything = training.simulation.split.clone();
             everything.train.append(&mut everything.test);
             everything.train.sort_unstable();
             let settings = TrainSettings {
-                variants: vec![Variant::Paper],
-                ..training.settings.clone()
+                variants: Some(vec![Variant::Paper]),
+                ..training.settings.train.clone()
             };
             let trained = training.train(&everything, &settings, &work)?;
             let paper = trained.first().ok_or_else(nothing_trained)?;
@@ -114,7 +115,7 @@ impl Run {
 }
 
 fn nothing_trained() -> RunError {
-    RunError::Input("no variant was trained; `train.variants` in the settings names none".to_owned())
+    RunError::Input("no variant was trained".to_owned())
 }
 
 /// All that twins are trained with.
@@ -124,8 +125,7 @@ struct Training<'a> {
     simulation: Simulation,
     presses: Vec<PairedPress>,
     contacts: Vec<Contact>,
-    settings: TrainSettings,
-    bench: BenchSettings,
+    settings: ResolvedSettings,
     block_mm: f64,
     scale: Scale,
 }
@@ -135,18 +135,17 @@ impl<'a> Training<'a> {
         let recording = run.recording()?;
         let simulation = run.simulation(&recording)?;
         let presses = run.pairs()?;
-        let settings = run.resolved(&recording, &simulation.places);
+        let settings = run.resolved(&recording)?;
         let contacts = run.contacts(&simulation.places)?;
         let scale = Scale::of(&presses, run.left_out());
         Ok(Self {
             run,
+            block_mm: settings.split.block_mm_of(&recording)?,
             recording,
             simulation,
             presses,
             contacts,
-            settings: settings.train,
-            bench: settings.bench,
-            block_mm: settings.split.block_mm,
+            settings,
             scale,
         })
     }
@@ -160,8 +159,10 @@ impl<'a> Training<'a> {
             tables: &self.simulation.tables,
             contacts: &self.contacts,
             bench: &self.simulation.bench,
-            bench_settings: &self.bench,
-            train: &self.settings,
+            bench_settings: &self.settings.bench,
+            taxels: &self.settings.taxels,
+            train: &self.settings.train,
+            seed: self.settings.seed,
             block_mm: self.block_mm,
             scale: &self.scale,
         }
@@ -169,7 +170,9 @@ impl<'a> Training<'a> {
 
     /// Epochs of all variants, and of the chosen one once more.
     fn n_epochs(&self) -> usize {
-        self.settings.epochs * (self.settings.variants.len() + 1)
+        let TrainSettings { epochs, variants, .. } = &self.settings.train;
+        let n_variants = variants.as_ref().map_or(Variant::ALL.len(), Vec::len);
+        epochs * (n_variants + 1)
     }
 
     fn train(
@@ -189,6 +192,7 @@ impl<'a> Training<'a> {
             split,
             &self.scale,
             settings,
+            self.settings.seed,
             &mut follow,
         )?)
     }
@@ -226,7 +230,10 @@ impl<'a> Training<'a> {
                 source,
             })?,
             bench: self.simulation.bench.clone(),
-            settings: self.settings.clone(),
+            settings: TrainedWith {
+                settings: self.settings.train.clone(),
+                seed: self.settings.seed,
+            },
             provenance: self.recording.provenance,
             files: files(&self.recording),
             taught_by: split

@@ -1,6 +1,7 @@
 //! Pairs each measured frame with the simulated frame of the same instant.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 use twintac_depth_table::DepthTable;
 use twintac_recording::{Control, Press, Recording};
 
@@ -52,7 +53,17 @@ pub struct PairSettings {
     pub warp: WarpSettings,
 }
 
+impl Checked for PairSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self { warp } = self;
+        ranges.inside("warp", warp);
+    }
+}
+
 /// Pairs every press of a recording with its simulation.
+///
+/// # Errors
+/// Settings that cannot be; tables that do not go with the places; a press that contradicts itself.
 pub fn pair(
     recording: &Recording,
     places: &Places,
@@ -60,6 +71,7 @@ pub fn pair(
     bench: &BenchEstimate,
     settings: &PairSettings,
 ) -> Result<Vec<PairedPress>, DigitacError> {
+    settings.checked()?;
     let features = features(recording, places, tables, bench)?;
     recording
         .presses

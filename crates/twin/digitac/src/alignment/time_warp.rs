@@ -7,6 +7,7 @@
 //! any instant can be moved; and a warp that does not remove most of the mismatch is rejected.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 
 /// Settings of the time warp.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +31,21 @@ impl Default for WarpSettings {
             smoothing_s: 0.08,
             believed_below: 0.5,
         }
+    }
+}
+
+impl Checked for WarpSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            window_s,
+            step_cost,
+            smoothing_s,
+            believed_below,
+        } = self;
+        ranges.zero_or("window_s", *window_s, 1e-3..=10.0);
+        ranges.zero_or("step_cost", *step_cost, 1e-6..=1e3);
+        ranges.zero_or("smoothing_s", *smoothing_s, 1e-3..=10.0);
+        ranges.zero_or("believed_below", *believed_below, 1e-3..=1.0);
     }
 }
 

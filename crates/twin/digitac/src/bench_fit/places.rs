@@ -1,6 +1,7 @@
 //! Which places a recording presses, so that each is simulated once.
 
 use glam::{DQuat, DVec2};
+use twintac_config::{Checked, Ranges};
 use twintac_depth_table::{DepthTableRequest, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 use twintac_shape::Pose;
@@ -32,6 +33,17 @@ impl Default for PlaceSettings {
             margin_mm: 0.15,
             force_control_depth_mm: 3.0,
         }
+    }
+}
+
+impl Checked for PlaceSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            margin_mm,
+            force_control_depth_mm,
+        } = self;
+        ranges.number("margin_mm", *margin_mm, 0.01..=5.0);
+        ranges.number("force_control_depth_mm", *force_control_depth_mm, 0.1..=50.0);
     }
 }
 
@@ -113,6 +125,17 @@ impl Places {
         }
         self
     }
+}
+
+/// How many distinct places a recording presses.
+pub(crate) fn n_places(recording: &Recording) -> Result<usize, DigitacError> {
+    let keys = recording
+        .presses
+        .iter()
+        .map(|press| Ok(key(&press.indenter, &deepest_pose(press)?)));
+    Ok(keys
+        .collect::<Result<std::collections::BTreeSet<_>, DigitacError>>()?
+        .len())
 }
 
 /// Where the indenter is lowest; its place in the gel's plane stands for the press.

@@ -1,7 +1,7 @@
 //! The card of a model: what people should know before they use it.
 
 use super::Model;
-use crate::{Score, Variant};
+use crate::{Errors, Score, Variant};
 
 /// The card, in Markdown.
 pub(super) fn card(model: &Model) -> String {
@@ -66,9 +66,14 @@ pub(super) fn card(model: &Model) -> String {
 }
 
 fn row(name: &str, n_presses: usize, score: &Score) -> String {
-    let figures = &score.overall;
-    format!(
-        "| {name} | {n_presses} | {:.2} | {:.2} | {:.2} |\n",
-        figures.nearest_in_contact.percent, figures.all.percent, figures.peak.percent
-    )
+    let Errors {
+        nearest_in_contact,
+        all,
+        peak,
+    } = score.overall;
+    let [nearest, all, peak] = [nearest_in_contact, all, peak].map(|mean| match mean.percent {
+        Some(percent) => format!("{percent:.2}"),
+        None => "none".to_owned(),
+    });
+    format!("| {name} | {n_presses} | {nearest} | {all} | {peak} |\n")
 }

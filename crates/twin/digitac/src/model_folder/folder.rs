@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use twintac_config::Checked;
 
 use super::card::card;
 use super::{Model, ModelRecord};
@@ -60,8 +61,10 @@ impl Model {
         fs::rename(&partial, folder).map_err(|source| DigitacError::file(folder, source))
     }
 
-    /// Reads a model's folder. A file that is missing, altered, or of another version is an error that says
-    /// so.
+    /// Reads a model's folder.
+    ///
+    /// # Errors
+    /// A file that is missing, altered, or of another version; numbers that cannot be, and lists that do not go with the taxels: the file and the field are named.
     pub fn load(folder: &Path) -> Result<Self, DigitacError> {
         let path = folder.join(CHECKSUMS);
         let damaged =
@@ -89,6 +92,7 @@ impl Model {
         let path = folder.join(RECORD);
         let record: ModelRecord =
             serde_json::from_slice(&checked(RECORD)?).map_err(|e| damaged(&path, &e))?;
+        record.checked().map_err(|problem| damaged(&path, &problem))?;
         let path = folder.join(WEIGHTS);
         let weights = unpack(&checked(WEIGHTS)?).map_err(|problem| DigitacError::model(&path, problem))?;
         let start = &record.start;
@@ -99,7 +103,7 @@ impl Model {
             correction_limit: start.correction_limit,
         };
         let parameters = Parameters::with_weights(&physics, &start.hidden, &weights)
-            .map_err(|problem| DigitacError::model(&path, problem))?;
+            .map_err(|problem| damaged(&path, &problem))?;
         let twin = Twin::new(record.taxels.clone(), physics, parameters);
         Ok(Self { record, twin })
     }

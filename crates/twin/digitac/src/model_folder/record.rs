@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
 use crate::network::Normalization;
-use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainSettings, Twin, Variant};
+use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainedWith, Twin, Variant};
 
 /// A twin and its record.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct ModelRecord {
     /// Gains and memory as learned.
     pub gains: Gains,
     /// Settings of the training.
-    pub settings: TrainSettings,
+    pub settings: TrainedWith,
     /// Where the training data come from.
     pub provenance: Provenance,
     /// Files that the training presses were read from.
@@ -73,7 +73,7 @@ pub struct Origin {
     /// What was found about the bench.
     pub bench: BenchEstimate,
     /// Settings of the training.
-    pub settings: TrainSettings,
+    pub settings: TrainedWith,
     /// Where the training data come from.
     pub provenance: Provenance,
     /// Files that the training presses were read from.

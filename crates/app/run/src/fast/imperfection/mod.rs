@@ -21,7 +21,7 @@ use crate::RunError;
 use crate::characterization::Recorded;
 use crate::doubtful::left_out;
 use crate::files::write_file;
-use crate::unseen::refuse_other_taxels;
+use crate::unseen::refuse_unfit;
 
 /// What imperfections are found from. Without a model or without recordings, what they would tell is left out.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,7 @@ pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImper
     let sensor = &sources.sensor.sensor;
     let model = sources.model.map(Model::load).transpose()?;
     if let (Some(model), Some(recorded)) = (&model, sources.recorded) {
-        refuse_other_taxels(&recorded.recording, &model.record)?;
+        refuse_unfit(&recorded.recording, &model.record)?;
     }
     let casting = model.as_ref().map(|model| Casting {
         provenance: model.record.provenance,
