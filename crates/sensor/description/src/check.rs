@@ -11,6 +11,9 @@ use crate::{Indenter, Sensor};
 /// Lengths that differ by less are the same, mm.
 const TOLERANCE_MM: f64 = 1e-6;
 
+/// Most frames in a second that a sensor is read with.
+const MOST_HZ: f64 = 10_000.0;
+
 struct Checker<'a> {
     sensor: &'a Sensor,
     document: &'a Document<SensorToml>,
@@ -214,7 +217,12 @@ impl Checker<'_> {
                 return Err(self.error("readout.transfer", problem, "give one of the two"));
             }
         }
-        self.above_zero("readout.rate_hz", readout.rate_hz)
+        self.above_zero("readout.rate_hz", readout.rate_hz)?;
+        if readout.rate_hz > MOST_HZ {
+            let hint = format!("give {MOST_HZ} at most: barometers convert in milliseconds");
+            return Err(self.error("readout.rate_hz", format!("is {}", readout.rate_hz), &hint));
+        }
+        Ok(())
     }
 
     fn limits(&self) -> Checked {

@@ -26,7 +26,7 @@ impl Sensor {
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = self.write_description(&mut text);
-        text
+        visible(&text).into_owned()
     }
 
     fn mark(&self, field: &str) -> &'static str {
