@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use twintac_recording::Recording;
 
 /// A gel as coarse, presses as few and training as short as will go.
 const SETTINGS: &str = r#"
@@ -180,7 +181,11 @@ impl Files {
     /// anything is solved.
     fn locate(&self) {
         let run = self.folder.path().join("run");
-        let presses = run.join("recordings/presses.parquet");
+        // Names with letters that patterns and tables know otherwise.
+        let mut recording = Recording::read_parquet(&run.join("recordings/presses.parquet")).unwrap();
+        recording.presses.iter_mut().for_each(|press| press.name.push_str(", \"left\""));
+        let presses = self.folder.path().join("[1], presses.parquet");
+        recording.write_parquet(&presses).unwrap();
         let model = run.join("training/held-out");
         let locate = |settings: &str, indenter: &str| {
             let settings = self.write("inverse.toml", settings);
@@ -207,18 +212,19 @@ impl Files {
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{said}");
         assert!(said.contains("presses that it never saw: "), "{said}");
-        let table = String::from_utf8(output.stdout).unwrap();
-        let mut rows = table.lines();
-        let header = rows.next().unwrap();
-        assert!(
-            header.starts_with("provenance,press,taught,time_s,indenter,x_mm,y_mm,depth_mm,"),
-            "{header}"
-        );
-        let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
-        let number = |row: &str, name: &str| row.split(',').nth(column(name)).unwrap().parse::<f64>();
+        let mut table = csv::Reader::from_reader(&output.stdout[..]);
+        let header = table.headers().unwrap().clone();
+        let first = ["provenance", "press", "taught", "time_s", "indenter", "x_mm", "y_mm", "depth_mm"];
+        assert!(header.iter().take(8).eq(first), "{header:?}");
+        let column = |name: &str| header.iter().position(|column| column == name).unwrap();
+        let number = |row: &csv::StringRecord, name: &str| row[column(name)].parse::<f64>();
         let (mut places_mm, mut depths_mm) = (Vec::new(), Vec::new());
-        for row in rows.filter(|row| row.contains(",false,") && number(row, "true_depth_mm").unwrap() > 0.4) {
-            let off = |found: &str, truth: &str| number(row, found).unwrap() - number(row, truth).unwrap();
+        for row in table.records().map(Result::unwrap) {
+            assert!(row[1].ends_with(", \"left\""), "{row:?}");
+            if &row[2] == "true" || number(&row, "true_depth_mm").unwrap() <= 0.4 {
+                continue;
+            }
+            let off = |found: &str, truth: &str| number(&row, found).unwrap() - number(&row, truth).unwrap();
             places_mm.push(off("x_mm", "true_x_mm").hypot(off("y_mm", "true_y_mm")));
             depths_mm.push(off("depth_mm", "true_depth_mm").abs());
         }

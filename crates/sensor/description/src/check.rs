@@ -19,7 +19,7 @@ mod most {
     pub(super) const LENGTH_MM: f64 = 1e3;
     pub(super) const PRESSURE_KPA: f64 = 1e6;
     pub(super) const FORCE_N: f64 = 1e6;
-    pub(super) const RATE_HZ: f64 = 1e5;
+    pub(super) const RATE_HZ: f64 = 1e4;
     pub(super) const FRICTION: f64 = 10.0;
     pub(super) const PRESSURE_PA: f64 = 1e9;
 }

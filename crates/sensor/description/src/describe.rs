@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use glam::DVec3;
 use twintac_shape::{Shape, Solid};
+use twintac_text::visible;
 
 use crate::Sensor;
 
@@ -26,7 +27,7 @@ impl Sensor {
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = self.write_description(&mut text);
-        text
+        visible(&text).into_owned()
     }
 
     fn mark(&self, field: &str) -> &'static str {

@@ -239,15 +239,21 @@ impl Paper {
     }
 }
 
-/// The trials of a recording's presses, those of each shape in their order. A press that is not felt is left out.
+/// The trials of a recording's presses, those of each shape in their order. A press that is not felt is left out, and one with missing readings.
 fn trials_of(recording: &Recording, classes: &[String], sampling: Sampling) -> Vec<Trial> {
     let trial = |press: &twintac_recording::Press| {
         Some(Trial {
             class: classes.iter().position(|class| *class == press.indenter)?,
-            series: Series::of(&press.taxels_kpa, sampling)?,
+            series: Series::of(whole(press)?, sampling)?,
         })
     };
     recording.presses.iter().filter_map(trial).collect()
+}
+
+/// The readings of a press that misses none.
+fn whole(press: &twintac_recording::Press) -> Option<&[Vec<f64>]> {
+    let is_whole = press.taxels_kpa.iter().flatten().all(|kpa| kpa.is_finite());
+    is_whole.then_some(&press.taxels_kpa)
 }
 
 fn results(jobs: &[Job], confusions: Vec<Confusion>) -> Vec<ShapesResult> {

@@ -103,7 +103,7 @@ impl DashboardState {
     /// [`LiveError::Map`].
     pub fn refresh(&mut self) -> Result<(), LiveError> {
         let above_kpa = self.above_kpa();
-        let field: Vec<f64> = above_kpa.iter().map(|above| above.unwrap_or(0.0)).collect();
+        let field: Vec<f64> = above_kpa.iter().map(|above| above.unwrap_or(f64::NAN)).collect();
         let strength_kpa = field.iter().copied().fold(0.0, f64::max);
         let is_whole = above_kpa.iter().all(Option::is_some);
         if is_whole && strength_kpa > WEAK_KPA.max(STRONGER * self.strongest_kpa) {

@@ -25,7 +25,8 @@ pub struct PairedPress {
     pub features: Features,
     /// Measured force, N; `[n_frames]`, if there was one.
     pub measured_force_n: Option<Vec<f64>>,
-    /// Readings above the unloaded baseline, on the recording's own clock, kPa; `[n_frames][n_taxels]`.
+    /// Readings above the unloaded baseline, on the recording's own clock, kPa, NaN where one is missing; `[n_frames][n_taxels]`.
+    #[serde(deserialize_with = "twintac_recording::null_as_nan")]
     pub readings_kpa: Vec<Vec<f64>>,
     /// Whether the reading is usable; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,

@@ -123,8 +123,7 @@ impl Warp {
         self.measured_index
             .iter()
             .map(|&index| {
-                let (i, fraction) = split(index, rows.len());
-                let next = (i + 1).min(rows.len() - 1);
+                let ([i, next], fraction) = split(index, rows.len());
                 rows[i]
                     .iter()
                     .zip(&rows[next])
@@ -140,26 +139,23 @@ impl Warp {
         self.measured_index
             .iter()
             .map(|&index| {
-                let (i, fraction) = split(index, rows.len());
-                let next = if fraction > 0.0 {
-                    (i + 1).min(rows.len() - 1)
-                } else {
-                    i
-                };
+                let ([i, next], _) = split(index, rows.len());
                 rows[i].iter().zip(&rows[next]).map(|(a, b)| *a && *b).collect()
             })
             .collect()
     }
 }
 
-fn split(index: f64, n: usize) -> (usize, f64) {
+/// The two rows around an index and the part of the way from the first to the second. At a row itself both are that one: the next may be missing.
+fn split(index: f64, n: usize) -> ([usize; 2], f64) {
     let i = (index.floor() as usize).min(n - 1);
-    (i, index - i as f64)
+    let fraction = index - i as f64;
+    let next = if fraction > 0.0 { (i + 1).min(n - 1) } else { i };
+    ([i, next], fraction)
 }
 
 fn interpolate(values: &[f64], index: f64) -> f64 {
-    let (i, fraction) = split(index, values.len());
-    let next = (i + 1).min(values.len() - 1);
+    let ([i, next], fraction) = split(index, values.len());
     values[i] + fraction * (values[next] - values[i])
 }
 

@@ -1,5 +1,7 @@
 //! The card of a model: what people should know before they use it.
 
+use twintac_text::markdown;
+
 use super::Model;
 use crate::{Errors, Score, Variant};
 
@@ -41,13 +43,13 @@ pub(super) fn card(model: &Model) -> String {
          height says. Beyond the depths that taught it nothing was checked.\n",
         record.variant,
         split.train.len(),
-        record.files.join(", "),
-        record.taxels.join(", "),
+        markdown(&record.files.join(", ")),
+        markdown(&record.taxels.join(", ")),
         validation,
         record.validation.definition,
     );
     if !bench.doubts.is_empty() {
-        let doubts = bench.doubts.iter().map(|doubt| format!("- {doubt}\n"));
+        let doubts = bench.doubts.iter().map(|doubt| format!("- {}\n", markdown(doubt)));
         text.push_str(&format!("\nDoubts of the fit:\n\n{}", doubts.collect::<String>()));
     }
     text.push_str(
