@@ -154,10 +154,13 @@ impl Shape {
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None, scale=None))]
     fn stl(py: Python<'_>, path: PathBuf, unit: Option<&str>, scale: Option<f64>) -> PyResult<Self> {
-        let unit = unit.map(str::parse::<LengthUnit>).transpose();
+        let named = |unit: &str| {
+            let known = unit.parse::<LengthUnit>();
+            known.map_err(|problem| unusable(py, "unit", &format!("is `{unit}`, {problem}")))
+        };
         let file = SurfaceFile {
             path: path.display().to_string(),
-            unit: unit.map_err(|problem| unusable(py, "unit", &format!("is {problem}")))?,
+            unit: unit.map(named).transpose()?,
             scale,
         };
         file.validate().or_raise(py)?;

@@ -283,7 +283,7 @@ def test_a_surface_presses_as_the_box_that_it_is(tmp_path: Path) -> None:
         Shape.stl(tmp_path / "box.stl", scale=1e-3)
     with pytest.raises(Error, match="8000 × 8000 × 8000 mm large"):
         Shape.stl(tmp_path / "box.stl", unit="m")
-    with pytest.raises(Error, match="`feet` is no unit, expected one of mm, cm, m, inch"):
+    with pytest.raises(Error, match="`unit` is `feet`, expected one of mm, cm, m, inch"):
         Shape.stl(tmp_path / "box.stl", unit="feet")
     with pytest.raises(Error, match="one of the two"):
         Shape.stl(tmp_path / "box.stl", unit="m", scale=2.0)
