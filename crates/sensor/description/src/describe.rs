@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use glam::DVec3;
 use twintac_shape::{Shape, Solid};
+use twintac_text::visible;
 
 use crate::Sensor;
 
