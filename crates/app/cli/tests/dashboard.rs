@@ -17,7 +17,11 @@ fn ended_by(signal: &str) -> String {
         log.display()
     );
     let mut terminal = Command::new("script"); // of util-linux: runs a command in a terminal of its own
-    terminal.args(["-qefc", &line]).arg(&log).stdin(Stdio::null()).stdout(Stdio::null());
+    terminal
+        .args(["-qefc", &line])
+        .arg(&log)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null());
     terminal.status().unwrap();
     String::from_utf8_lossy(&std::fs::read(&log).unwrap()).into_owned()
 }

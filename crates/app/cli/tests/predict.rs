@@ -183,7 +183,10 @@ impl Files {
         let run = self.folder.path().join("run");
         // Names with letters that patterns and tables know otherwise.
         let mut recording = Recording::read_parquet(&run.join("recordings/presses.parquet")).unwrap();
-        recording.presses.iter_mut().for_each(|press| press.name.push_str(", \"left\""));
+        recording
+            .presses
+            .iter_mut()
+            .for_each(|press| press.name.push_str(", \"left\""));
         let presses = self.folder.path().join("[1], presses.parquet");
         recording.write_parquet(&presses).unwrap();
         let model = run.join("training/held-out");
@@ -214,7 +217,16 @@ impl Files {
         assert!(said.contains("presses that it never saw: "), "{said}");
         let mut table = csv::Reader::from_reader(&output.stdout[..]);
         let header = table.headers().unwrap().clone();
-        let first = ["provenance", "press", "taught", "time_s", "indenter", "x_mm", "y_mm", "depth_mm"];
+        let first = [
+            "provenance",
+            "press",
+            "taught",
+            "time_s",
+            "indenter",
+            "x_mm",
+            "y_mm",
+            "depth_mm",
+        ];
         assert!(header.iter().take(8).eq(first), "{header:?}");
         let column = |name: &str| header.iter().position(|column| column == name).unwrap();
         let number = |row: &csv::StringRecord, name: &str| row[column(name)].parse::<f64>();

@@ -154,7 +154,9 @@ impl Log {
                 Body::Tactile(frame) if begun_ns.is_none() => {
                     for (course, taxel) in unloaded.iter_mut().zip(&frame.taxels) {
                         let reading = taxel.temperature_c.zip(taxel.pressure_pa);
-                        let is_good = |(c, pa): &(f64, f64)| taxel.state == TaxelState::Good && c.is_finite() && pa.is_finite();
+                        let is_good = |(c, pa): &(f64, f64)| {
+                            taxel.state == TaxelState::Good && c.is_finite() && pa.is_finite()
+                        };
                         let good = reading.filter(is_good);
                         course.readings.extend(good.map(|(c, pa)| [c, pa / 1000.0]));
                     }

@@ -103,7 +103,9 @@ pub fn export_lerobot(
     if let Some(dataset) = beside.filter(|beside| beside.exists()) {
         let text = read_text(&dataset)?;
         let text = fenced("toml", &text);
-        how_made.push_str(&format!("\nThe presses were simulated by `twintac dataset`:\n\n{text}"));
+        how_made.push_str(&format!(
+            "\nThe presses were simulated by `twintac dataset`:\n\n{text}"
+        ));
     }
     Ok(recording.write_lerobot(folder, &how_made)?)
 }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Event, Stream};
 use crate::mcap::Statistics;
 use crate::ros::stream_of;
+use crate::{Event, Stream};
 
 /// Why messages are missing that were written.
 pub(crate) const DAMAGED: &str = "the file is damaged";
@@ -70,7 +70,9 @@ impl Channels {
     pub(crate) fn gaps_at_end(&self, statistics: &Statistics, to_ns: u64) -> Vec<Event> {
         let gap = |(id, channel): (&u16, &Channel)| {
             let count = statistics.counts.get(id).copied().unwrap_or(0);
-            let missing = count.checked_sub(channel.accounted).filter(|missing| *missing > 0)?;
+            let missing = count
+                .checked_sub(channel.accounted)
+                .filter(|missing| *missing > 0)?;
             Some(Event::Gap {
                 stream: Some(channel.stream),
                 cause: DAMAGED.to_owned(),

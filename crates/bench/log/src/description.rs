@@ -113,7 +113,10 @@ impl Description {
             return Err(format!("its log version is {version}, expected {VERSION}"));
         }
         // Older logs have none.
-        if map.get(CHECKSUM).is_some_and(|written| *written != checksum(map).to_string()) {
+        if map
+            .get(CHECKSUM)
+            .is_some_and(|written| *written != checksum(map).to_string())
+        {
             return Err("its description is damaged: its checksum does not match".to_owned());
         }
         let mut fields = serde_json::Map::new();

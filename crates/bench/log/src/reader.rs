@@ -5,8 +5,8 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use crate::mcap::{Found, Scanner};
 use crate::channels::{Channels, DAMAGED};
+use crate::mcap::{Found, Scanner};
 use crate::ros::decode;
 use crate::writer::DESCRIPTION;
 use crate::{Body, Description, Event, LogError, Message, Stream};
@@ -165,7 +165,8 @@ impl<R: Read> LogReader<R> {
                 self.hold(gap);
             }
         }
-        let is_whole = !self.scanner.is_altered() && !self.is_damaged && !self.was_damaged && self.held.is_empty();
+        let is_whole =
+            !self.scanner.is_altered() && !self.is_damaged && !self.was_damaged && self.held.is_empty();
         self.ending = Some(if is_whole { Ending::Whole } else { Ending::Damaged });
     }
 

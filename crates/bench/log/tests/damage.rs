@@ -308,7 +308,10 @@ fn lengths_that_are_lies_cost_no_memory() {
 fn is_said(lost: &Message, back: &[Message], ending: Ending) -> bool {
     let is_in_gap = |message: &Message| {
         let Body::Event(Event::Gap {
-            stream, from_ns, to_ns, ..
+            stream,
+            from_ns,
+            to_ns,
+            ..
         }) = &message.body
         else {
             return false;
@@ -336,9 +339,15 @@ fn every_flipped_bit_is_said_and_what_it_loses_has_its_gap() {
         let ending = reader.ending().unwrap();
         assert_ne!(ending, Ending::Whole, "bit {bit} of byte {}", bit / 8);
         endings[1 + usize::from(ending == Ending::Cut)] += 1;
-        let lost: Vec<&Message> = messages.iter().filter(|message| !back.contains(message)).collect();
+        let lost: Vec<&Message> = messages
+            .iter()
+            .filter(|message| !back.contains(message))
+            .collect();
         for message in &lost {
-            assert!(is_said(message, &back, ending), "bit {bit}: {message:?} is lost without a word: {back:?}");
+            assert!(
+                is_said(message, &back, ending),
+                "bit {bit}: {message:?} is lost without a word: {back:?}"
+            );
         }
         if ending == Ending::Damaged {
             most_lost = most_lost.max(lost.len());
@@ -349,10 +358,16 @@ fn every_flipped_bit_is_said_and_what_it_loses_has_its_gap() {
         assert_eq!(back.iter().find(strange), None, "bit {bit}");
         // Presses cannot be read where all poses are gone, and that is said too.
         let read = presses(reader_of(&bytes), "flipped", &Default::default());
-        assert!(read.is_err() || read.is_ok_and(|read| !read.remarks.is_empty()), "bit {bit}");
+        assert!(
+            read.is_err() || read.is_ok_and(|read| !read.remarks.is_empty()),
+            "bit {bit}"
+        );
     }
     let [refused, damaged, cut, _] = endings;
-    assert!(damaged > 10 * cut, "{refused} refused, {damaged} damaged, {cut} cut");
+    assert!(
+        damaged > 10 * cut,
+        "{refused} refused, {damaged} damaged, {cut} cut"
+    );
     assert!(most_lost < messages.len(), "{most_lost} of {}", messages.len());
 }
 
@@ -366,7 +381,12 @@ fn a_chunk_that_is_taken_for_something_else_leaves_a_gap() {
     let whole = log(&description(2), &messages);
     let chunks = chunks(&whole);
     for (number, place) in chunks.iter().enumerate() {
-        for (what, at, flip) in [("kind", 0, 0x40), ("kind", 0, 1), ("length", 2, 0x10), ("length", 4, 1)] {
+        for (what, at, flip) in [
+            ("kind", 0, 0x40),
+            ("kind", 0, 1),
+            ("length", 2, 0x10),
+            ("length", 4, 1),
+        ] {
             let mut bytes = whole.clone();
             bytes[place + at] ^= flip;
             let mut reader = reader(&bytes);
@@ -375,13 +395,24 @@ fn a_chunk_that_is_taken_for_something_else_leaves_a_gap() {
             assert_eq!(reader.ending(), Some(Ending::Damaged), "{place}");
             let lost = messages.iter().filter(|message| !back.contains(message));
             let lost: Vec<&Message> = lost.collect();
-            assert!(lost.iter().all(|message| is_said(message, &back, Ending::Damaged)), "{place}");
-            assert!(lost.len() * (chunks.len() - 2) < messages.len(), "{place}: one chunk, {}", lost.len());
+            assert!(
+                lost.iter()
+                    .all(|message| is_said(message, &back, Ending::Damaged)),
+                "{place}"
+            );
+            assert!(
+                lost.len() * (chunks.len() - 2) < messages.len(),
+                "{place}: one chunk, {}",
+                lost.len()
+            );
         }
     }
     // The table of frames counts the gap, also of the last chunk.
     let folder = tempfile::tempdir().unwrap();
-    let (path, table) = (folder.path().join("damaged.mcap"), folder.path().join("frames.parquet"));
+    let (path, table) = (
+        folder.path().join("damaged.mcap"),
+        folder.path().join("frames.parquet"),
+    );
     let mut bytes = whole.clone();
     bytes[chunks[chunks.len() - 1]] ^= 0x40;
     std::fs::write(&path, bytes).unwrap();

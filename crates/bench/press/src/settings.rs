@@ -185,11 +185,21 @@ mod tests {
             wrong("servo_period_s = 0.008", "servo_period_s = 0.5"),
             "servo_period_s"
         );
-        for (field, value) in [("tare_s", "1e9"), ("touch_window_s", "inf"), ("frame_gap_s", "nan")] {
-            let line = text.lines().find(|line| line.starts_with(&format!("{field} = "))).unwrap();
+        for (field, value) in [
+            ("tare_s", "1e9"),
+            ("touch_window_s", "inf"),
+            ("frame_gap_s", "nan"),
+        ] {
+            let line = text
+                .lines()
+                .find(|line| line.starts_with(&format!("{field} = ")))
+                .unwrap();
             assert_eq!(wrong(line, &format!("{field} = {value}")), field);
         }
-        let line = text.lines().find(|line| line.starts_with("conversion_us = ")).unwrap();
+        let line = text
+            .lines()
+            .find(|line| line.starts_with("conversion_us = "))
+            .unwrap();
         assert_eq!(wrong(line, "conversion_us = 4294967295"), "conversion_us");
         assert_eq!(
             wrong("force_axis = [0.0, 0.0, -1.0]", "force_axis = [0.0, 0.0, -2.0]"),

@@ -51,7 +51,10 @@ pub(crate) fn conditions(recording: &Recording) -> Vec<Condition> {
     let taxels = recording.taxels.iter().enumerate();
     taxels
         .map(|(taxel, name)| {
-            let frames = recording.presses.iter().flat_map(|press| press.valid.iter().zip(&press.taxels_raw));
+            let frames = recording
+                .presses
+                .iter()
+                .flat_map(|press| press.valid.iter().zip(&press.taxels_raw));
             let (mut n_frames, mut n_valid, mut given) = (0, 0, Vec::new());
             for (valid, raw) in frames {
                 n_frames += 1;

@@ -93,7 +93,11 @@ mod tests {
         let found = finding.found().unwrap();
         assert_eq!(found.pressed, ["a"]);
         let percent = found.percent[0].iter().map(|percent| percent.unwrap());
-        assert!(percent.zip([100.0, 25.0]).all(|(found, known)| (found - known).abs() < 1e-9));
+        assert!(
+            percent
+                .zip([100.0, 25.0])
+                .all(|(found, known)| (found - known).abs() < 1e-9)
+        );
         assert!((found.largest_percent - 25.0).abs() < 1e-9);
     }
 
@@ -106,7 +110,10 @@ mod tests {
             cross_talk(&all(presses), &names, &CharacterizeOptions::default())
         };
         let both = talk(&[press(&Shape::default()), silent.clone()]);
-        assert!((both.found().unwrap().largest_percent - 25.0).abs() < 1e-9, "{both:?}");
+        assert!(
+            (both.found().unwrap().largest_percent - 25.0).abs() < 1e-9,
+            "{both:?}"
+        );
         assert!(talk(&[silent]).why_not().unwrap().contains("reads meanwhile"));
     }
 }

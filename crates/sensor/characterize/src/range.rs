@@ -35,8 +35,9 @@ pub(crate) fn covered(
         n_invalid += invalid.filter(|valid| !**valid).count();
         // A taxel that gave nothing says nothing of the range; one whose reading cannot be used is at its end.
         let is_there = |frame: usize, taxel: usize| !press.press.taxels_raw[frame][taxel].is_nan();
-        let is_in_range =
-            |frame: &usize| (0..taxels.len()).all(|taxel| press.press.valid[*frame][taxel] || !is_there(*frame, taxel));
+        let is_in_range = |frame: &usize| {
+            (0..taxels.len()).all(|taxel| press.press.valid[*frame][taxel] || !is_there(*frame, taxel))
+        };
         for frame in frames.filter(is_in_range) {
             let readings_kpa = &press.press.taxels_kpa[frame];
             let force_n = press.force_n(frame);
@@ -93,7 +94,12 @@ mod tests {
             valid[0] = *force_n < 5.0;
         }
         // A taxel that gives nothing at all does not end the range.
-        for (taxels, valid) in saturated.taxels_kpa.iter_mut().zip(&mut saturated.taxels_raw).zip(&mut saturated.valid) {
+        for (taxels, valid) in saturated
+            .taxels_kpa
+            .iter_mut()
+            .zip(&mut saturated.taxels_raw)
+            .zip(&mut saturated.valid)
+        {
             (taxels.0[1], taxels.1[1], valid[1]) = (f64::NAN, f64::NAN, false);
         }
         let presses = [press(&Shape::default()), saturated];

@@ -318,7 +318,12 @@ fn a_shorted_taxel_is_found_and_left_out() {
 }
 
 /// Frames for so long, with the switch's RESET after each error: when the taxel has a value again, ms, and how many frames were lost.
-fn frames_for<C: Fn() -> u64>(bench: &Bench, sensor: &mut Sensor<C>, taxel: usize, seconds: u64) -> (Option<u64>, usize) {
+fn frames_for<C: Fn() -> u64>(
+    bench: &Bench,
+    sensor: &mut Sensor<C>,
+    taxel: usize,
+    seconds: u64,
+) -> (Option<u64>, usize) {
     let start_ns = bench.with(|world| world.now_ns);
     let (mut back_ms, mut lost) = (None, 0);
     while bench.with(|world| world.now_ns) < start_ns + seconds * 1_000_000_000 {
@@ -348,7 +353,10 @@ fn a_taxel_whose_short_has_passed_takes_part_again() {
         frame_with_resets(&bench, &mut sensor);
         bench.with(|world| world.parts[shorted].is_shorted = false);
         let (back_ms, lost) = frames_for(&bench, &mut sensor, shorted, 3);
-        assert!(back_ms.is_some_and(|ms| (900..1100).contains(&ms)), "taxel {shorted}: {back_ms:?}");
+        assert!(
+            back_ms.is_some_and(|ms| (900..1100).contains(&ms)),
+            "taxel {shorted}: {back_ms:?}"
+        );
         assert_eq!(lost, 0);
         assert!(is_complete(&next_frame(&bench, &mut sensor)));
     }

@@ -174,7 +174,11 @@ impl PressPath {
             if farthest_mm > FARTHEST_MM {
                 let field = format!("poses[{index}].position_mm");
                 let hint = format!("give places within {FARTHEST_MM} mm of the gel's origin");
-                return Err(PathError::new(&field, &format!("is {farthest_mm} mm away"), &hint));
+                return Err(PathError::new(
+                    &field,
+                    &format!("is {farthest_mm} mm away"),
+                    &hint,
+                ));
             }
         }
         for (index, pair) in self.poses.windows(2).enumerate() {
@@ -335,10 +339,26 @@ points = [{ name = "below", position_mm = [0.0, 0.0, 0.0], radius_mm = 1.0 }]
             ("rate_hz = 4.0", "rate_hz = 0.0", "path.toml:5: `rate_hz`"),
             ("rate_hz = 4.0", "rate_hz = 1e9", "path.toml:5: `rate_hz`"),
             ("rate_hz = 4.0", "rate_hz = nan", "path.toml:5: `rate_hz`"),
-            ("rate_hz = 4.0", "force_travel_mm = nan", "path.toml:5: `force_travel_mm`"),
-            ("rate_hz = 4.0", "force_direction = [nan, 0.0, 1.0]", "path.toml:5: `force_direction`"),
-            ("[1.0, 0.0, -2.0]", "[1.0, 0.0, -1e300]", "path.toml:9: `poses[2].position_mm`"),
-            ("radius_mm = 1.0", "radius_mm = inf", "path.toml:11: `points[0].radius_mm`"),
+            (
+                "rate_hz = 4.0",
+                "force_travel_mm = nan",
+                "path.toml:5: `force_travel_mm`",
+            ),
+            (
+                "rate_hz = 4.0",
+                "force_direction = [nan, 0.0, 1.0]",
+                "path.toml:5: `force_direction`",
+            ),
+            (
+                "[1.0, 0.0, -2.0]",
+                "[1.0, 0.0, -1e300]",
+                "path.toml:9: `poses[2].position_mm`",
+            ),
+            (
+                "radius_mm = 1.0",
+                "radius_mm = inf",
+                "path.toml:11: `points[0].radius_mm`",
+            ),
             (
                 "rate_hz = 4.0",
                 "force_direction = [0.0, 0.0, 0.0]",

@@ -304,7 +304,10 @@ mod tests {
     fn numbers_that_would_fill_the_memory_and_names_that_leave_the_folder_are_refused() {
         let set = |text: &str, field: &str, value: &str| {
             let is_field = |line: &&str| line.trim_start().starts_with(&format!("{field} = "));
-            let line = text.lines().find(is_field).unwrap_or_else(|| panic!("no {field}"));
+            let line = text
+                .lines()
+                .find(is_field)
+                .unwrap_or_else(|| panic!("no {field}"));
             Protocol::parse("p.toml", &text.replacen(line, &format!("{field} = {value}"), 1)).unwrap_err()
         };
         for (field, value) in [
@@ -320,18 +323,25 @@ mod tests {
             assert_eq!(set(DEMO, field, value).field, field, "{value}");
         }
         let slow = set(DEMO, "speed_mm_per_s", "0.001").to_string();
-        assert!(slow.contains("`speed_mm_per_s` is 0.001, so that the way down takes"), "{slow}");
+        assert!(
+            slow.contains("`speed_mm_per_s` is 0.001, so that the way down takes"),
+            "{slow}"
+        );
         let far = DEMO.replace("x_mm = [-9.0, 9.0]", "x_mm = [-1e300, 9.0]");
         assert_eq!(Protocol::parse("p.toml", &far).unwrap_err().field, "places.x_mm");
         for name in ["../../../escaped/x", "/tmp/x", "a/b", "..", "a\\u001b", " "] {
             let text = format!("name = \"{name}\"\n{DEMO}");
-            assert_eq!(Protocol::parse("p.toml", &text).unwrap_err().field, "name", "{name}");
+            assert_eq!(
+                Protocol::parse("p.toml", &text).unwrap_err().field,
+                "name",
+                "{name}"
+            );
         }
         for (field, value) in [("force_n", "1e9"), ("rest_s", "1e9"), ("rest_s", "nan")] {
             let from = CHARACTERIZE.find("[[loads]]").unwrap();
             let text = format!("summary = \"weights\"\n{}", &CHARACTERIZE[from..]);
             let error = set(&text, field, value).to_string();
-            assert!(error.contains(&format!("`loads[0].{field}`")) , "{error}");
+            assert!(error.contains(&format!("`loads[0].{field}`")), "{error}");
         }
     }
 

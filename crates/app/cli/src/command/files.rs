@@ -14,7 +14,9 @@ pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
             continue;
         }
         let found = glob::glob(&of_names(pattern)).with_context(|| {
-            format!("`{pattern}` is not there, and is no pattern of files; in a pattern, `[[]` stands for `[`")
+            format!(
+                "`{pattern}` is not there, and is no pattern of files; in a pattern, `[[]` stands for `[`"
+            )
         })?;
         let before = files.len();
         for file in found {
@@ -60,7 +62,13 @@ mod tests {
     #[test]
     fn names_stand_for_themselves_and_patterns_for_what_matches() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["[a]/x.parquet", "[a]/y[1].parquet", "[a]/[", "a/x.parquet", "a/*.parquet"] {
+        for name in [
+            "[a]/x.parquet",
+            "[a]/y[1].parquet",
+            "[a]/[",
+            "a/x.parquet",
+            "a/*.parquet",
+        ] {
             let path = folder.path().join(name);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, "").unwrap();
@@ -74,8 +82,15 @@ mod tests {
         assert_eq!(found("[a]/x.parquet").unwrap(), ["[a]/x.parquet"]);
         assert_eq!(found("[a]/y[1].parquet").unwrap(), ["[a]/y[1].parquet"]);
         assert_eq!(found("[a]/[").unwrap(), ["[a]/["]);
-        assert_eq!(found("[a]/*.parquet").unwrap(), ["[a]/x.parquet", "[a]/y[1].parquet"]);
-        assert_eq!(found("a/*.parquet").unwrap(), ["a/*.parquet"], "one of this name is there");
+        assert_eq!(
+            found("[a]/*.parquet").unwrap(),
+            ["[a]/x.parquet", "[a]/y[1].parquet"]
+        );
+        assert_eq!(
+            found("a/*.parquet").unwrap(),
+            ["a/*.parquet"],
+            "one of this name is there"
+        );
         assert_eq!(found("a/*[.]parquet").unwrap(), ["a/*.parquet", "a/x.parquet"]);
         assert_eq!(found("?/x.parquet").unwrap(), ["a/x.parquet"]);
         assert!(found("a/[").unwrap_err().contains("`[[]` stands for `[`"));

@@ -36,7 +36,14 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> 
 /// Columns with their units, and rows.
 fn table(followed: &Followed) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 8] = [
-        "provenance", "time_s", "x_mm", "y_mm", "z_mm", "force_x_n", "force_y_n", "force_z_n",
+        "provenance",
+        "time_s",
+        "x_mm",
+        "y_mm",
+        "z_mm",
+        "force_x_n",
+        "force_y_n",
+        "force_z_n",
     ];
     let names = followed.frames.first().map(|frame| frame.pressure_kpa.keys());
     let mut head = HEAD.map(str::to_owned).to_vec();

@@ -35,7 +35,16 @@ pub(crate) fn run(arguments: &Predict) -> Result<()> {
 /// Columns with their units, and rows. A twin that knows how sure it is has the bounds of the 90 % intervals after the readings, and whether the contact
 /// is unlike what taught.
 fn table(predicted: &Predicted) -> Vec<Vec<String>> {
-    let columns = ["provenance", "press", "indenter", "time_s", "x_mm", "y_mm", "depth_mm", "force_n"];
+    let columns = [
+        "provenance",
+        "press",
+        "indenter",
+        "time_s",
+        "x_mm",
+        "y_mm",
+        "depth_mm",
+        "force_n",
+    ];
     let mut head: Vec<String> = columns.map(str::to_owned).to_vec();
     head.extend(predicted.taxels.iter().map(|taxel| format!("{taxel}_kpa")));
     let is_sure = predicted.presses.iter().all(|press| press.certainty.is_some());

@@ -206,7 +206,11 @@ impl<R: Read> Scanner<R> {
         }
         self.buffer.clear();
         self.read(MAGIC.len() as u64)?;
-        Ok(Some(if self.buffer == MAGIC { Found::End } else { Found::Cut }))
+        Ok(Some(if self.buffer == MAGIC {
+            Found::End
+        } else {
+            Found::Cut
+        }))
     }
 
     /// Appends bytes to the buffer, which grows with those that come; false if they end before.
@@ -301,7 +305,8 @@ fn is_plausible(bytes: &[u8]) -> bool {
 
 /// How long a chunk is, by what stands in it.
 fn chunk_bytes(mut chunk: Take<'_>) -> Option<u64> {
-    let (_earliest_ns, _latest_ns, _length, _checksum) = (chunk.u64()?, chunk.u64()?, chunk.u64()?, chunk.u32()?);
+    let (_earliest_ns, _latest_ns, _length, _checksum) =
+        (chunk.u64()?, chunk.u64()?, chunk.u64()?, chunk.u32()?);
     let compression = chunk.string()?;
     chunk.u64()?.checked_add(40 + compression.len() as u64)
 }
@@ -319,7 +324,8 @@ fn differs(written: Option<u32>, found: u32) -> bool {
 
 fn take_statistics(mut content: Take<'_>) -> Option<Statistics> {
     let (_messages, _schemas) = (content.u64()?, content.u16()?);
-    let (_channels, _attachments, _metadata, _chunks) = (content.u32()?, content.u32()?, content.u32()?, content.u32()?);
+    let (_channels, _attachments, _metadata, _chunks) =
+        (content.u32()?, content.u32()?, content.u32()?, content.u32()?);
     let (_first_ns, last_ns) = (content.u64()?, content.u64()?);
     let length = content.u32()?;
     let mut pairs = Take(content.bytes(length.into())?);

@@ -104,13 +104,21 @@ mod tests {
             let mut source = Source::new(&bytes[..]);
             let mut seen = Vec::new();
             source.read(place.min(3) as u64, &mut seen).unwrap();
-            assert!(source.go_to(seen, 4, |bytes| bytes.starts_with(&[9, 8, 7, 6])).unwrap());
+            assert!(
+                source
+                    .go_to(seen, 4, |bytes| bytes.starts_with(&[9, 8, 7, 6]))
+                    .unwrap()
+            );
             let mut next = Vec::new();
             assert!(source.read(6, &mut next).unwrap());
             assert_eq!(next, [9, 8, 7, 6, 1, 1], "{place}");
             assert!(source.skip(300_000 - place as u64 - 6).unwrap());
             assert!(!source.skip(1).unwrap());
         }
-        assert!(!Source::new(&[1; 9][..]).go_to(Vec::new(), 4, |bytes| bytes[0] == 9).unwrap());
+        assert!(
+            !Source::new(&[1; 9][..])
+                .go_to(Vec::new(), 4, |bytes| bytes[0] == 9)
+                .unwrap()
+        );
     }
 }

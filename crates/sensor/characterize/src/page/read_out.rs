@@ -6,7 +6,12 @@ use crate::{Characterization, Fate};
 /// Name, value and condition of each figure.
 pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
     let silent = found.conditions.iter().filter(|taxel| taxel.n_missing > 0);
-    let silent = silent.map(|taxel| format!("{} in {} of {} frames", taxel.taxel, taxel.n_missing, taxel.n_frames));
+    let silent = silent.map(|taxel| {
+        format!(
+            "{} in {} of {} frames",
+            taxel.taxel, taxel.n_missing, taxel.n_frames
+        )
+    });
     let silent: Vec<String> = silent.collect();
     let with = |fate: Fate| found.conditions.iter().filter(|taxel| taxel.fate == fate).count();
     vec![
@@ -39,7 +44,11 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
             ),
             match silent.is_empty() {
                 true => format!("of {}", found.conditions.len()),
-                false => format!("of {}; nothing came of {}", found.conditions.len(), silent.join(", ")),
+                false => format!(
+                    "of {}; nothing came of {}",
+                    found.conditions.len(),
+                    silent.join(", ")
+                ),
             },
         ),
     ]

@@ -100,9 +100,15 @@ impl FrameTable {
             })
         };
         if cells.len() != self.cells.len() {
-            return wrong(format!("expected {} taxels, found {}", self.cells.len(), cells.len()));
+            return wrong(format!(
+                "expected {} taxels, found {}",
+                self.cells.len(),
+                cells.len()
+            ));
         }
-        let numbers = cells.iter().flat_map(|cell| [cell.absolute_kpa, cell.temperature_c]);
+        let numbers = cells
+            .iter()
+            .flat_map(|cell| [cell.absolute_kpa, cell.temperature_c]);
         if !numbers.flatten().chain([time_s]).all(f64::is_finite) {
             return wrong("a number is not finite".to_owned());
         }
@@ -201,7 +207,10 @@ mod tests {
             absolute_kpa: Some(kpa),
             ..TaxelCell::default()
         };
-        let error = table.push(0.0, false, [cell(1.0), cell(2.0)]).unwrap_err().to_string();
+        let error = table
+            .push(0.0, false, [cell(1.0), cell(2.0)])
+            .unwrap_err()
+            .to_string();
         assert_eq!(error, "frame 0: expected 1 taxels, found 2");
         assert!(table.push(0.0, false, []).is_err());
         assert!(table.push(0.0, false, [cell(f64::INFINITY)]).is_err());

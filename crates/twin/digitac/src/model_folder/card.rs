@@ -49,7 +49,10 @@ pub(super) fn card(model: &Model) -> String {
         record.validation.definition,
     );
     if !bench.doubts.is_empty() {
-        let doubts = bench.doubts.iter().map(|doubt| format!("- {}\n", markdown(doubt)));
+        let doubts = bench
+            .doubts
+            .iter()
+            .map(|doubt| format!("- {}\n", markdown(doubt)));
         text.push_str(&format!("\nDoubts of the fit:\n\n{}", doubts.collect::<String>()));
     }
     text.push_str(
