@@ -259,7 +259,7 @@ def test_one_body_twice_is_two_things() -> None:
     expected = FastGel.phystac().batch([box]).read(places, [0, 0], [2])[1]
     for order in ([0, 1], [1, 0], [0, 1]):
         wrench = sensors.step(0.01, places[order], [0, 0], [2], touch_id=order)[1]
-        assert wrench[0] == pytest.approx(expected[0], abs=5e-3)
+        assert wrench[0, :3] == pytest.approx(expected[0, :3], abs=5e-3) and wrench[0, 2] < -0.05
         left, right = sensors.wrench_of_touches()[order]
         assert left[2] == pytest.approx(right[2], abs=5e-3) and left[0] == pytest.approx(-right[0], abs=5e-3)
 
