@@ -66,7 +66,7 @@ mod _twintac {
     #[pymodule_export]
     use crate::sensor::Sensor;
     #[pymodule_export]
-    use crate::sensors::{Coupling, Imperfection, SensorBatch};
+    use crate::sensors::{Coupling, Imperfection, SensorBatch, SensorState};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
     #[pymodule_export]

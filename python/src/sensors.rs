@@ -13,8 +13,12 @@ use crate::fast::{Answers, FastGel, PROVENANCE, n_cores};
 use crate::sensor::Sensor;
 use crate::settings::{as_toml, refused};
 use crate::shape::Body;
-use crate::touches::{Counts, Touches, bodies};
+use crate::touches::{Counts, Touches, bodies, touch_ids};
 use crate::twin::Twin;
+
+/// Why a coupling needs to know what is what.
+const NO_TOUCH_ID: &str = "is missing: sensors with a `coupling` remember each thing that touches them. Give an integer for each touch, the same as long as it is the same thing; \
+    `touch_id=body` where each body is one thing";
 
 /// The table of a file in which imperfections stand.
 const TABLE: &str = "imperfection";
@@ -83,6 +87,7 @@ impl Imperfection {
 #[derive(Clone)]
 pub(crate) struct Coupling {
     coupling: twintac::Coupling,
+    sensor: twintac::Sensor,
 }
 
 #[pymethods]
@@ -98,6 +103,7 @@ impl Coupling {
                 friction: crate::friction::friction(py, sensor, ("friction", friction))?,
                 retardation_s,
             },
+            sensor: sensor.sensor.clone(),
         })
     }
 }
@@ -112,12 +118,46 @@ impl Coupling {
 /// - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
 /// - `n_threads`: as many as there are cores unless given; results do not depend on it.
 ///
-/// Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
+/// Raises `Error` for a twin or a coupling of a sensor whose gel it is not, and if there is no
+/// body.
 #[pyclass(module = "twintac")]
 pub(crate) struct SensorBatch {
-    batch: twintac::SensorBatch,
+    batch: Batch,
     bodies: Vec<twintac::Body>,
     n_taxels: usize,
+    has_twin: bool,
+}
+
+/// Sensors that hold what touches them, or not.
+enum Batch {
+    Free(twintac::SensorBatch),
+    Coupled(twintac::CoupledBatch),
+}
+
+/// What one sensor of a `SensorBatch` is and remembers at a moment: its imperfections and the noise
+/// to come, its twin's memory, and what its gel holds. What `SensorBatch.state`
+/// returns.
+#[pyclass(frozen, from_py_object, module = "twintac")]
+#[derive(Clone)]
+pub(crate) struct SensorState {
+    state: std::sync::Arc<twintac::SensorState>,
+}
+
+#[pymethods]
+impl SensorState {
+    fn __repr__(&self) -> String {
+        format!("<SensorState of {} taxels, simulated>", self.state.n_taxels())
+    }
+
+    /// It never changes: a copy is itself.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    /// It never changes: a copy is itself.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
 }
 
 #[pymethods]
@@ -141,25 +181,31 @@ impl SensorBatch {
         let n_taxels = gel.gel.n_taxels();
         let twin = twin.map(|twin| std::sync::Arc::clone(&twin.twin));
         if let Some(twin) = &twin {
+            agrees(py, "twin", &gel.gel, twin.sensor())?;
             let n_of_twin = twin.sensor().taxels().count();
             if n_of_twin != n_taxels {
                 let problem = format!("has {n_of_twin} taxels, the gel {n_taxels}");
                 return Err(unusable(py, "twin", &problem));
             }
         }
+        if let Some(coupling) = &coupling {
+            agrees(py, "coupling", &gel.gel, &coupling.sensor)?;
+        }
+        let has_twin = twin.is_some();
         let sizes = [n_sensors, n_threads.unwrap_or_else(n_cores)];
         let batch = py.detach(|| match twin {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
             None => twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed),
         });
         let batch = match coupling {
-            Some(own) => batch.with_coupling(own.coupling),
-            None => batch,
+            Some(own) => Batch::Coupled(batch.with_coupling(own.coupling)),
+            None => Batch::Free(batch),
         };
         Ok(Self {
             batch,
             bodies,
             n_taxels,
+            has_twin,
         })
     }
 
@@ -169,13 +215,29 @@ impl SensorBatch {
         PROVENANCE
     }
 
-    /// One more moment of every sensor, `since_previous_s` after the last. The other arguments are those of `FastBatch.read`.
+    /// Puts other bodies in the place of those that may touch. What gels hold, they go on to hold,
+    /// under the things' `touch_id`.
+    ///
+    /// Raises `Error` if there is no body.
+    fn set_bodies(&mut self, py: Python<'_>, bodies: Vec<Body>) -> PyResult<()> {
+        self.bodies = self::bodies(py, bodies)?;
+        Ok(())
+    }
+
+    /// One more moment of every sensor, `since_previous_s` after the last. `gel_from_body`, `body`
+    /// and `ends` are those of `FastBatch.read`.
+    ///
+    /// `touch_id`, an integer for each touch, says which thing it is: the same as long as it is the
+    /// same thing, and another for each other thing on that sensor. A sensor with a `Coupling`
+    /// remembers each thing that touches it under this number, wherever it stands in the list and
+    /// whatever body it has, so it has to be given. What is not in the list is forgotten.
     ///
     /// Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, in the frame of
     /// the sensor where it is, `[n_sensors, 6]`.
     ///
-    /// Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot be.
-    #[pyo3(signature = (since_previous_s, gel_from_body, body=None, ends=None))]
+    /// Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot
+    /// be, and if a thing touches one sensor twice. Nothing has been done then.
+    #[pyo3(signature = (since_previous_s, gel_from_body, body=None, ends=None, *, touch_id=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -183,6 +245,7 @@ impl SensorBatch {
         gel_from_body: Numbers<'_, Ix2>,
         body: Option<Counts<'_>>,
         ends: Option<Counts<'_>>,
+        touch_id: Option<Counts<'_>>,
     ) -> PyResult<Answers<'py>> {
         since(py, since_previous_s)?;
         let Touches { touches, ends } = Touches::checked(
@@ -192,7 +255,10 @@ impl SensorBatch {
             ends.as_ref(),
             self.bodies.len(),
         )?;
-        let n_sensors = self.batch.n_sensors();
+        let ids = touch_id
+            .map(|ids| touch_ids(py, &ids, touches.len()))
+            .transpose()?;
+        let n_sensors = self.n_sensors();
         if ends.len() != n_sensors {
             let problem = format!(
                 "has {} numbers, expected one for each of {n_sensors} sensors",
@@ -202,35 +268,88 @@ impl SensorBatch {
         }
         let mut readings_kpa = vec![0.0; n_sensors * self.n_taxels];
         let mut wrench = vec![[0.0; 6]; n_sensors];
-        py.detach(|| {
-            let bodies = &self.bodies;
-            self.batch.step(
-                since_previous_s,
-                bodies,
-                &touches,
-                &ends,
-                &mut readings_kpa,
-                &mut wrench,
-            );
-        });
+        let (bodies, readings, wrenches) = (&self.bodies, &mut readings_kpa, &mut wrench);
+        match &mut self.batch {
+            Batch::Free(batch) => {
+                py.detach(|| batch.step(since_previous_s, bodies, &touches, &ends, readings, wrenches));
+            }
+            Batch::Coupled(batch) => {
+                let ids = ids.ok_or_else(|| unusable(py, "touch_id", NO_TOUCH_ID))?;
+                let held: Vec<twintac::HeldTouch> = ids
+                    .into_iter()
+                    .zip(touches)
+                    .map(|(id, touch)| twintac::HeldTouch { id, touch })
+                    .collect();
+                py.detach(|| batch.step(since_previous_s, bodies, &held, &ends, readings, wrenches))
+                    .map_err(|twice| unusable(py, "touch_id", &format!("is wrong: {twice}")))?;
+            }
+        }
         Ok((
             rows(py, readings_kpa, [n_sensors, self.n_taxels])?,
             rows(py, wrench.into_flattened(), [n_sensors, 6])?,
         ))
     }
 
-    /// What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of its middle, N mm,
+    /// What each thing did in the last step by itself, in the order of the touches: force on the
+    /// gel, N, and torque about the top of its middle, N mm,
     /// `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
     fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let wrenches: Vec<f32> = self.batch.wrench_of_touches().flatten().copied().collect();
+        let wrenches: Vec<f32> = match &self.batch {
+            Batch::Free(_) => Vec::new(),
+            Batch::Coupled(batch) => batch.wrench_of_touches().flatten().copied().collect(),
+        };
         let n_touches = wrenches.len() / 6;
         rows(py, wrenches, [n_touches, 6])
+    }
+
+    /// What one sensor, counted from 0, is and remembers now: set back, it goes on to the same
+    /// bits.
+    fn state(&self, py: Python<'_>, sensor: usize) -> PyResult<SensorState> {
+        self.check(py, sensor)?;
+        let state = match &self.batch {
+            Batch::Free(batch) => batch.state(sensor),
+            Batch::Coupled(batch) => batch.state(sensor),
+        };
+        Ok(SensorState {
+            state: std::sync::Arc::new(state),
+        })
+    }
+
+    /// Lets one sensor, counted from 0, go on from a state, of its own or of another sensor of such
+    /// a batch.
+    ///
+    /// Raises `Error` for the state of a sensor with other taxels, or with a twin where this one
+    /// has none.
+    fn set_state(&mut self, py: Python<'_>, sensor: usize, state: SensorState) -> PyResult<()> {
+        self.check(py, sensor)?;
+        let (own, given) = (
+            (self.n_taxels, self.has_twin),
+            (state.state.n_taxels(), state.state.has_twin()),
+        );
+        if own != given {
+            let text = |(n_taxels, has_twin): (usize, bool)| {
+                format!(
+                    "{n_taxels} taxels {} a twin",
+                    if has_twin { "with" } else { "without" }
+                )
+            };
+            let problem = format!("is of a sensor of {}, expected {}", text(given), text(own));
+            return Err(unusable(py, "state", &problem));
+        }
+        match &mut self.batch {
+            Batch::Free(batch) => batch.set_state(sensor, &state.state),
+            Batch::Coupled(batch) => batch.set_state(sensor, &state.state),
+        }
+        Ok(())
     }
 
     /// Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has.
     fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
         self.check(py, sensor)?;
-        self.batch.rest(sensor);
+        match &mut self.batch {
+            Batch::Free(batch) => batch.rest(sensor),
+            Batch::Coupled(batch) => batch.rest(sensor),
+        }
         Ok(())
     }
 
@@ -238,18 +357,28 @@ impl SensorBatch {
     /// below the number of sensors are the first ones.
     fn replace(&mut self, py: Python<'_>, sensor: usize, number: u64) -> PyResult<()> {
         self.check(py, sensor)?;
-        self.batch.replace(sensor, number);
+        match &mut self.batch {
+            Batch::Free(batch) => batch.replace(sensor, number),
+            Batch::Coupled(batch) => batch.replace(sensor, number),
+        }
         Ok(())
     }
 
     fn __len__(&self) -> usize {
-        self.batch.n_sensors()
+        self.n_sensors()
     }
 }
 
 impl SensorBatch {
+    fn n_sensors(&self) -> usize {
+        match &self.batch {
+            Batch::Free(batch) => batch.n_sensors(),
+            Batch::Coupled(batch) => batch.n_sensors(),
+        }
+    }
+
     fn check(&self, py: Python<'_>, sensor: usize) -> PyResult<()> {
-        let n_sensors = self.batch.n_sensors();
+        let n_sensors = self.n_sensors();
         if sensor < n_sensors {
             return Ok(());
         }
@@ -259,6 +388,27 @@ impl SensorBatch {
             &format!("is {sensor}, there are {n_sensors}"),
         ))
     }
+}
+
+/// Refuses a fast gel that is not that of a sensor: whose top over the sensor's taxels has another
+/// height.
+fn agrees(py: Python<'_>, field: &str, gel: &twintac::FastGel, sensor: &twintac::Sensor) -> PyResult<()> {
+    let described = &sensor.file().sensor;
+    let solid = &described.gel.solid;
+    let is_same = described.taxels.iter().all(|taxel| {
+        let place_mm = taxel.position_mm.truncate();
+        let top_mm = solid.top_height_mm(place_mm.x, place_mm.y, &described.surfaces);
+        top_mm.is_none_or(|top_mm| (top_mm - gel.height_mm_at(place_mm)).abs() < 0.5)
+    });
+    if is_same {
+        return Ok(());
+    }
+    let problem = format!(
+        "is of the sensor `{}`, and `gel` of `{}`, whose gel is another",
+        described.name,
+        gel.sensor()
+    );
+    Err(unusable(py, field, &problem))
 }
 
 /// A time between frames that can be.

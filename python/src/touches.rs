@@ -3,7 +3,7 @@
 use numpy::ndarray::{Ix1, Ix2};
 use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
-use twintac::Touch;
+use twintac::{Touch, TouchId};
 
 use crate::array::Numbers;
 use crate::error::unusable;
@@ -77,6 +77,19 @@ impl Touches {
             },
         })
     }
+}
+
+/// Which thing each touch is, of integers of any type and sign.
+pub(crate) fn touch_ids(py: Python<'_>, ids: &Counts<'_>, n_touches: usize) -> PyResult<Vec<TouchId>> {
+    let ids = integers("touch_id", ids)?;
+    if ids.len() != n_touches {
+        let problem = format!(
+            "has {} numbers, expected one for each of {n_touches} touches",
+            ids.len()
+        );
+        return Err(unusable(py, "touch_id", &problem));
+    }
+    Ok(ids.into_iter().map(|id| TouchId(id.cast_unsigned())).collect())
 }
 
 fn checked_ends(py: Python<'_>, ends: &[i64], n_touches: usize) -> PyResult<Vec<usize>> {

@@ -1,5 +1,6 @@
 """Numbers are those of the command line, shapes are as the docs say, and the same call gives the same bits."""
 
+import copy
 import json
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from conftest import DATA, ROOT, run_command
 
 from twintac import (
     Body,
+    Coupling,
     Error,
     FastGel,
     Friction,
@@ -248,6 +250,36 @@ def test_sensors_are_imperfect_by_their_seed_alone() -> None:
     perfect = readings_kpa(1, 1)
     assert np.array_equal(perfect, gel.batch([ball]).read(places)[0])
     assert np.ptp(own[:, 0]) > np.ptp(perfect[:, 0]) == 0.0
+
+
+def test_one_body_twice_is_two_things() -> None:
+    box = Body(Shape.box((8.0, 8.0, 10.0), 0.0))
+    sensors = SensorBatch(FastGel.phystac(), [box], 1, coupling=Coupling(Sensor.phystac(), friction=0.8, retardation_s=0.005))
+    places = np.array([[-8.0, 0.0, 8.4], [8.0, 0.0, 8.4]])
+    expected = FastGel.phystac().batch([box]).read(places, [0, 0], [2])[1]
+    for order in ([0, 1], [1, 0], [0, 1]):
+        wrench = sensors.step(0.01, places[order], [0, 0], [2], touch_id=order)[1]
+        assert wrench[0, :3] == pytest.approx(expected[0, :3], abs=5e-3) and wrench[0, 2] < -0.05
+        left, right = sensors.wrench_of_touches()[order]
+        assert left[2] == pytest.approx(right[2], abs=5e-3) and left[0] == pytest.approx(-right[0], abs=5e-3)
+
+
+def test_a_sensor_goes_on_from_its_state() -> None:
+    noisy, ball = Imperfection(noise_deviation_kpa=0.1, hysteresis=0.1), Body(Shape.sphere(6.0))
+    sensors = SensorBatch(FastGel.phystac(), [ball], 2, imperfection=noisy, coupling=Coupling(Sensor.phystac(), friction=0.8, retardation_s=0.005))
+
+    def steps() -> npt.NDArray[np.float32]:
+        return np.array([sensors.step(0.01, np.tile([0.1 * n, 0.0, 7.5], (2, 1)), touch_id=[4, 4])[0] for n in range(5)])
+
+    steps()
+    state = sensors.state(0)
+    first = steps()
+    assert not np.array_equal(steps()[:, 0], first[:, 0])
+    for sensor in (0, 1):
+        sensors.set_state(sensor, copy.deepcopy(state))
+    again = steps()
+    assert np.array_equal(again[:, 0], first[:, 0]) and np.array_equal(again[:, 1], first[:, 0])
+    assert repr(state) == "<SensorState of 8 taxels, simulated>"
 
 
 def test_a_contact_is_found_where_it_is() -> None:

@@ -895,7 +895,8 @@ class SensorBatch:
     - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
     - `n_threads`: as many as there are cores unless given; results do not depend on it.
 
-    Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
+    Raises `Error` for a twin or a coupling of a sensor whose gel it is not, and if there is no
+    body.
     """
     def __new__(
         cls,
@@ -912,23 +913,50 @@ class SensorBatch:
     @property
     def provenance(self) -> _Simulated:
         """What every reading is: simulated."""
+    def set_bodies(self, bodies: Sequence[Body]) -> None:
+        """Puts other bodies in the place of those that may touch. What gels hold, they go on to hold,
+        under the things' `touch_id`.
+
+        Raises `Error` if there is no body.
+        """
     def step(
         self,
         since_previous_s: float,
         gel_from_body: _Floats,
         body: _Integers | None = None,
         ends: _Integers | None = None,
+        *,
+        touch_id: _Integers | None = None,
     ) -> tuple[_Single, _Single]:
-        """One more moment of every sensor, `since_previous_s` after the last. The other arguments are those of `FastBatch.read`.
+        """One more moment of every sensor, `since_previous_s` after the last. `gel_from_body`, `body`
+        and `ends` are those of `FastBatch.read`.
+
+        `touch_id`, an integer for each touch, says which thing it is: the same as long as it is the
+        same thing, and another for each other thing on that sensor. A sensor with a `Coupling`
+        remembers each thing that touches it under this number, wherever it stands in the list and
+        whatever body it has, so it has to be given. What is not in the list is forgotten.
 
         Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, in the frame of
         the sensor where it is, `[n_sensors, 6]`.
 
-        Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot be.
+        Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot
+        be, and if a thing touches one sensor twice. Nothing has been done then.
         """
     def wrench_of_touches(self) -> _Single:
-        """What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of its middle, N mm,
+        """What each thing did in the last step by itself, in the order of the touches: force on the
+        gel, N, and torque about the top of its middle, N mm,
         `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
+        """
+    def state(self, sensor: int) -> SensorState:
+        """What one sensor, counted from 0, is and remembers now: set back, it goes on to the same
+        bits.
+        """
+    def set_state(self, sensor: int, state: SensorState) -> None:
+        """Lets one sensor, counted from 0, go on from a state, of its own or of another sensor of such
+        a batch.
+
+        Raises `Error` for the state of a sensor with other taxels, or with a twin where this one
+        has none.
         """
     def rest(self, sensor: int) -> None:
         """Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has."""
@@ -937,6 +965,17 @@ class SensorBatch:
         below the number of sensors are the first ones.
         """
     def __len__(self) -> int: ...
+
+@final
+class SensorState:
+    """What one sensor of a `SensorBatch` is and remembers at a moment: its imperfections and the noise
+    to come, its twin's memory, and what its gel holds. What `SensorBatch.state`
+    returns.
+    """
+    def __copy__(self) -> SensorState:
+        """It never changes: a copy is itself."""
+    def __deepcopy__(self, _memo: object, /) -> SensorState:
+        """It never changes: a copy is itself."""
 
 @final
 class Tasks:

@@ -42,7 +42,7 @@
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
-//! | [`SensorBatch`], [`Imperfection`], [`Coupling`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
+//! | [`SensorBatch`], [`Imperfection`], [`CoupledBatch`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
 //! | [`Tasks`], [`Kind`] | many environments of a task for reinforcement learning | `tasks` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Locator`], [`LocatorTracker`] | the same by a trained twin, whose memory is taken off the readings | `run` |
@@ -215,7 +215,9 @@ pub use twintac_run::{
 };
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
-pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
+pub use twintac_sensors::{
+    CoupledBatch, Coupling, HeldTouch, Imperfection, SensorBatch, SensorState, TouchId, TouchedTwice,
+};
 pub use twintac_shape::{LengthUnit, Part, Pose, Shape, SurfaceFile, Surfaces, TriangleSurface};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "tasks")]

@@ -51,7 +51,8 @@ pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
 pub use network::{Twin, Variant};
 pub use prediction::{
-    Prediction, TwinAtPlace, TwinState, WithoutMemory, at_place, predict, simulated_recording, unread_press,
+    Prediction, TwinAtPlace, TwinMemory, TwinState, WithoutMemory, at_place, predict, simulated_recording,
+    unread_press,
 };
 pub use training::{
     Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, TrainedWith, choose, train,

@@ -90,6 +90,41 @@ impl Remembered {
             overstresses[sensor * n_taxels..][..n_taxels].fill(0.0);
         }
     }
+
+    /// What one sensor remembers, and nothing of the others.
+    pub(crate) fn of_sensor(&self, sensor: usize) -> Self {
+        let own = self.taxels(sensor);
+        let overstresses = self.overstress_kpa.chunks_exact(self.relaxed_kpa.len().max(1));
+        Self {
+            rested: vec![self.rested[sensor]],
+            relaxed_kpa: self.relaxed_kpa[own.clone()].to_vec(),
+            overstress_kpa: overstresses
+                .flat_map(|all| all[own.clone()].iter().copied())
+                .collect(),
+            shares: self.shares.clone(),
+        }
+    }
+
+    /// Lets one sensor remember what another one of the same twin does, alone.
+    pub(crate) fn set_sensor(&mut self, sensor: usize, of_one: &Self) {
+        let (own, n_readings) = (self.taxels(sensor), self.relaxed_kpa.len().max(1));
+        assert_eq!(
+            self.overstress_kpa.len(),
+            of_one.overstress_kpa.len() * self.rested.len(),
+            "overstresses of as many time constants"
+        );
+        self.rested[sensor] = of_one.rested[0];
+        self.relaxed_kpa[own.clone()].copy_from_slice(&of_one.relaxed_kpa);
+        let overstresses = self.overstress_kpa.chunks_exact_mut(n_readings);
+        for (all, of_one) in overstresses.zip(of_one.overstress_kpa.chunks_exact(own.len().max(1))) {
+            all[own.clone()].copy_from_slice(of_one);
+        }
+    }
+
+    fn taxels(&self, sensor: usize) -> std::ops::Range<usize> {
+        let n_taxels = self.relaxed_kpa.len() / self.rested.len().max(1);
+        sensor * n_taxels..(sensor + 1) * n_taxels
+    }
 }
 
 impl Gains {

@@ -26,6 +26,15 @@ pub struct TwinState {
     zero_kpa: Vec<f64>,
 }
 
+/// What the gel of one sensor remembers, and what it reads as zero: see [`TwinState::memory`].
+#[derive(Clone, Debug)]
+pub struct TwinMemory {
+    remembered: Remembered,
+    /// `[n_taxels]`
+    untared_kpa: Vec<f64>,
+    zero_kpa: Vec<f64>,
+}
+
 impl Twin {
     /// The twin of one sensor, whose gel has rested.
     #[must_use]
@@ -153,6 +162,37 @@ impl TwinState {
     /// A sensor that is not there.
     pub fn rest(&mut self, sensor: usize) {
         self.remembered.rest(sensor);
+    }
+
+    /// What one sensor, counted from 0, remembers now.
+    ///
+    /// # Panics
+    /// A sensor that is not there.
+    #[must_use]
+    pub fn memory(&self, sensor: usize) -> TwinMemory {
+        let own = self.taxels(sensor);
+        TwinMemory {
+            remembered: self.remembered.of_sensor(sensor),
+            untared_kpa: self.untared_kpa[own.clone()].to_vec(),
+            zero_kpa: self.zero_kpa[own].to_vec(),
+        }
+    }
+
+    /// Lets one sensor, counted from 0, go on from a memory of the same twin.
+    ///
+    /// # Panics
+    /// A sensor that is not there, a memory of a twin of another number of taxels or time
+    /// constants.
+    pub fn set_memory(&mut self, sensor: usize, memory: &TwinMemory) {
+        let own = self.taxels(sensor);
+        self.remembered.set_sensor(sensor, &memory.remembered);
+        self.untared_kpa[own.clone()].copy_from_slice(&memory.untared_kpa);
+        self.zero_kpa[own].copy_from_slice(&memory.zero_kpa);
+    }
+
+    fn taxels(&self, sensor: usize) -> std::ops::Range<usize> {
+        let n_taxels = self.gains.len();
+        sensor * n_taxels..(sensor + 1) * n_taxels
     }
 
     /// The twin that is stepped.
