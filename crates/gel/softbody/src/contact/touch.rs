@@ -1,6 +1,7 @@
 //! Contact of one point with one shape: gap, force and stiffness.
 
 use glam::{DMat3, DVec3};
+use twintac_shape::Pose;
 
 use super::point::ContactPoint;
 use super::rigid_body::{RigidBody, outer};
@@ -73,15 +74,27 @@ impl RigidBody<'_> {
             touch.force_n = 0.0;
             return 0.0;
         }
-        let distance = self.shape.signed_distance(local_mm);
+        let (distance_mm, normal) = self.nearest(touch, point, local_mm);
         touch.measured_at_mm = local_mm;
-        touch.measured_mm = distance.distance_mm;
-        touch.gap_mm = distance.distance_mm + point.slack_mm;
-        touch.normal = self.gel_from_shape.rotation * distance.gradient;
+        touch.measured_mm = distance_mm;
+        touch.gap_mm = distance_mm + point.slack_mm;
+        touch.normal = normal;
         let stiffness = point.stiffness * touch.stiffening;
         let (energy, force_n, _) = penalty(touch.gap_mm - touch.multiplier_mm, stiffness);
         touch.force_n = force_n;
         energy
+    }
+
+    /// Distance of a contact point that is here in the shape's frame, mm, and the way out in the gel's: of the shape, or of the plane that it sees instead.
+    #[inline]
+    fn nearest(&self, touch: &Touch, point: &ContactPoint, local_mm: DVec3) -> (f64, DVec3) {
+        let Pose { rotation, .. } = self.gel_from_shape;
+        if point.sees_a_plane {
+            let way_mm = rotation * (local_mm - touch.measured_at_mm);
+            return (touch.measured_mm + touch.normal.dot(way_mm), touch.normal);
+        }
+        let distance = self.shape.signed_distance(local_mm);
+        (distance.distance_mm, rotation * distance.gradient)
     }
 
     /// Whether a point is nearer than this to the shape.
@@ -109,12 +122,11 @@ impl RigidBody<'_> {
         at_mm: DVec3,
         multiplier_mm: f64,
     ) -> DVec3 {
-        let distance = self
-            .shape
-            .signed_distance(self.gel_from_shape.inverse_transform_point(at_mm));
-        let gap_mm = distance.distance_mm + point.slack_mm;
+        let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
+        let (distance_mm, normal) = self.nearest(touch, point, local_mm);
+        let gap_mm = distance_mm + point.slack_mm;
         let (_, force_n, _) = penalty(gap_mm - multiplier_mm, point.stiffness * touch.stiffening);
-        self.gel_from_shape.rotation * distance.gradient * force_n
+        normal * force_n
     }
 
     /// Second derivative of a touching point's contact energy, N/mm: `k n⊗n - f ∇²g`, `k` the slope of the force.

@@ -68,6 +68,12 @@ fn differentiate(
 ) -> Result<(), Failure> {
     buffers.evaluate(body, step, x).ok_or(Failure::Inverted)?;
     buffers.stand_at(x);
+    let mut contacts: Vec<Contact> = x.contacts.iter().map(Contact::with_planes_inside).collect();
+    let x = &Unknowns {
+        displacements_mm: x.displacements_mm,
+        pressures_mpa: x.pressures_mpa,
+        contacts: &mut contacts,
+    };
     let mut tangent = Tangent::new(body, buffers, step, x);
     for sensitivity in sensitivities {
         sensitivity.follow_multipliers(before, x.contacts);
