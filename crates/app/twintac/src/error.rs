@@ -92,6 +92,10 @@ impl Error {
             Self::Inverse(twintac_inverse::InverseError::Shape(error)) => of_shape(error),
             #[cfg(feature = "fast")]
             Self::Inverse(twintac_inverse::InverseError::Setting { field, .. }) => of_field(field),
+            #[cfg(feature = "tasks")]
+            Self::Task(twintac_tasks::TaskError::Count { .. }) => of_field("n_environments"),
+            #[cfg(feature = "map")]
+            Self::Map(twintac_map::MapError::Input { .. }) => of_field("readings_kpa"),
             #[cfg(feature = "map")]
             Self::Picture(
                 twintac_plot::PlotError::Format { path } | twintac_plot::PlotError::Write { path, .. },
@@ -120,6 +124,7 @@ fn of_shape(error: &twintac_shape::ShapeError) -> ErrorPlace {
 fn of_simulation(error: &twintac_simulate::SimulateError) -> ErrorPlace {
     match error {
         twintac_simulate::SimulateError::NoIndenter { .. } => of_field("indenter"),
+        twintac_simulate::SimulateError::ForceLimit { .. } => of_field("force_n"),
         _ => ErrorPlace::default(),
     }
 }

@@ -213,7 +213,7 @@ pub use twintac_run::{
 };
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
-pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
+pub use twintac_sensors::{Coupling, Imperfection, SensorBatch, most_sensors};
 pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "tasks")]

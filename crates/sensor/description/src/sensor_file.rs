@@ -47,7 +47,19 @@ impl SensorFile {
     /// Those of [`Sensor::parse`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, SensorError> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let load = |name: &str| std::fs::read(folder.join(name));
+        Self::parse_with(path, text, &|name| std::fs::read(folder.join(name)))
+    }
+
+    /// The same with files of materials and surfaces that `load` gives by the names that the description has for them.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`].
+    pub fn parse_with(
+        path: &Path,
+        text: &str,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let file = path.display().to_string();
         let sensor = Sensor::parse(&file, text, &load)?;
         Ok(Self {
@@ -114,16 +126,18 @@ impl SensorFile {
             toml::from_str(&self.text).map_err(|found| self.unreadable("", &found))?;
         edit(&mut description);
         let text = toml::to_string(&description).map_err(|found| self.unreadable("", &found))?;
-        Self::parse(&self.file(), &text)
+        Self::parse(&self.path(), &text)
     }
 
-    fn file(&self) -> PathBuf {
+    /// Where the description lies, or would lie if it is of no file.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
         self.folder.join(&self.sensor.name).with_extension("toml")
     }
 
     fn unreadable(&self, field: &str, found: &dyn std::fmt::Display) -> SensorError {
         SensorError {
-            file: self.file().display().to_string(),
+            file: self.path().display().to_string(),
             line: 0,
             field: field.to_owned(),
             problem: format!("is no TOML table: {found}"),

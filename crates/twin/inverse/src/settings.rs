@@ -31,13 +31,16 @@ pub struct InverseSettings {
     pub spin_walk_rad: f64,
     /// Time after which what told the shape is forgotten to a part of 1/e, s.
     pub shape_memory_s: f64,
-    /// Possible presses of each shape that are followed at once.
+    /// Possible presses of each shape that are followed at once, at most 100.
     pub n_starts: usize,
-    /// Steps towards the best press of each of them in a frame.
+    /// Steps towards the best press of each of them in a frame, at most 100.
     pub n_steps: usize,
-    /// Deepest press that is thought of, mm below first touch. For a fast gel: not deeper than it was taught.
+    /// Deepest press that is thought of, mm below first touch, at most 100. For a fast gel: not deeper than it was taught.
     pub deepest_mm: f64,
 }
+
+/// Largest of the settings that time and memory grow with.
+const MOST: f64 = 100.0;
 
 impl Default for InverseSettings {
     fn default() -> Self {
@@ -63,13 +66,15 @@ impl InverseSettings {
     /// Whether these settings can be.
     ///
     /// # Errors
-    /// [`InverseError::Setting`], which names the first that is not finite, below zero, or zero where that has no meaning.
+    /// [`InverseError::Setting`], which names the first that is not finite, below zero, zero where that has no meaning, or larger than it may be.
     pub fn check(&self) -> Result<(), InverseError> {
         let above_zero = [
             ("noise_kpa", self.noise_kpa),
             ("correlated_s", self.correlated_s),
             ("shape_memory_s", self.shape_memory_s),
             ("touch_deviations", self.touch_deviations),
+        ];
+        let bounded = [
             ("deepest_mm", self.deepest_mm),
             ("n_starts", self.n_starts as f64),
             ("n_steps", self.n_steps as f64),
@@ -92,10 +97,13 @@ impl InverseSettings {
             .into_iter()
             .find(|(_, number)| is_wrong(number) || *number == 0.0);
         let negative = from_zero_on.into_iter().find(|(_, number)| is_wrong(number));
-        let refused = no_positive.map(|setting| refuse(setting, "a number above 0"));
-        match refused.or(negative.map(|setting| refuse(setting, "0 or a number above it"))) {
-            Some(error) => Err(error),
-            None => Ok(()),
-        }
+        let unbounded = bounded
+            .into_iter()
+            .find(|(_, number)| !(*number > 0.0 && *number <= MOST));
+        let refused = no_positive
+            .map(|setting| refuse(setting, "a number above 0"))
+            .or(negative.map(|setting| refuse(setting, "0 or a number above it")))
+            .or(unbounded.map(|setting| refuse(setting, "a number above 0, and at most 100")));
+        refused.map_or(Ok(()), Err)
     }
 }

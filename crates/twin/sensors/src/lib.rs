@@ -8,6 +8,6 @@ mod hold;
 mod imperfection;
 mod sensor;
 
-pub use batch::SensorBatch;
+pub use batch::{SensorBatch, most_sensors};
 pub use hold::Coupling;
 pub use imperfection::Imperfection;
