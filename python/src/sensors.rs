@@ -3,17 +3,20 @@
 use std::path::PathBuf;
 
 use numpy::PyArray2;
-use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::array::{Numbers, rows};
+use crate::array::rows;
 use crate::error::{OrRaise, unreadable, unusable};
-use crate::fast::{Answers, FastGel, PROVENANCE, n_cores};
+use crate::fast::{Answers, FastGel, PROVENANCE};
+use crate::given::{Given, since, threads};
+use crate::pickle::{Kept, Reduced, reduced, refused as no_pickle};
+use crate::pool::in_parallel;
 use crate::sensor::Sensor;
 use crate::settings::{as_toml, refused};
 use crate::shape::Body;
-use crate::touches::{Counts, Touches, bodies};
+use crate::shared::Shared;
+use crate::touches::{Touches, bodies};
 use crate::twin::Twin;
 
 /// The table of a file in which imperfections stand.
@@ -68,8 +71,25 @@ impl Imperfection {
         })
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!("<{:?}>", self.imperfection)
+    }
+}
+
+impl Kept for Imperfection {
+    type State = twintac::Imperfection;
+
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::Imperfection> {
+        Ok(self.imperfection.clone())
+    }
+
+    fn restored(_: Python<'_>, imperfection: twintac::Imperfection) -> PyResult<Self> {
+        Ok(Self { imperfection })
     }
 }
 
@@ -83,6 +103,9 @@ impl Imperfection {
 #[derive(Clone)]
 pub(crate) struct Coupling {
     coupling: twintac::Coupling,
+    /// Of what it was made.
+    sensor: Sensor,
+    friction: f64,
 }
 
 #[pymethods]
@@ -98,7 +121,38 @@ impl Coupling {
                 friction: crate::friction::friction(py, sensor, ("friction", friction))?,
                 retardation_s,
             },
+            sensor: sensor.clone(),
+            friction,
         })
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Coupling on {:?}, friction {}, retardation {} s>",
+            self.sensor.sensor.name(),
+            self.friction,
+            self.coupling.retardation_s
+        )
+    }
+}
+
+impl Kept for Coupling {
+    type State = (<Sensor as Kept>::State, [f64; 2]);
+
+    fn state(&self, py: Python<'_>) -> PyResult<Self::State> {
+        Ok((
+            self.sensor.state(py)?,
+            [self.friction, self.coupling.retardation_s],
+        ))
+    }
+
+    fn restored(py: Python<'_>, (sensor, [friction, retardation_s]): Self::State) -> PyResult<Self> {
+        Self::new(py, &Sensor::restored(py, sensor)?, friction, retardation_s)
     }
 }
 
@@ -110,31 +164,34 @@ impl Coupling {
 /// - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
 /// - `coupling`: how bodies and gels hold each other; neither friction nor loss unless given.
 /// - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
-/// - `n_threads`: as many as there are cores unless given; results do not depend on it.
+/// - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
+/// - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 ///
-/// Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
-#[pyclass(module = "twintac")]
+/// Raises `Error` for a twin of another number of taxels than the gel has, if there is no body, and for a number that is out of its range.
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct SensorBatch {
-    batch: twintac::SensorBatch,
+    batch: Shared<twintac::SensorBatch>,
     bodies: Vec<twintac::Body>,
+    n_sensors: usize,
     n_taxels: usize,
+    n_threads: usize,
 }
 
 #[pymethods]
 impl SensorBatch {
     #[new]
-    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None))]
+    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=None, n_threads=None), text_signature = "(gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None)")]
     #[allow(clippy::too_many_arguments)] // keywords in Python
     fn new(
         py: Python<'_>,
         gel: &FastGel,
         bodies: Vec<Body>,
-        n_sensors: usize,
+        n_sensors: Given<'_>,
         imperfection: Option<Imperfection>,
         twin: Option<PyRef<'_, Twin>>,
         coupling: Option<Coupling>,
-        seed: u64,
-        n_threads: Option<usize>,
+        seed: Option<Given<'_>>,
+        n_threads: Option<Given<'_>>,
     ) -> PyResult<Self> {
         let bodies = self::bodies(py, bodies)?;
         let imperfection = imperfection.map(|own| own.imperfection).unwrap_or_default();
@@ -147,7 +204,10 @@ impl SensorBatch {
                 return Err(unusable(py, "twin", &problem));
             }
         }
-        let sizes = [n_sensors, n_threads.unwrap_or_else(n_cores)];
+        let n_sensors = n_sensors.count("n_sensors", 1..=twintac::most_sensors(n_taxels))?;
+        let seed = seed.map_or(Ok(0), |seed| seed.seed("seed"))?;
+        let n_threads = threads(n_threads)?;
+        let sizes = [n_sensors, n_threads];
         let batch = py.detach(|| match twin {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
             None => twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed),
@@ -157,9 +217,11 @@ impl SensorBatch {
             None => batch,
         };
         Ok(Self {
-            batch,
+            batch: Shared::new(batch),
             bodies,
+            n_sensors,
             n_taxels,
+            n_threads,
         })
     }
 
@@ -177,12 +239,12 @@ impl SensorBatch {
     /// Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot be.
     #[pyo3(signature = (since_previous_s, gel_from_body, body=None, ends=None))]
     fn step<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         since_previous_s: f64,
-        gel_from_body: Numbers<'_, Ix2>,
-        body: Option<Counts<'_>>,
-        ends: Option<Counts<'_>>,
+        gel_from_body: Given<'_>,
+        body: Option<Given<'_>>,
+        ends: Option<Given<'_>>,
     ) -> PyResult<Answers<'py>> {
         since(py, since_previous_s)?;
         let Touches { touches, ends } = Touches::checked(
@@ -192,7 +254,7 @@ impl SensorBatch {
             ends.as_ref(),
             self.bodies.len(),
         )?;
-        let n_sensors = self.batch.n_sensors();
+        let n_sensors = self.n_sensors;
         if ends.len() != n_sensors {
             let problem = format!(
                 "has {} numbers, expected one for each of {n_sensors} sensors",
@@ -202,17 +264,17 @@ impl SensorBatch {
         }
         let mut readings_kpa = vec![0.0; n_sensors * self.n_taxels];
         let mut wrench = vec![[0.0; 6]; n_sensors];
-        py.detach(|| {
+        self.batch.work(py, |batch| {
             let bodies = &self.bodies;
-            self.batch.step(
-                since_previous_s,
-                bodies,
-                &touches,
-                &ends,
-                &mut readings_kpa,
-                &mut wrench,
-            );
-        });
+            let (readings_kpa, wrench) = (&mut readings_kpa[..], &mut wrench[..]);
+            let mut step = || batch.step(since_previous_s, bodies, &touches, &ends, readings_kpa, wrench);
+            // Nobody has to be woken for one thread.
+            if self.n_threads > 1 {
+                in_parallel(step)
+            } else {
+                step()
+            }
+        })?;
         Ok((
             rows(py, readings_kpa, [n_sensors, self.n_taxels])?,
             rows(py, wrench.into_flattened(), [n_sensors, 6])?,
@@ -222,50 +284,41 @@ impl SensorBatch {
     /// What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of its middle, N mm,
     /// `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
     fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let wrenches: Vec<f32> = self.batch.wrench_of_touches().flatten().copied().collect();
+        let wrenches: Vec<f32> = self
+            .batch
+            .look(py, |batch| batch.wrench_of_touches().flatten().copied().collect())?;
         let n_touches = wrenches.len() / 6;
         rows(py, wrenches, [n_touches, 6])
     }
 
     /// Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has.
-    fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
-        self.check(py, sensor)?;
-        self.batch.rest(sensor);
-        Ok(())
+    fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
+        let sensor = sensor.count("sensor", 0..=self.n_sensors - 1)?;
+        self.batch.look(py, |batch| batch.rest(sensor))
     }
 
     /// Puts another sensor in the place of one, counted from 0, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
     /// below the number of sensors are the first ones.
-    fn replace(&mut self, py: Python<'_>, sensor: usize, number: u64) -> PyResult<()> {
-        self.check(py, sensor)?;
-        self.batch.replace(sensor, number);
-        Ok(())
+    fn replace(&self, py: Python<'_>, sensor: Given<'_>, number: Given<'_>) -> PyResult<()> {
+        let sensor = sensor.count("sensor", 0..=self.n_sensors - 1)?;
+        let number = number.seed("number")?;
+        self.batch.look(py, |batch| batch.replace(sensor, number))
+    }
+
+    /// Sensors that are stepped are no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle(
+            "SensorBatch",
+            "pickle its gel, bodies and imperfection, and make one in each process",
+        )
     }
 
     fn __len__(&self) -> usize {
-        self.batch.n_sensors()
+        self.n_sensors
     }
-}
 
-impl SensorBatch {
-    fn check(&self, py: Python<'_>, sensor: usize) -> PyResult<()> {
-        let n_sensors = self.batch.n_sensors();
-        if sensor < n_sensors {
-            return Ok(());
-        }
-        Err(unusable(
-            py,
-            "sensor",
-            &format!("is {sensor}, there are {n_sensors}"),
-        ))
+    fn __repr__(&self) -> String {
+        let (n_sensors, n_taxels, n_bodies) = (self.n_sensors, self.n_taxels, self.bodies.len());
+        format!("<SensorBatch of {n_sensors} sensors of {n_taxels} taxels, {n_bodies} bodies, {PROVENANCE}>")
     }
-}
-
-/// A time between frames that can be.
-pub(crate) fn since(py: Python<'_>, since_previous_s: f64) -> PyResult<()> {
-    if since_previous_s >= 0.0 && since_previous_s.is_finite() {
-        return Ok(());
-    }
-    let problem = format!("is {since_previous_s}, expected 0 or more");
-    Err(unusable(py, "since_previous_s", &problem))
 }

@@ -168,7 +168,7 @@ def test_sensors_refuse_what_cannot_be(ball: Body) -> None:
         sensors.step(0.01, np.zeros((3, 3)))
     with pytest.raises(Error, match="since_previous_s"):
         sensors.step(-0.01, np.zeros((2, 3)))
-    with pytest.raises(Error, match="there are 2"):
+    with pytest.raises(Error, match="`sensor` is 2, expected an integer from 0 to 1"):
         sensors.rest(2)
 
 

@@ -41,6 +41,7 @@ from twintac._twintac import (
     Twin,
     TwinAtPlace,
     TwinState,
+    __version__,
 )
 
 __all__ = [
@@ -79,4 +80,5 @@ __all__ = [
     "Twin",
     "TwinAtPlace",
     "TwinState",
+    "__version__",
 ]
