@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use twintac_shape::Pose;
 
 use crate::distance::{Body, Field, Form, REACH_MM};
-use crate::engine::dispatch;
+use crate::simd::dispatch;
 use crate::surface::SurfaceGrid;
 
 /// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses. Where points are farther

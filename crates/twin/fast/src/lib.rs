@@ -16,6 +16,7 @@ mod networks;
 mod novelty;
 mod read;
 mod shear;
+mod simd;
 mod surface;
 mod touch;
 mod training;
