@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::array::{Numbers, rows};
 use crate::error::{OrRaise, unreadable};
 use crate::pose::Pose;
+use crate::sensor::Sensor;
 use crate::shape::Body;
 use crate::touches::{Counts, Touches, bodies};
 
@@ -59,6 +60,14 @@ impl FastGel {
     #[getter]
     fn sensor(&self) -> &str {
         self.gel.sensor()
+    }
+
+    /// Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
+    /// Names do not count, nor do indenters, limits and the read-out.
+    ///
+    /// Raises `Error`, which says all that differs.
+    fn check(&self, py: Python<'_>, sensor: &Sensor) -> PyResult<()> {
+        self.gel.check(&sensor.sensor.file().sensor).or_raise(py)
     }
 
     /// Where the ports are in the gel's plane, mm; `[n_taxels, 2]`.
@@ -143,13 +152,20 @@ impl FastReader {
         })
     }
 
-    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong.
+    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
+    /// above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
+    /// pressed, or too few pressed there.
     fn novelty(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
         py.detach(|| self.reader.novelty(&placed(&bodies)))
     }
 }
 
 impl FastReader {
+    /// What it reads with.
+    pub(crate) fn reader(&self) -> &twintac::FastReader {
+        &self.reader
+    }
+
     /// What a reading of this gel gives.
     pub(crate) fn answer<'py>(
         &mut self,

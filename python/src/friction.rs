@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 
-use crate::error::unusable;
+use crate::error::{OrRaise, unusable};
 use crate::fast::{FastReader, Reading};
 use crate::pose::Pose;
 use crate::sensor::Sensor;
@@ -26,17 +26,20 @@ impl Friction {
     }
 
     /// One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+    ///
+    /// Raises `Error` for the reader of another gel.
     fn read<'py>(
         &mut self,
         py: Python<'py>,
         reader: &mut FastReader,
         body: &Body,
         gel_from_body: Pose,
-    ) -> Reading<'py> {
-        reader.answer(py, |reader, pressure_kpa, wrench| {
+    ) -> PyResult<Reading<'py>> {
+        self.friction.check(reader.reader()).or_raise(py)?;
+        Ok(reader.answer(py, |reader, pressure_kpa, wrench| {
             let touching = (&*body.body, gel_from_body.pose);
             self.friction.read(reader, touching, pressure_kpa, wrench);
-        })
+        }))
     }
 
     /// Lets go of what touches: the next moment begins without friction.

@@ -112,7 +112,7 @@ impl Coupling {
 /// - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
 /// - `n_threads`: as many as there are cores unless given; results do not depend on it.
 ///
-/// Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
+/// Raises `Error` for a twin or a coupling of another gel, and if there is no body.
 #[pyclass(module = "twintac")]
 pub(crate) struct SensorBatch {
     batch: twintac::SensorBatch,
@@ -141,19 +141,21 @@ impl SensorBatch {
         let n_taxels = gel.gel.n_taxels();
         let twin = twin.map(|twin| std::sync::Arc::clone(&twin.twin));
         if let Some(twin) = &twin {
-            let n_of_twin = twin.sensor().taxels().count();
-            if n_of_twin != n_taxels {
-                let problem = format!("has {n_of_twin} taxels, the gel {n_taxels}");
-                return Err(unusable(py, "twin", &problem));
+            let mismatch = gel.gel.check(&twin.sensor().file().sensor).err();
+            if let Some(mismatch) = mismatch {
+                return Err(unusable(py, "twin", &format!("does not go with `gel`: {mismatch}")));
             }
         }
         let sizes = [n_sensors, n_threads.unwrap_or_else(n_cores)];
         let batch = py.detach(|| match twin {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
-            None => twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed),
+            None => Ok(twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed)),
         });
+        let batch = batch.or_raise(py)?;
         let batch = match coupling {
-            Some(own) => batch.with_coupling(own.coupling),
+            Some(own) => batch.with_coupling(own.coupling).map_err(|mismatch| {
+                unusable(py, "coupling", &format!("does not go with `gel`: {mismatch}"))
+            })?,
             None => batch,
         };
         Ok(Self {

@@ -780,6 +780,11 @@ class FastGel:
     @property
     def sensor(self) -> str:
         """Name of the sensor whose gel it is."""
+    def check(self, sensor: Sensor) -> None:
+        """Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others. Names do not count, nor do indenters, limits and the read-out.
+
+        Raises `Error`, which says all that differs.
+        """
     @property
     def ports_mm(self) -> _Float:
         """Where the ports are in the gel's plane, mm; `[n_taxels, 2]`."""
@@ -807,7 +812,8 @@ class FastReader:
         and torque about the top of its middle, N mm, `[6]`.
         """
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
-        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong."""
+        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong: its shape is new, it is deeper than lessons pressed, or too few
+        pressed there."""
 
 @final
 class Friction:
@@ -817,7 +823,10 @@ class Friction:
     """
     def __new__(cls, sensor: Sensor, coefficient: float) -> Friction: ...
     def read(self, reader: FastReader, body: Body, gel_from_body: Pose) -> tuple[_Single, _Single]:
-        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction."""
+        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+
+        Raises `Error` for the reader of another gel.
+        """
     def release(self) -> None:
         """Lets go of what touches: the next moment begins without friction."""
 
@@ -894,7 +903,7 @@ class SensorBatch:
     - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
     - `n_threads`: as many as there are cores unless given; results do not depend on it.
 
-    Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
+    Raises `Error` for a twin or a coupling of another gel, and if there is no body.
     """
     def __new__(
         cls,

@@ -3,7 +3,7 @@
 use digitac::{Twin, TwinState};
 use glam::{DQuat, DVec3, Vec3};
 use rayon::prelude::*;
-use twintac_fast::{Body, FastGel, FastReader, Touch};
+use twintac_fast::{Body, FastGel, FastGelMismatch, FastReader, Touch};
 use twintac_shape::Pose;
 
 use crate::hold::Holds;
@@ -111,10 +111,15 @@ impl SensorBatch {
     }
 
     /// The same sensors, which hold what touches them, with friction and loss.
-    #[must_use]
-    pub fn with_coupling(mut self, coupling: Coupling) -> Self {
+    ///
+    /// # Errors
+    /// Friction on another gel.
+    pub fn with_coupling(mut self, mut coupling: Coupling) -> Result<Self, FastGelMismatch> {
+        if let Some(chunk) = self.chunks.first() {
+            coupling.friction.check(&chunk.gel)?;
+        }
         self.coupling = Some(coupling);
-        self
+        Ok(self)
     }
 
     /// Number of sensors.

@@ -22,7 +22,9 @@ fn sensors(n: usize, n_threads: usize, retardation_s: f64) -> SensorBatch {
         retardation_s,
     };
     let gel = FastGel::phystac().unwrap();
-    SensorBatch::new(&gel, None, Imperfection::default(), [n, n_threads], 1).with_coupling(coupling)
+    SensorBatch::new(&gel, None, Imperfection::default(), [n, n_threads], 1)
+        .with_coupling(coupling)
+        .unwrap()
 }
 
 fn at(body: u32, x_mm: f64, y_mm: f64, depth_mm: f64) -> Touch {

@@ -13,7 +13,7 @@ use twintac_recording::Recording;
 use crate::doubtful::left_out;
 use crate::model::{gel_like, gel_of};
 use crate::settings::ports_mm;
-use crate::unseen::{Pressed, refuse_known, refuse_other_taxels, simulate};
+use crate::unseen::{Pressed, refuse_known, refuse_other_sensor, simulate};
 use crate::{Progress, RunError, SensorFile};
 
 /// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
@@ -47,12 +47,12 @@ impl<'a> NewGel<'a> {
                 model_folder.display()
             )));
         }
-        refuse_other_taxels(recording, record)?;
         refuse_known(recording, record)?;
         let gel = match sensor {
             Some(sensor) => gel_like(model, model_folder, sensor)?,
             None => gel_of(model, model_folder)?,
         };
+        refuse_other_sensor(recording, gel.sensor())?;
         let bench = record.bench.clone().with_ports_at(&ports_mm(gel.sensor()));
         let softer = BenchEstimate {
             stiffness: Some(Estimate {
