@@ -341,13 +341,6 @@ fn a_place_that_was_not_taught_is_new() {
 }
 
 #[test]
-fn what_is_deeper_than_lessons_pressed_is_new() {
-    let mut novelty = novelty_of_a_ball(|_| true, (3, 0));
-    let depth = |depth_mm: f64| DVec3::new(0.0, 0.0, 8.5 - depth_mm);
-    assert!(novelty(depth(2.9)) < 1.0 && novelty(depth(3.2)) > 1.0);
-}
-
-#[test]
 fn a_gel_that_learned_next_to_nothing_knows_nothing() {
     let place = DVec3::new(0.0, 0.0, 7.5);
     assert!(novelty_of_a_ball(|_| true, (1, 0))(place) < 1.0);

@@ -9,7 +9,7 @@ use crate::{Body, FastGel, Lesson};
 const GAPS_MM: [f64; 4] = [0.1, 0.25, 0.5, 1.0];
 
 /// What is less than this part of a press's largest value is judged as if it were so much.
-const LEAST_OF_PRESS: f64 = 0.1;
+const LEAST_OF_PRESS: f64 = 0.25;
 
 /// One moment of a press.
 pub(super) struct FrameErrors<'a> {

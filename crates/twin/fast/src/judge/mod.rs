@@ -25,7 +25,7 @@ pub struct GroupErrors {
     /// Mean length of the error of the force, %.
     pub force_percent: f64,
     /// Frames in which the taxel that reads most, or the force, is off by more than a tenth of what
-    /// it is then, %. What is less than a tenth of the press's largest value counts as so much.
+    /// it is then, %. What is less than a quarter of the press's largest value counts as so much.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub off_by_a_tenth_percent: Option<f64>,
 }
@@ -171,5 +171,47 @@ fn name(shape: &Shape) -> &'static str {
         Shape::Wedge { .. } => "wedge",
         Shape::Stl { .. } => "stl",
         Shape::Union { .. } => "union",
+    }
+}
+
+#[cfg(test)]
+mod calib {
+    use super::*;
+    #[test]
+    #[ignore]
+    fn calib() {
+        for name in ["phystac", "phystac-tip"] {
+            let mut gel = if name == "phystac" {
+                FastGel::phystac()
+            } else {
+                FastGel::phystac_tip()
+            }
+            .unwrap();
+            let mut held: Vec<Lesson> =
+                serde_json::from_slice(&std::fs::read(format!("/tmp/fastx/{name}-held.json")).unwrap())
+                    .unwrap();
+            let least = if name == "phystac" { 0.6 } else { 0.75 };
+            held.retain(|l| l.edge_mm < 1.2 * least);
+            let n: usize = held.iter().map(|l| l.frames.len()).sum();
+            gel.calibrate_novelty(&held).unwrap();
+            println!(
+                "{name} {} presses {n} frames error_of_one {}",
+                held.len(),
+                gel.novelty.coverage.error_of_one
+            );
+            for press in &held {
+                for f in PressErrors::of(&gel, press, &Surfaces::new()).unwrap().frames {
+                    println!(
+                        "  {} {:?} of_moment {:.3} nearest {:.3} force {:.3} novelty {:.2}",
+                        super::name(&press.shape),
+                        f.gel_from_indenter.position_mm,
+                        f.of_moment,
+                        f.nearest,
+                        f.force,
+                        f.novelty
+                    );
+                }
+            }
+        }
     }
 }

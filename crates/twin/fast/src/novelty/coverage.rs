@@ -145,3 +145,50 @@ fn depth_mm(grid: &SurfaceGrid, channels: &[f32; N_CHANNELS]) -> f32 {
         .map(|(share, level_mm)| REACH_MM * (share - 1.0) - level_mm)
         .fold(0.0, f32::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Layout;
+    use twintac_sensor::SensorFile;
+
+    /// What presses one point so deep, mm.
+    fn pressed(grid: &SurfaceGrid, [i, j]: [usize; 2], depth_mm: f32) -> Vec<f32> {
+        let mut inputs = vec![0.0; grid.len() * N_CHANNELS];
+        let point = &mut inputs.as_chunks_mut::<N_CHANNELS>().0[j * grid.n[0] + i];
+        for (share, level_mm) in point.iter_mut().zip(levels_mm(grid.spacing_mm as f32)) {
+            *share = 1.0 + (depth_mm + level_mm) / REACH_MM;
+        }
+        inputs
+    }
+
+    #[test]
+    fn lessons_and_their_mirror_images_cover_places_and_depths() {
+        let sensor = SensorFile::phystac().unwrap().sensor;
+        let layout = Layout::of(&sensor);
+        let grid = layout.grid();
+        let [n_x, n_y] = grid.n;
+        let lessons = [(0, 1.0), (0, 2.0), (1, 1.5)];
+        let frames: Vec<(usize, Vec<f32>)> = lessons
+            .into_iter()
+            .map(|(lesson, depth_mm)| (lesson, pressed(grid, [3, 2], depth_mm)))
+            .collect();
+        let frames = || frames.iter().map(|(lesson, inputs)| (*lesson, &inputs[..]));
+        let coverage = Coverage::of(grid, frames(), [true, false]);
+        let covered =
+            |at: [usize; 2], depth_mm: f32| coverage.covered(grid, &pressed(grid, at, depth_mm)).unwrap();
+        // Two lessons, however many frames each has.
+        for there in [[3, 2], [n_x - 4, 2]] {
+            assert!((covered(there, 1.0).sparsity - 0.5f32.sqrt()).abs() < 1e-5);
+            assert!(covered(there, 2.0).depth < 1.0 && covered(there, 2.2).depth > 1.0);
+        }
+        for elsewhere in [[3, n_y - 3], [4, 2]] {
+            assert!(covered(elsewhere, 1.0).sparsity > 9.0);
+        }
+        let whole = Coverage::of(grid, frames(), [true, true]);
+        let there = pressed(grid, [3, n_y - 3], 1.0);
+        assert!(whole.covered(grid, &there).unwrap().sparsity < 1.0);
+        // What hovers is nowhere.
+        assert_eq!(coverage.covered(grid, &pressed(grid, [3, 2], -1.0)), None);
+    }
+}
