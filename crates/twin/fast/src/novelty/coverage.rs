@@ -7,13 +7,16 @@ use crate::surface::SurfaceGrid;
 /// Where no lesson pressed, so much of one counts.
 const LEAST_LESSONS: f32 = 0.01;
 
+/// More lessons at a point make no difference: what is left does not come from its place.
+const MOST_LESSONS: f32 = 100.0;
+
 /// Where lessons that went so deep are many, next to none went all the way: what is deeper by this
 /// factor still counts as taught.
 const SLIGHTLY_DEEPER: f32 = 1.05;
 
 /// How far readings are off at least where one lesson pressed: so much that those where none
 /// pressed are unsure.
-pub(super) const LEAST_ERROR_OF_ONE: f32 = 0.01;
+pub(super) const LEAST_ERROR_OF_ONE: f32 = 0.02;
 
 /// What lessons pressed of a gel.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +26,7 @@ pub(crate) struct Coverage {
     pub(crate) lessons: Vec<f32>,
     /// How deep one of them pressed there, mm. `[n_points]`
     pub(crate) deepest_mm: Vec<f32>,
-    /// How far readings would be off where one lesson pressed, as part of them: of `n` lessons, the
+    /// How far nine of ten readings are off at most where one lesson pressed, as part of them: of `n` lessons, the
     /// root of `n` less.
     pub(crate) error_of_one: f32,
 }
@@ -122,7 +125,7 @@ impl Coverage {
                 continue;
             }
             weights += weight;
-            sparsity += weight / self.lessons[point].max(LEAST_LESSONS).sqrt();
+            sparsity += weight / self.lessons[point].clamp(LEAST_LESSONS, MOST_LESSONS).sqrt();
             depth = depth.max(depth_mm(grid, channels));
             deepest_mm = deepest_mm.max(self.deepest_mm[point]);
         }

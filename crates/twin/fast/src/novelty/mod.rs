@@ -16,8 +16,8 @@ pub(crate) use nearest::Nearest;
 /// Readings that are off by more than this part of them are said to be unsure.
 const TOLERATED: f32 = 0.1;
 
-/// What is usual of errors, as a root of their mean square, over what nine of ten stay below.
-const NINE_OF_TEN: f32 = 1.64;
+/// The part of readings that are to be off by no more.
+const SURE: f64 = 0.9;
 
 /// What was taught, as far as it tells what is new.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,15 +43,14 @@ impl Novelty {
     /// Learns from how far readings are off under presses that were not taught: inputs of the grid,
     /// and errors as part of the reading.
     pub(crate) fn calibrate(&mut self, grid: &SurfaceGrid, presses: &[(Vec<f32>, f32)]) {
-        let (mut errors, mut sparsity) = (0.0, 0.0);
-        for (inputs, error) in presses {
-            if let Some(covered) = self.coverage.covered(grid, nearest::of_grid(grid, inputs)) {
-                errors += error * error;
-                sparsity += covered.sparsity * covered.sparsity;
-            }
-        }
-        if sparsity > 0.0 {
-            self.coverage.error_of_one = (errors / sparsity).sqrt().max(LEAST_ERROR_OF_ONE);
+        let errors = presses.iter().filter_map(|(inputs, error)| {
+            let covered = self.coverage.covered(grid, nearest::of_grid(grid, inputs))?;
+            Some(error / covered.sparsity)
+        });
+        let mut errors: Vec<f32> = errors.collect();
+        errors.sort_by(f32::total_cmp);
+        if let Some(error) = errors.get((SURE * errors.len() as f64) as usize) {
+            self.coverage.error_of_one = error.max(LEAST_ERROR_OF_ONE);
         }
     }
 
@@ -63,7 +62,7 @@ impl Novelty {
         let Some(covered) = self.coverage.covered(grid, nearest::of_grid(grid, inputs)) else {
             return contact;
         };
-        let error = NINE_OF_TEN * self.coverage.error_of_one * covered.sparsity;
+        let error = self.coverage.error_of_one * covered.sparsity;
         contact.max(covered.depth).max(error / TOLERATED)
     }
 }
