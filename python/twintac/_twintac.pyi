@@ -781,7 +781,8 @@ class FastGel:
     def sensor(self) -> str:
         """Name of the sensor whose gel it is."""
     def check(self, sensor: Sensor) -> None:
-        """Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others. Names do not count, nor do indenters, limits and the read-out.
+        """Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
+        Names do not count, nor do indenters, limits and the read-out.
 
         Raises `Error`, which says all that differs.
         """
@@ -812,8 +813,10 @@ class FastReader:
         and torque about the top of its middle, N mm, `[6]`.
         """
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
-        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong: its shape is new, it is deeper than lessons pressed, or too few
-        pressed there."""
+        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
+        above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
+        pressed, or too few pressed there.
+        """
 
 @final
 class Friction:
