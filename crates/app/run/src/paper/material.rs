@@ -55,12 +55,7 @@ impl Paper {
         )?;
         run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
         let start = described.with_material(&yeoh(described))?;
-        // Every step of the fit presses all curves again, with derivatives: coarser than the tables.
-        let settings = SimulateSettings {
-            edges_per_height: 5.0,
-            edges_per_contact_radius: 4.0,
-            ..SimulateSettings::default()
-        };
+        let settings = settings();
         let inputs = self
             .inputs()
             .settings("start", &start.text)?
@@ -101,6 +96,15 @@ impl Paper {
     }
 }
 
+/// How presses are simulated. Every step of the fit presses all curves again, with derivatives: coarser than the tables.
+fn settings() -> SimulateSettings {
+    SimulateSettings {
+        edges_per_height: 5.0,
+        edges_per_contact_radius: 4.0,
+        ..SimulateSettings::default()
+    }
+}
+
 /// The described gel as one of Yeoh's model that stiffens a little, without which a ring may buckle it (Yeoh, Rubber Chemistry and Technology 63, 1990).
 fn yeoh(described: &SensorFile) -> String {
     let material = &described.sensor.gel.material;
@@ -110,4 +114,81 @@ fn yeoh(described: &SensorFile) -> String {
         0.5 * shear_kpa,
         0.1 * shear_kpa,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+    use glam::{DQuat, DVec3};
+    use twintac_calibrate::{Curve, FitSettings, Parameter, Quantity, Signal, fit};
+
+    use super::*;
+    use crate::paper::Effort;
+
+    /// How the gel lies on the bench of reality `harder`, about; with the second turn, the cylinder's rim has a triangle below its middle.
+    const TILTS_RAD: [DVec3; 2] = [DVec3::new(0.02, -0.015, 0.0), DVec3::new(0.018, -0.0135, 0.0)];
+
+    /// Frames of a recorded press a second, about.
+    const RATE_HZ: f64 = 55.0;
+
+    /// Every shape, pressed as the fit presses it at first: its forces, and how they change with all that is fitted.
+    fn presses(tilt_rad: DVec3, is_wanted: impl Fn(&str) -> bool) {
+        let protocol = MATERIAL_PROTOCOL;
+        let described = SensorFile::phystac().unwrap();
+        let mut planned = Planned::parse(protocol.name, protocol.text, &described.sensor, 1).unwrap();
+        planned.presses.truncate(Effort::Full.material_presses());
+        let start = described.with_material(&yeoh(&described)).unwrap();
+        let gel = Gel::new(start.sensor.clone(), settings());
+        let turn = DQuat::from_scaled_axis(tilt_rad).inverse();
+        let curves = planned
+            .presses
+            .iter()
+            .filter(|plan| is_wanted(&plan.indenter))
+            .map(|plan| {
+                let (time_s, depth_mm): (Vec<f64>, Vec<f64>) = plan.trajectory(RATE_HZ).into_iter().unzip();
+                Curve {
+                    name: plan.name.clone(),
+                    shape: gel.shape(&plan.indenter).unwrap().clone(),
+                    friction: gel.friction(&plan.indenter),
+                    x_mm: plan.x_mm,
+                    y_mm: plan.y_mm,
+                    rotation: turn * plan.rotation,
+                    signals: vec![Signal {
+                        quantity: Quantity::Force,
+                        values: depth_mm
+                            .iter()
+                            .map(|depth_mm| depth_mm.max(0.0).powi(2))
+                            .collect(),
+                    }],
+                    time_s,
+                    depth_mm,
+                }
+            });
+        let curves: Vec<Curve> = curves.collect();
+        let settings = FitSettings {
+            most_frames: MOST_FRAMES,
+            max_iterations: 0,
+        };
+        let found = fit(&gel, &curves, &FREE.map(Parameter::named), settings, &mut |_| ()).unwrap();
+        assert_eq!(found.signals.len(), curves.len());
+        assert!(!curves.is_empty());
+        for signal in &found.signals {
+            let largest_n = signal.fitted.iter().copied().fold(0.0, f64::max);
+            assert!(
+                largest_n > 1.0 && largest_n < 60.0,
+                "{}: {largest_n} N",
+                signal.curve
+            );
+        }
+    }
+
+    #[test]
+    fn every_shape_is_pressed_as_the_fit_does() {
+        presses(TILTS_RAD[0], |_| true);
+    }
+
+    #[test]
+    fn a_cylinder_is_pressed_whose_rim_has_a_triangle_below_its_middle() {
+        presses(TILTS_RAD[1], |indenter| indenter == "cylinder");
+    }
 }
