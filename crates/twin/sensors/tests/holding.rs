@@ -266,7 +266,7 @@ fn a_sensor_goes_on_from_its_state_to_the_same_bits() {
         step(&mut batch, &way(moment));
     }
     let state = batch.state(0);
-    let mut go_on =
+    let go_on =
         |batch: &mut CoupledBatch| -> Vec<_> { (20..40).map(|moment| step(batch, &way(moment))).collect() };
     let first = go_on(&mut batch);
     assert_ne!(first, go_on(&mut batch));
