@@ -347,7 +347,7 @@ points = [{ name = "below", position_mm = [0.0, 0.0, 0.0], radius_mm = 1.0 }]
             (
                 "rate_hz = 4.0",
                 "force_direction = [nan, 0.0, 1.0]",
-                "path.toml:5: `force_direction`",
+                "path.toml:5: `force_direction[0]`",
             ),
             (
                 "[1.0, 0.0, -2.0]",
