@@ -64,7 +64,12 @@ impl std::str::FromStr for LengthUnit {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let found = Self::NAMED.iter().find(|(known, _)| *known == name);
-        let expected = || format!("expected one of {}", Self::NAMED.map(|(known, _)| known).join(", "));
+        let expected = || {
+            format!(
+                "expected one of {}",
+                Self::NAMED.map(|(known, _)| known).join(", ")
+            )
+        };
         found.map(|&(_, unit)| unit).ok_or_else(expected)
     }
 }

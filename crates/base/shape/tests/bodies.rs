@@ -145,7 +145,7 @@ fn boxes_that_share_a_face_are_read() {
         ("a corner", cube(2.0, [2.0, 4.0, 4.0])),
     ] {
         let both = surface(&[left.clone(), right.clone()]);
-        let [one, other] = [&left, &right].map(|body| surface(&[body.clone()]));
+        let [one, other] = [&left, &right].map(|body| surface(std::slice::from_ref(body)));
         let apart = other.volume_mm3();
         assert!(
             (both.volume_mm3() - 64.0 - apart).abs() < 1e-9,
@@ -225,7 +225,7 @@ fn what_encloses_nothing_is_refused() {
         [square[0], square[2], square[3]],
     ];
     assert!(matches!(
-        error(&[sheet.clone()]),
+        error(std::slice::from_ref(&sheet)),
         SurfaceError::Empty { triangles: 2 }
     ));
     assert!(matches!(

@@ -329,7 +329,7 @@ impl Indenter {
     pub(crate) fn check_size<T>(&self, document: &Document<T>, within: &str, surfaces: &Surfaces) -> Checked {
         let (low_mm, high_mm) = self.bounds_mm(surfaces);
         ExtentError::check(low_mm, high_mm)
-            .map_err(|error| document.error(&format!("{within}shape"), error.problem(), &error.remedy()))
+            .map_err(|error| document.error(&format!("{within}shape"), error.problem(), error.remedy()))
     }
 
     /// Whether the indenter meets a sensor's gel from some place above it: presses are placed by the indenter's origin.
