@@ -21,6 +21,8 @@ mod error;
 mod evaluation;
 mod features;
 mod model_folder;
+#[cfg(test)]
+mod model_test;
 mod network;
 mod numerics;
 mod physical_fit;
@@ -28,6 +30,8 @@ mod physical_fit;
 mod pipeline_test;
 mod prediction;
 mod seed;
+#[cfg(test)]
+mod settings_test;
 #[cfg(test)]
 mod synthetic;
 mod training;

@@ -1,23 +1,22 @@
 //! From a recording to a twin, against formulas whose truth is known.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-use twintac_config::Checked;
 use twintac_depth_table::DepthTableSource;
 
 use crate::synthetic::{Formula, Truth};
 use crate::*;
 
-struct Made {
-    recording: twintac_recording::Recording,
-    bench: BenchEstimate,
-    presses: Vec<PairedPress>,
-    split: Split,
-    scale: Scale,
+pub(crate) struct Made {
+    pub(crate) recording: twintac_recording::Recording,
+    pub(crate) bench: BenchEstimate,
+    pub(crate) presses: Vec<PairedPress>,
+    pub(crate) split: Split,
+    pub(crate) scale: Scale,
 }
 
-fn make(truth: &Truth, n_places: usize) -> Made {
+pub(crate) fn make(truth: &Truth, n_places: usize) -> Made {
     let recording = truth.recording(n_places);
     let places = Places::of(&recording, &Formula, &PlaceSettings::default()).unwrap();
     let split = Split::new(&recording, &SplitSettings::default(), 1).unwrap();
@@ -54,14 +53,14 @@ fn make(truth: &Truth, n_places: usize) -> Made {
     }
 }
 
-fn unknown_tip() -> BenchSettings {
+pub(crate) fn unknown_tip() -> BenchSettings {
     BenchSettings {
         tip_radii_mm: Some(BenchSettings::UNKNOWN_TIP_RADII_MM.to_vec()),
         ..BenchSettings::default()
     }
 }
 
-fn settings(variants: &[Variant], epochs: usize) -> TrainSettings {
+pub(crate) fn settings(variants: &[Variant], epochs: usize) -> TrainSettings {
     TrainSettings {
         variants: Some(variants.to_vec()),
         epochs,
@@ -69,7 +68,7 @@ fn settings(variants: &[Variant], epochs: usize) -> TrainSettings {
     }
 }
 
-fn train_quietly(made: &Made, settings: &TrainSettings) -> Vec<Trained> {
+pub(crate) fn train_quietly(made: &Made, settings: &TrainSettings) -> Vec<Trained> {
     train_from(made, settings, 1)
 }
 
@@ -268,253 +267,6 @@ fn a_new_file_gives_three_presses_for_its_contact_height() {
 }
 
 #[test]
-fn a_model_survives_its_folder_and_notices_damage() {
-    let mut truth = Truth::new();
-    truth.offsets_mm.truncate(1);
-    let made = make(&truth, 12);
-    let settings = settings(&[Variant::PressureMemoryMlp], 3);
-    let trained = train_quietly(&made, &settings).remove(0);
-    let origin = Origin {
-        surfaces: BTreeMap::new(),
-        sensor: "name = \"formula\"".into(),
-        simulation: serde_json::json!({"edge_mm": 1.0}),
-        bench: made.bench.clone(),
-        settings: TrainedWith { settings, seed: 1 },
-        provenance: made.recording.provenance,
-        files: vec!["file0".into()],
-        taught_by: BTreeSet::new(),
-        split: made.split.clone(),
-        certainty: None,
-    };
-    let model = Model::new(trained.twin, origin, trained.validation, None);
-    let parent = tempfile::tempdir().unwrap();
-    let folder = parent.path().join("twin");
-    model.save(&folder).unwrap();
-    model.save(&folder).unwrap();
-    let again = Model::load(&folder).unwrap();
-    assert_eq!(again.record, model.record);
-    for press in &made.presses {
-        assert_eq!(
-            again.twin.predict(&[&press.features]),
-            model.twin.predict(&[&press.features])
-        );
-    }
-    let card = std::fs::read_to_string(folder.join("CARD.md")).unwrap();
-    let percent = model
-        .record
-        .validation
-        .overall
-        .nearest_in_contact
-        .percent
-        .unwrap();
-    for part in [&model.record.variant.to_string(), &format!("| {percent:.2} |")] {
-        assert!(card.contains(part), "{card}");
-    }
-    let message = |folder: &std::path::Path| Model::load(folder).unwrap_err().to_string();
-    for name in ["weights.safetensors", "twin.json", "checksums.json"] {
-        let path = folder.join(name);
-        let whole = std::fs::read(&path).unwrap();
-        let mut flipped = whole.clone();
-        let middle = flipped.len() / 2;
-        flipped[middle] ^= 4;
-        std::fs::write(&path, flipped).unwrap();
-        assert!(Model::load(&folder).is_err(), "{name}");
-        std::fs::remove_file(&path).unwrap();
-        assert!(
-            message(&folder).contains(name) && message(&folder).contains("missing"),
-            "{}",
-            message(&folder)
-        );
-        std::fs::write(&path, whole).unwrap();
-    }
-    let path = folder.join("checksums.json");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("\"version\": 1", "\"version\": 7")).unwrap();
-    assert!(message(&folder).contains("version 7"), "{}", message(&folder));
-}
-
-/// Writes one number or list of a model's record anew, and its checksum.
-fn change_record(folder: &std::path::Path, pointer: &str, value: serde_json::Value) {
-    let read = |name: &str| -> serde_json::Value {
-        serde_json::from_slice(&std::fs::read(folder.join(name)).unwrap()).unwrap()
-    };
-    let mut record = read("twin.json");
-    *record.pointer_mut(pointer).expect(pointer) = value;
-    std::fs::write(folder.join("twin.json"), record.to_string()).unwrap();
-    say_checksums(folder);
-}
-
-/// Writes checksums of a model's files as they are.
-fn say_checksums(folder: &std::path::Path) {
-    use sha2::{Digest, Sha256};
-    let path = folder.join("checksums.json");
-    let mut checksums: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
-    for (name, sum) in checksums["sha256"].as_object_mut().unwrap() {
-        let digest = Sha256::digest(std::fs::read(folder.join(name)).unwrap());
-        *sum = digest
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect::<String>()
-            .into();
-    }
-    std::fs::write(path, checksums.to_string()).unwrap();
-}
-
-/// A trained model in a folder.
-fn saved(folder: &std::path::Path) -> Model {
-    let mut truth = Truth::new();
-    truth.offsets_mm.truncate(1);
-    let mut made = make(&truth, 12);
-    made.bench.ports = vec![PortEstimate::default(); 4];
-    let settings = settings(&[Variant::PressureMemoryMlp], 1);
-    let trained = train_quietly(&made, &settings).remove(0);
-    let origin = Origin {
-        surfaces: BTreeMap::new(),
-        sensor: "name = \"formula\"".into(),
-        simulation: serde_json::json!({}),
-        bench: made.bench.clone(),
-        settings: TrainedWith { settings, seed: 1 },
-        provenance: made.recording.provenance,
-        files: vec!["file0".into()],
-        taught_by: BTreeSet::new(),
-        split: made.split.clone(),
-        certainty: None,
-    };
-    let model = Model::new(trained.twin, origin, trained.validation, None);
-    model.save(folder).unwrap();
-    model
-}
-
-#[test]
-fn a_model_that_cannot_be_is_refused_with_its_file_and_field() {
-    use serde_json::json;
-    let parent = tempfile::tempdir().unwrap();
-    let good = parent.path().join("good");
-    saved(&good);
-    for (pointer, value, field) in [
-        (
-            "/start/gains/time_constants_s/0",
-            json!(0.0),
-            "start.gains.time_constants_s[0]` is 0",
-        ),
-        (
-            "/start/gains/time_constants_s/1",
-            json!(-4.0),
-            "start.gains.time_constants_s[1]` is -4",
-        ),
-        (
-            "/start/gains/gain/2",
-            json!(1e300),
-            "start.gains.gain[2]` is 1e300",
-        ),
-        (
-            "/start/gains/memory/3",
-            json!([0.1]),
-            "start.gains.memory[3]` has 1 entries",
-        ),
-        (
-            "/start/normalization/reading_kpa",
-            json!(0.0),
-            "start.normalization.reading_kpa` is 0",
-        ),
-        (
-            "/start/normalization/pressure_rms_kpa/1",
-            json!(0.0),
-            "pressure_rms_kpa[1]` is 0",
-        ),
-        (
-            "/start/hidden",
-            json!([1_000_000_000, 1_000_000_000]),
-            "start.hidden[0]` is 1e9",
-        ),
-        (
-            "/start/correction_limit",
-            json!(1e9),
-            "start.correction_limit` is 1e9",
-        ),
-        (
-            "/taxels",
-            json!(["S0", "S1", "S2"]),
-            "start.gains.gain` has 4 entries; one for each of 3 taxels",
-        ),
-        ("/taxels", json!([]), "taxels` names 0 taxels"),
-        (
-            "/bench/ports",
-            json!([{"shift_mm": [0.0, 0.0], "wider_mm": 0.0}]),
-            "bench.ports` has 1 entries",
-        ),
-        (
-            "/bench/contact_offset_elsewhere_mm",
-            json!(1e300),
-            "bench.contact_offset_elsewhere_mm` is 1e300",
-        ),
-        (
-            "/bench/gains/gain",
-            json!([1.0]),
-            "bench.gains.gain` has 1 entries",
-        ),
-    ] {
-        let folder = parent.path().join("bad");
-        Model::load(&good).unwrap().save(&folder).unwrap();
-        change_record(&folder, pointer, value);
-        let error = Model::load(&folder).unwrap_err().to_string();
-        assert!(
-            error.contains("twin.json") && error.contains(field),
-            "{pointer}: {error}"
-        );
-    }
-}
-
-#[test]
-fn weights_that_cannot_be_are_refused_with_their_place() {
-    use safetensors::{Dtype, tensor::TensorView};
-    let parent = tempfile::tempdir().unwrap();
-    let folder = parent.path().join("twin");
-    let model = saved(&folder);
-    for (name, wrong) in [
-        ("layer0.weight", f32::NAN),
-        ("layer1.bias", f32::INFINITY),
-        ("memory_change", 1e30),
-        ("gain_change", 1e3),
-    ] {
-        let mut weights = model.twin.parameters().weights();
-        weights.get_mut(name).unwrap().1[1] = wrong;
-        let bytes: Vec<_> = weights
-            .iter()
-            .map(|(name, (shape, data))| {
-                let bytes: Vec<u8> = data.iter().flat_map(|number| number.to_le_bytes()).collect();
-                (name, shape, bytes)
-            })
-            .collect();
-        let views = bytes.iter().map(|(name, shape, data)| {
-            (
-                *name,
-                TensorView::new(Dtype::F32, (*shape).clone(), data).unwrap(),
-            )
-        });
-        let packed = safetensors::serialize(views, None).unwrap();
-        std::fs::write(folder.join("weights.safetensors"), packed).unwrap();
-        say_checksums(&folder);
-        let error = Model::load(&folder).unwrap_err().to_string();
-        let place = format!("`{name}[1]`");
-        assert!(
-            error.contains("weights.safetensors") && error.contains(&place),
-            "{error}"
-        );
-    }
-}
-
-#[test]
-fn a_model_of_before_the_seed_stood_beside_the_settings_is_read() {
-    let text = r#"{"variants": ["pressure"], "seed": 7, "epochs": 3}"#;
-    let read: TrainedWith = serde_json::from_str(text).unwrap();
-    assert_eq!((read.seed, read.settings.epochs), (7, 3));
-    assert_eq!(read.settings.variants, Some(vec![Variant::Pressure]));
-    let again: TrainedWith = serde_json::from_str(&serde_json::to_string(&read).unwrap()).unwrap();
-    assert_eq!(again, read);
-}
-
-#[test]
 fn a_gel_that_no_press_touches_is_not_adapted_to() {
     let truth = Truth::new();
     let made = make(&truth, 21);
@@ -565,145 +317,6 @@ fn a_gel_that_no_press_touches_is_not_adapted_to() {
         &nothing,
     );
     assert_eq!(height.unwrap(), None);
-}
-
-#[test]
-fn a_variant_that_no_validation_press_in_contact_judges_is_not_chosen() {
-    let made = make(&Truth::new(), 12);
-    let variants = [Variant::Pressure, Variant::PressureMemory];
-    let mut trained = train_quietly(&made, &settings(&variants, 1));
-    assert!(choose(&trained).is_ok());
-    trained[0].validation.overall = Errors::default();
-    assert_eq!(choose(&trained).unwrap().twin.variant(), Variant::PressureMemory);
-    trained[1].validation.overall = Errors::default();
-    let error = choose(&trained).unwrap_err().to_string();
-    assert!(error.contains("validation presses in contact"), "{error}");
-    assert!(choose(&[]).is_err());
-}
-
-/// The ends of ranges, and the zeros that switch something off: a bench is fitted all the same, and a twin trained.
-#[test]
-fn the_ends_of_ranges_are_settings_like_others() {
-    let mut truth = Truth::new();
-    truth.offsets_mm.truncate(1);
-    let made = make(&truth, 8);
-    let places = Places::of(&made.recording, &Formula, &PlaceSettings::default()).unwrap();
-    let places = places.with_tip_radius(Some(2.7));
-    let tables = Formula.depth_tables(&places.requests).unwrap();
-    let taxels = Taxels {
-        ports_mm: crate::synthetic::TAXELS_X_MM.map(|x| [x, 0.0]).to_vec(),
-        left_out: BTreeSet::new(),
-    };
-    let teachers = &made.split.train;
-    let benches: [fn(&mut BenchSettings); 9] = [
-        |settings| settings.contact_offset_limit_mm = 0.0,
-        |settings| settings.contact_offset_limit_mm = 5.0,
-        |settings| settings.port_shift_limit_mm = 0.0,
-        |settings| (settings.port_shift_limit_mm, settings.port_radius_limit_mm) = (5.0, 5.0),
-        |settings| (settings.port_shift_pull, settings.smooth_factor_pull) = (0.0, 0.0),
-        |settings| (settings.port_shift_pull, settings.smooth_factor_pull) = (1e6, 1e6),
-        |settings| settings.port_radius_limit_mm = 0.0,
-        |settings| settings.time_constants_s = vec![1e-3, 1e4],
-        |settings| settings.time_constants_s.clear(),
-    ];
-    for change in benches {
-        let mut settings = BenchSettings {
-            n_blocks: 2,
-            ..BenchSettings::default()
-        };
-        change(&mut settings);
-        settings.checked().unwrap();
-        let nominal = BenchEstimate::nominal();
-        let found = refine_bench(
-            &made.recording,
-            &places,
-            &tables,
-            teachers,
-            &nominal,
-            &settings,
-            &taxels,
-        )
-        .unwrap();
-        assert!(found.deviation_percent.is_finite(), "{settings:?}");
-        assert!(found.contact_offset_mm("file0").abs() <= settings.contact_offset_limit_mm);
-    }
-    let warps: [fn(&mut WarpSettings); 6] = [
-        |warp| warp.window_s = 0.0,
-        |warp| warp.window_s = 10.0,
-        |warp| warp.step_cost = 0.0,
-        |warp| warp.smoothing_s = 0.0,
-        |warp| warp.smoothing_s = 10.0,
-        |warp| warp.believed_below = 0.0,
-    ];
-    for change in warps {
-        let mut settings = PairSettings::default();
-        change(&mut settings.warp);
-        settings.checked().unwrap();
-        let pairs = pair(&made.recording, &places, &tables, &made.bench, &settings).unwrap();
-        let warped = pairs.iter().flat_map(|pair| &pair.warp.measured_index);
-        assert!(warped.clone().all(|index| index.is_finite()), "{settings:?}");
-    }
-    let trainings: [fn(&mut TrainSettings); 6] = [
-        |settings| (settings.weight_decay, settings.correction_noise) = (0.0, 0.0),
-        |settings| settings.correction_limit = 0.0,
-        |settings| settings.correction_hidden.clear(),
-        |settings| settings.correction_hidden = vec![1; 8],
-        |settings| (settings.batch_frames, settings.max_frames) = (1, 2),
-        |settings| settings.learning_rate = 1e-6,
-    ];
-    for change in trainings {
-        let mut settings = settings(&[Variant::PressureMemoryMlp], 2);
-        change(&mut settings);
-        let trained = train_quietly(&made, &settings);
-        let percent = trained[0].validation.overall.all.percent;
-        assert!(percent.is_some_and(f64::is_finite), "{settings:?}");
-    }
-}
-
-#[test]
-fn settings_that_cannot_be_are_refused_before_anything_is_fitted() {
-    let made = make(&Truth::new(), 12);
-    let places = Places::of(&made.recording, &Formula, &PlaceSettings::default()).unwrap();
-    let bench = |settings: BenchSettings| {
-        let taxels = Taxels::default();
-        let found = fit_bench(
-            &made.recording,
-            &places,
-            &made.split.train,
-            &Formula,
-            &settings,
-            &taxels,
-        );
-        found.unwrap_err().to_string()
-    };
-    let error = bench(BenchSettings {
-        contact_offset_limit_mm: 1e300,
-        ..unknown_tip()
-    });
-    assert_eq!(
-        error,
-        "setting `contact_offset_limit_mm` is 1e300; give 0, or 0.001 to 5"
-    );
-    let error = bench(BenchSettings {
-        tip_radii_mm: Some(vec![0.001, 900.0]),
-        ..BenchSettings::default()
-    });
-    assert_eq!(error, "setting `tip_radii_mm[0]` is 0.001; give 0.1 to 100");
-    let settings = TrainSettings {
-        correction_hidden: vec![1_000_000_000; 2],
-        ..settings(&[Variant::PressureMlp], 1)
-    };
-    let trained = train(
-        &made.presses,
-        &made.recording.taxels,
-        &made.split,
-        &made.scale,
-        &settings,
-        1,
-        &mut |_| ControlFlow::Continue(()),
-    );
-    let error = trained.unwrap_err().to_string();
-    assert_eq!(error, "setting `correction_hidden[0]` is 1e9; give 1 to 1024");
 }
 
 #[test]

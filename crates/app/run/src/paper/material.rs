@@ -133,3 +133,127 @@ fn yeoh(described: &SensorFile) -> String {
         0.1 * shear_kpa,
     )
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+    use glam::{DQuat, DVec3};
+    use twintac_calibrate::{Curve, FitSettings, Parameter, Quantity, Signal, fit};
+
+    use super::*;
+    use crate::paper::Effort;
+
+    /// How the gel lies on the bench of reality `harder`, about, rad.
+    const TILT_RAD: DVec3 = DVec3::new(0.02, -0.015, 0.0);
+
+    /// Frames of a recorded press a second, about.
+    const RATE_HZ: f64 = 55.0;
+
+    /// The press of a cylinder on whose way back a coarse triangle had a point deep inside the rounded rim: times, s, and depths, mm.
+    const DEEP_INSIDE_A_RIM: [[f64; 2]; 17] = [
+        [0.182_025, -0.245_265],
+        [0.236_127, -0.136_202],
+        [0.363_768, 0.118_279],
+        [0.618_158, 0.627_241],
+        [1.109_699, 1.608_811],
+        [1.854_498, 3.099_342],
+        [2.036_681, 3.462_887],
+        [2.054_545, 3.490_153],
+        [2.090_586, 3.490_153],
+        [2.200_600, 3.490_153],
+        [2.491_506, 3.490_153],
+        [2.545_371, 3.490_153],
+        [2.600_674, 3.390_178],
+        [2.745_721, 3.099_342],
+        [3.054_005, 2.481_317],
+        [3.618_235, 1.354_330],
+        [4.418_240, -0.245_265],
+    ];
+
+    /// The gel as the fit begins with it.
+    fn gel() -> Gel {
+        let described = SensorFile::phystac().unwrap();
+        let start = described.with_material(&yeoh(&described)).unwrap();
+        Gel::new(start.sensor.clone(), fit_settings())
+    }
+
+    /// A press of so many depths, mm, over time, s; what was measured does not count here.
+    fn curve(
+        gel: &Gel,
+        indenter: &str,
+        [x_mm, y_mm]: [f64; 2],
+        rotation: DQuat,
+        depths: &[[f64; 2]],
+    ) -> Curve {
+        let depth_mm: Vec<f64> = depths.iter().map(|[_, depth_mm]| *depth_mm).collect();
+        let values = depth_mm
+            .iter()
+            .map(|depth_mm| depth_mm.max(0.0).powi(2))
+            .collect();
+        Curve {
+            name: indenter.to_owned(),
+            shape: gel.shape(indenter).unwrap().clone(),
+            friction: gel.friction(indenter),
+            x_mm,
+            y_mm,
+            rotation,
+            time_s: depths.iter().map(|[time_s, _]| *time_s).collect(),
+            depth_mm,
+            signals: vec![Signal {
+                quantity: Quantity::Force,
+                values,
+            }],
+        }
+    }
+
+    /// Presses as the fit presses first, with how the forces change with all that is fitted.
+    fn press(gel: &Gel, curves: &[Curve], most_frames: usize) {
+        let settings = FitSettings {
+            most_frames,
+            max_iterations: 0,
+        };
+        let free = FREE.map(Parameter::named);
+        let found = fit(gel, curves, &free, settings, &mut |_| ()).unwrap();
+        assert_eq!(found.signals.len(), curves.len());
+        for signal in &found.signals {
+            let largest_n = signal.fitted.iter().copied().fold(0.0, f64::max);
+            let curve = &signal.curve;
+            assert!((1.0..60.0).contains(&largest_n), "{curve}: {largest_n} N");
+        }
+    }
+
+    #[test]
+    fn every_shape_is_pressed_as_the_fit_does() {
+        let (gel, protocol) = (gel(), MATERIAL_PROTOCOL);
+        let mut planned = Planned::parse(protocol.name, protocol.text, gel.sensor(), 1).unwrap();
+        planned.presses.truncate(Effort::Full.material_presses());
+        let turn = DQuat::from_scaled_axis(TILT_RAD).inverse();
+        let curves = planned.presses.iter().map(|plan| {
+            let depths: Vec<[f64; 2]> = plan
+                .trajectory(RATE_HZ)
+                .into_iter()
+                .map(|(time_s, depth_mm)| [time_s, depth_mm])
+                .collect();
+            let place_mm = [plan.x_mm, plan.y_mm];
+            curve(&gel, &plan.indenter, place_mm, turn * plan.rotation, &depths)
+        });
+        let curves: Vec<Curve> = curves.collect();
+        assert_eq!(curves.len(), gel.sensor().indenters.len());
+        press(&gel, &curves, MOST_FRAMES);
+    }
+
+    #[test]
+    fn a_press_with_a_point_deep_inside_a_rim_has_rates() {
+        let gel = gel();
+        let turn = DQuat::from_xyzw(
+            0.007_708_429_820_884_6,
+            0.008_193_733_607_527_714,
+            0.993_739_832_571_926_2,
+            -0.111_151_194_321_902_78,
+        );
+        let place_mm = [2.678_616, -2.334_323];
+        let mut smooth = curve(&gel, "cylinder", place_mm, turn, &DEEP_INSIDE_A_RIM);
+        smooth.friction = 0.0;
+        press(&gel, &[smooth], DEEP_INSIDE_A_RIM.len());
+    }
+}

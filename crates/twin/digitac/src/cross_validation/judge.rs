@@ -76,7 +76,8 @@ pub struct Judgement {
 /// Those of the fits; too few presses.
 pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> {
     let (recording, places) = (bench.recording, bench.places);
-    let left_out = &bench.taxels.left_out;
+    let taxels = bench.taxels;
+    let left_out = &taxels.left_out;
     let split = &fold.split;
     let teachers = [&split.train[..], &split.validation].concat();
     let taught = fold.taxel.map(|taxel| new_taxel::without(recording, taxel));
@@ -88,18 +89,10 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     };
     let mut found = BenchEstimate::nominal();
     if bench.tables.len() > 1 {
-        found = fit_radius(taught, places, bench.tables, &teachers, &settings, bench.taxels)?;
+        found = fit_radius(taught, places, bench.tables, &teachers, &settings, taxels)?;
     }
     let tables = bench.tables_at(&found);
-    let mut fitted = refine_bench(
-        taught,
-        places,
-        &tables,
-        &teachers,
-        &found,
-        &settings,
-        bench.taxels,
-    )?;
+    let mut fitted = refine_bench(taught, places, &tables, &teachers, &found, &settings, taxels)?;
     let whole = pair(recording, places, &tables, &fitted, bench.pair)?;
     let scale = Scale::of(&whole, left_out.clone());
     let pairs = match fold.taxel {
