@@ -1,19 +1,23 @@
 //! Many imperfect sensors.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use numpy::PyArray2;
-use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::array::{Numbers, rows};
+use crate::array::rows;
 use crate::error::{OrRaise, unreadable, unusable};
-use crate::fast::{Answers, FastGel, PROVENANCE, n_cores};
+use crate::fast::{Answers, FastGel, PROVENANCE};
+use crate::given::{Given, since, threads};
+use crate::pickle::{Kept, Reduced, reduced, refused as no_pickle};
+use crate::pool::in_parallel;
 use crate::sensor::Sensor;
 use crate::settings::{as_toml, refused};
 use crate::shape::Body;
-use crate::touches::{Counts, Touches, bodies, touch_ids};
+use crate::shared::Shared;
+use crate::touches::{Touches, bodies, touch_ids};
 use crate::twin::Twin;
 
 /// Why a coupling needs to know what is what.
@@ -72,8 +76,25 @@ impl Imperfection {
         })
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!("<{:?}>", self.imperfection)
+    }
+}
+
+impl Kept for Imperfection {
+    type State = twintac::Imperfection;
+
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::Imperfection> {
+        Ok(self.imperfection.clone())
+    }
+
+    fn restored(_: Python<'_>, imperfection: twintac::Imperfection) -> PyResult<Self> {
+        Ok(Self { imperfection })
     }
 }
 
@@ -87,7 +108,9 @@ impl Imperfection {
 #[derive(Clone)]
 pub(crate) struct Coupling {
     coupling: twintac::Coupling,
-    sensor: twintac::Sensor,
+    /// Of what it was made.
+    sensor: Sensor,
+    friction: f64,
 }
 
 #[pymethods]
@@ -103,8 +126,38 @@ impl Coupling {
                 friction: crate::friction::friction(py, sensor, ("friction", friction))?,
                 retardation_s,
             },
-            sensor: sensor.sensor.clone(),
+            sensor: sensor.clone(),
+            friction,
         })
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Coupling on {:?}, friction {}, retardation {} s>",
+            self.sensor.sensor.name(),
+            self.friction,
+            self.coupling.retardation_s
+        )
+    }
+}
+
+impl Kept for Coupling {
+    type State = (<Sensor as Kept>::State, [f64; 2]);
+
+    fn state(&self, py: Python<'_>) -> PyResult<Self::State> {
+        Ok((
+            self.sensor.state(py)?,
+            [self.friction, self.coupling.retardation_s],
+        ))
+    }
+
+    fn restored(py: Python<'_>, (sensor, [friction, retardation_s]): Self::State) -> PyResult<Self> {
+        Self::new(py, &Sensor::restored(py, sensor)?, friction, retardation_s)
     }
 }
 
@@ -116,16 +169,19 @@ impl Coupling {
 /// - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
 /// - `coupling`: how bodies and gels hold each other; neither friction nor loss unless given.
 /// - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
-/// - `n_threads`: as many as there are cores unless given; results do not depend on it.
+/// - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
+/// - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 ///
-/// Raises `Error` for a twin or a coupling of a sensor whose gel it is not, and if there is no
-/// body.
-#[pyclass(module = "twintac")]
+/// Raises `Error` for a twin or a coupling of a sensor whose gel it is not, if there is no body, and for a number that is out of its range.
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct SensorBatch {
-    batch: Batch,
-    bodies: Vec<twintac::Body>,
+    batch: Shared<Batch>,
+    bodies: Shared<Arc<[twintac::Body]>>,
+    n_sensors: usize,
     n_taxels: usize,
     has_twin: bool,
+    is_coupled: bool,
+    n_threads: usize,
 }
 
 /// Sensors that hold what touches them, or not.
@@ -140,13 +196,18 @@ enum Batch {
 #[pyclass(frozen, from_py_object, module = "twintac")]
 #[derive(Clone)]
 pub(crate) struct SensorState {
-    state: std::sync::Arc<twintac::SensorState>,
+    state: Arc<twintac::SensorState>,
 }
 
 #[pymethods]
 impl SensorState {
     fn __repr__(&self) -> String {
         format!("<SensorState of {} taxels, simulated>", self.state.n_taxels())
+    }
+
+    /// A state goes on where it was taken: the memory of a process.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle("SensorState", "set it back in the process that took it")
     }
 
     /// It never changes: a copy is itself.
@@ -163,23 +224,23 @@ impl SensorState {
 #[pymethods]
 impl SensorBatch {
     #[new]
-    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None))]
+    #[pyo3(signature = (gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=None, n_threads=None), text_signature = "(gel, bodies, n_sensors, *, imperfection=None, twin=None, coupling=None, seed=0, n_threads=None)")]
     #[allow(clippy::too_many_arguments)] // keywords in Python
     fn new(
         py: Python<'_>,
         gel: &FastGel,
         bodies: Vec<Body>,
-        n_sensors: usize,
+        n_sensors: Given<'_>,
         imperfection: Option<Imperfection>,
         twin: Option<PyRef<'_, Twin>>,
         coupling: Option<Coupling>,
-        seed: u64,
-        n_threads: Option<usize>,
+        seed: Option<Given<'_>>,
+        n_threads: Option<Given<'_>>,
     ) -> PyResult<Self> {
         let bodies = self::bodies(py, bodies)?;
         let imperfection = imperfection.map(|own| own.imperfection).unwrap_or_default();
         let n_taxels = gel.gel.n_taxels();
-        let twin = twin.map(|twin| std::sync::Arc::clone(&twin.twin));
+        let twin = twin.map(|twin| Arc::clone(&twin.twin));
         if let Some(twin) = &twin {
             agrees(py, "twin", &gel.gel, twin.sensor())?;
             let n_of_twin = twin.sensor().taxels().count();
@@ -188,24 +249,31 @@ impl SensorBatch {
                 return Err(unusable(py, "twin", &problem));
             }
         }
+        let n_sensors = n_sensors.count("n_sensors", 1..=twintac::most_sensors(n_taxels))?;
+        let seed = seed.map_or(Ok(0), |seed| seed.seed("seed"))?;
+        let n_threads = threads(n_threads)?;
         if let Some(coupling) = &coupling {
-            agrees(py, "coupling", &gel.gel, &coupling.sensor)?;
+            agrees(py, "coupling", &gel.gel, &coupling.sensor.sensor)?;
         }
         let has_twin = twin.is_some();
-        let sizes = [n_sensors, n_threads.unwrap_or_else(n_cores)];
+        let sizes = [n_sensors, n_threads];
         let batch = py.detach(|| match twin {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
             None => twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed),
         });
+        let is_coupled = coupling.is_some();
         let batch = match coupling {
             Some(own) => Batch::Coupled(batch.with_coupling(own.coupling)),
             None => Batch::Free(batch),
         };
         Ok(Self {
-            batch,
-            bodies,
+            batch: Shared::new(batch),
+            bodies: Shared::new(bodies.into()),
+            n_sensors,
             n_taxels,
             has_twin,
+            is_coupled,
+            n_threads,
         })
     }
 
@@ -219,9 +287,9 @@ impl SensorBatch {
     /// under the things' `touch_id`.
     ///
     /// Raises `Error` if there is no body.
-    fn set_bodies(&mut self, py: Python<'_>, bodies: Vec<Body>) -> PyResult<()> {
-        self.bodies = self::bodies(py, bodies)?;
-        Ok(())
+    fn set_bodies(&self, py: Python<'_>, bodies: Vec<Body>) -> PyResult<()> {
+        let bodies = self::bodies(py, bodies)?.into();
+        self.bodies.look(py, |held| *held = bodies)
     }
 
     /// One more moment of every sensor, `since_previous_s` after the last. `gel_from_body`, `body`
@@ -239,26 +307,27 @@ impl SensorBatch {
     /// be, and if a thing touches one sensor twice. Nothing has been done then.
     #[pyo3(signature = (since_previous_s, gel_from_body, body=None, ends=None, *, touch_id=None))]
     fn step<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         since_previous_s: f64,
-        gel_from_body: Numbers<'_, Ix2>,
-        body: Option<Counts<'_>>,
-        ends: Option<Counts<'_>>,
-        touch_id: Option<Counts<'_>>,
+        gel_from_body: Given<'_>,
+        body: Option<Given<'_>>,
+        ends: Option<Given<'_>>,
+        touch_id: Option<Given<'_>>,
     ) -> PyResult<Answers<'py>> {
         since(py, since_previous_s)?;
+        let bodies = self.bodies.look(py, |held| Arc::clone(held))?;
         let Touches { touches, ends } = Touches::checked(
             py,
             &gel_from_body,
             body.as_ref(),
             ends.as_ref(),
-            self.bodies.len(),
+            bodies.len(),
         )?;
         let ids = touch_id
             .map(|ids| touch_ids(py, &ids, touches.len()))
             .transpose()?;
-        let n_sensors = self.n_sensors();
+        let n_sensors = self.n_sensors;
         if ends.len() != n_sensors {
             let problem = format!(
                 "has {} numbers, expected one for each of {n_sensors} sensors",
@@ -268,22 +337,33 @@ impl SensorBatch {
         }
         let mut readings_kpa = vec![0.0; n_sensors * self.n_taxels];
         let mut wrench = vec![[0.0; 6]; n_sensors];
-        let (bodies, readings, wrenches) = (&self.bodies, &mut readings_kpa, &mut wrench);
-        match &mut self.batch {
-            Batch::Free(batch) => {
-                py.detach(|| batch.step(since_previous_s, bodies, &touches, &ends, readings, wrenches));
+        let held = match (self.is_coupled, ids) {
+            (false, _) => Vec::new(),
+            (true, None) => return Err(unusable(py, "touch_id", NO_TOUCH_ID)),
+            (true, Some(ids)) => {
+                let touches = ids.into_iter().zip(&touches);
+                touches.map(|(id, touch)| twintac::HeldTouch { id, touch: *touch }).collect()
             }
-            Batch::Coupled(batch) => {
-                let ids = ids.ok_or_else(|| unusable(py, "touch_id", NO_TOUCH_ID))?;
-                let held: Vec<twintac::HeldTouch> = ids
-                    .into_iter()
-                    .zip(touches)
-                    .map(|(id, touch)| twintac::HeldTouch { id, touch })
-                    .collect();
-                py.detach(|| batch.step(since_previous_s, bodies, &held, &ends, readings, wrenches))
-                    .map_err(|twice| unusable(py, "touch_id", &format!("is wrong: {twice}")))?;
+        };
+        let done = self.batch.work(py, |batch| {
+                        let (readings_kpa, wrench) = (&mut readings_kpa[..], &mut wrench[..]);
+            let mut step = || match batch {
+                Batch::Free(batch) => {
+                    batch.step(since_previous_s, &bodies, &touches, &ends, readings_kpa, wrench);
+                    Ok(())
+                }
+                Batch::Coupled(batch) => {
+                    batch.step(since_previous_s, &bodies, &held, &ends, readings_kpa, wrench)
+                }
+            };
+            // Nobody has to be woken for one thread.
+            if self.n_threads > 1 {
+                in_parallel(step)
+            } else {
+                step()
             }
-        }
+        })?;
+        done.map_err(|twice| unusable(py, "touch_id", &format!("is wrong: {twice}")))?;
         Ok((
             rows(py, readings_kpa, [n_sensors, self.n_taxels])?,
             rows(py, wrench.into_flattened(), [n_sensors, 6])?,
@@ -294,24 +374,24 @@ impl SensorBatch {
     /// gel, N, and torque about the top of its middle, N mm,
     /// `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
     fn wrench_of_touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let wrenches: Vec<f32> = match &self.batch {
+        let wrenches: Vec<f32> = self.batch.look(py, |batch| match batch {
             Batch::Free(_) => Vec::new(),
             Batch::Coupled(batch) => batch.wrench_of_touches().flatten().copied().collect(),
-        };
+        })?;
         let n_touches = wrenches.len() / 6;
         rows(py, wrenches, [n_touches, 6])
     }
 
     /// What one sensor, counted from 0, is and remembers now: set back, it goes on to the same
     /// bits.
-    fn state(&self, py: Python<'_>, sensor: usize) -> PyResult<SensorState> {
-        self.check(py, sensor)?;
-        let state = match &self.batch {
+    fn state(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<SensorState> {
+        let sensor = self.number(&sensor)?;
+        let state = self.batch.look(py, |batch| match batch {
             Batch::Free(batch) => batch.state(sensor),
             Batch::Coupled(batch) => batch.state(sensor),
-        };
+        })?;
         Ok(SensorState {
-            state: std::sync::Arc::new(state),
+            state: Arc::new(state),
         })
     }
 
@@ -320,8 +400,9 @@ impl SensorBatch {
     ///
     /// Raises `Error` for the state of a sensor with other taxels, or with a twin where this one
     /// has none.
-    fn set_state(&mut self, py: Python<'_>, sensor: usize, state: SensorState) -> PyResult<()> {
-        self.check(py, sensor)?;
+    #[allow(clippy::needless_pass_by_value)] // as Python gives it
+    fn set_state(&self, py: Python<'_>, sensor: Given<'_>, state: SensorState) -> PyResult<()> {
+        let sensor = self.number(&sensor)?;
         let (own, given) = (
             (self.n_taxels, self.has_twin),
             (state.state.n_taxels(), state.state.has_twin()),
@@ -336,57 +417,57 @@ impl SensorBatch {
             let problem = format!("is of a sensor of {}, expected {}", text(given), text(own));
             return Err(unusable(py, "state", &problem));
         }
-        match &mut self.batch {
+        self.batch.look(py, |batch| match batch {
             Batch::Free(batch) => batch.set_state(sensor, &state.state),
             Batch::Coupled(batch) => batch.set_state(sensor, &state.state),
-        }
-        Ok(())
+        })
     }
 
     /// Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has.
-    fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
-        self.check(py, sensor)?;
-        match &mut self.batch {
+    fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
+        let sensor = self.number(&sensor)?;
+        self.batch.look(py, |batch| match batch {
             Batch::Free(batch) => batch.rest(sensor),
             Batch::Coupled(batch) => batch.rest(sensor),
-        }
-        Ok(())
+        })
     }
 
     /// Puts another sensor in the place of one, counted from 0, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
     /// below the number of sensors are the first ones.
-    fn replace(&mut self, py: Python<'_>, sensor: usize, number: u64) -> PyResult<()> {
-        self.check(py, sensor)?;
-        match &mut self.batch {
+    fn replace(&self, py: Python<'_>, sensor: Given<'_>, number: Given<'_>) -> PyResult<()> {
+        let sensor = self.number(&sensor)?;
+        let number = number.seed("number")?;
+        self.batch.look(py, |batch| match batch {
             Batch::Free(batch) => batch.replace(sensor, number),
             Batch::Coupled(batch) => batch.replace(sensor, number),
-        }
-        Ok(())
+        })
+    }
+
+    /// Sensors that are stepped are no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle(
+            "SensorBatch",
+            "pickle its gel, bodies and imperfection, and make one in each process",
+        )
     }
 
     fn __len__(&self) -> usize {
-        self.n_sensors()
+        self.n_sensors
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let n_bodies = self.bodies.look(py, |held| held.len())?;
+        let (n_sensors, n_taxels) = (self.n_sensors, self.n_taxels);
+        Ok(format!(
+            "<SensorBatch of {n_sensors} sensors of {n_taxels} taxels, {n_bodies} bodies, {PROVENANCE}>"
+        ))
     }
 }
 
 impl SensorBatch {
-    fn n_sensors(&self) -> usize {
-        match &self.batch {
-            Batch::Free(batch) => batch.n_sensors(),
-            Batch::Coupled(batch) => batch.n_sensors(),
-        }
-    }
-
-    fn check(&self, py: Python<'_>, sensor: usize) -> PyResult<()> {
-        let n_sensors = self.n_sensors();
-        if sensor < n_sensors {
-            return Ok(());
-        }
-        Err(unusable(
-            py,
-            "sensor",
-            &format!("is {sensor}, there are {n_sensors}"),
-        ))
+    /// Which sensor is meant, counted from 0.
+    fn number(&self, sensor: &Given<'_>) -> PyResult<usize> {
+        sensor.count("sensor", 0..=self.n_sensors - 1)
     }
 }
 
@@ -409,13 +490,4 @@ fn agrees(py: Python<'_>, field: &str, gel: &twintac::FastGel, sensor: &twintac:
         gel.sensor()
     );
     Err(unusable(py, field, &problem))
-}
-
-/// A time between frames that can be.
-pub(crate) fn since(py: Python<'_>, since_previous_s: f64) -> PyResult<()> {
-    if since_previous_s >= 0.0 && since_previous_s.is_finite() {
-        return Ok(());
-    }
-    let problem = format!("is {since_previous_s}, expected 0 or more");
-    Err(unusable(py, "since_previous_s", &problem))
 }

@@ -169,7 +169,7 @@ def test_sensors_refuse_what_cannot_be(ball: Body) -> None:
     with pytest.raises(Error, match="since_previous_s"):
         sensors.step(-0.01, np.zeros((2, 3)))
     for on_a_sensor in (sensors.rest, sensors.state):
-        with pytest.raises(Error, match="there are 2"):
+        with pytest.raises(Error, match="`sensor` is 2, expected an integer from 0 to 1"):
             on_a_sensor(2)
     with pytest.raises(Error, match="at least one"):
         sensors.set_bodies([])

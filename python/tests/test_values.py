@@ -325,3 +325,19 @@ def test_a_surface_presses_as_the_box_that_it_is(tmp_path: Path) -> None:
     assert reader.read([(Body(tenth), pose)])[0] == pytest.approx(small_kpa, abs=0.05)
     for shape in (surface, whole):
         assert reader.read([(Body(shape), pose)])[0] == pytest.approx(expected_kpa, abs=0.05)
+
+
+def test_a_taxel_without_a_reading_is_left_out_of_the_map() -> None:
+    sensor, readings = Sensor.phystac(), [5.0] * 8
+    whole = PressureMap(sensor, readings, "real")
+    readings[2] = float("nan")
+    without = PressureMap(sensor, readings, "real")
+    masked = PressureMap(sensor, np.ma.masked_array([5.0] * 8, mask=[taxel == 2 for taxel in range(8)]), "real")
+    x_mm, y_mm, _ = sensor.taxel_positions_mm[2]
+    (low_x, low_y, _), (high_x, high_y, _) = sensor.bounds_mm
+    row, column = int((y_mm - low_y) / (high_y - low_y) * 64), int((x_mm - low_x) / (high_x - low_x) * 96)
+    assert without.missing == ["t2"] and whole.missing == []
+    assert np.array_equal(without.pressure_kpa, masked.pressure_kpa)
+    assert without.pressure_kpa[row, column] == pytest.approx(5.0, rel=0.5)
+    assert np.isnan(PressureMap(sensor, [np.nan] * 8, "real").pressure_kpa).all()
+    assert "without t2" in without._repr_svg_() and "without" not in whole._repr_svg_()

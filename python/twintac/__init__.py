@@ -42,6 +42,7 @@ from twintac._twintac import (
     Twin,
     TwinAtPlace,
     TwinState,
+    __version__,
 )
 
 __all__ = [
@@ -81,4 +82,5 @@ __all__ = [
     "Twin",
     "TwinAtPlace",
     "TwinState",
+    "__version__",
 ]

@@ -95,6 +95,10 @@ impl Error {
                 twintac_inverse::InverseError::Setting(problem)
                 | twintac_inverse::InverseError::Frame(problem),
             ) => of_field(&problem.field),
+            #[cfg(feature = "tasks")]
+            Self::Task(twintac_tasks::TaskError::Count { .. }) => of_field("n_environments"),
+            #[cfg(feature = "map")]
+            Self::Map(twintac_map::MapError::Input { .. }) => of_field("readings_kpa"),
             #[cfg(feature = "map")]
             Self::Picture(
                 twintac_plot::PlotError::Format { path } | twintac_plot::PlotError::Write { path, .. },
@@ -123,6 +127,7 @@ fn of_shape(error: &twintac_shape::ShapeError) -> ErrorPlace {
 fn of_simulation(error: &twintac_simulate::SimulateError) -> ErrorPlace {
     match error {
         twintac_simulate::SimulateError::NoIndenter { .. } => of_field("indenter"),
+        twintac_simulate::SimulateError::ForceLimit { .. } => of_field("force_n"),
         _ => ErrorPlace::default(),
     }
 }

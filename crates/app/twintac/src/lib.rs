@@ -217,6 +217,7 @@ pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{
     CoupledBatch, Coupling, HeldTouch, Imperfection, SensorBatch, SensorState, TouchId, TouchedTwice,
+    most_sensors,
 };
 pub use twintac_shape::{LengthUnit, Part, Pose, Shape, SurfaceFile, Surfaces, TriangleSurface};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};

@@ -55,9 +55,22 @@ impl SensorFile {
     /// Those of [`Sensor::parse`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, SensorError> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Self::parse_with(path, text, &|name| std::fs::read(folder.join(name)))
+    }
+
+    /// The same with files of materials and surfaces that `load` gives by the names that the description has for them.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`].
+    pub fn parse_with(
+        path: &Path,
+        text: &str,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let loaded = RefCell::new(BTreeMap::new());
         let load = |name: &str| {
-            let bytes = std::fs::read(folder.join(name))?;
+            let bytes = load(name)?;
             loaded.borrow_mut().insert(name.to_owned(), Arc::from(&*bytes));
             Ok(bytes)
         };
@@ -133,16 +146,18 @@ impl SensorFile {
             toml::from_str(&self.text).map_err(|found| self.unreadable("", &found))?;
         edit(&mut description);
         let text = toml::to_string(&description).map_err(|found| self.unreadable("", &found))?;
-        Self::parse(&self.file(), &text)
+        Self::parse(&self.path(), &text)
     }
 
-    fn file(&self) -> PathBuf {
+    /// Where the description lies, or would lie if it is of no file.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
         self.folder.join(&self.sensor.name).with_extension("toml")
     }
 
     fn unreadable(&self, field: &str, found: &dyn std::fmt::Display) -> SensorError {
         SensorError {
-            file: self.file().display().to_string(),
+            file: self.path().display().to_string(),
             line: 0,
             field: field.to_owned(),
             problem: format!("is no TOML table: {found}"),

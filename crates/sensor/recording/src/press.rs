@@ -6,7 +6,7 @@ use twintac_shape::Pose;
 use crate::Provenance;
 
 /// Presses of one sensor with one origin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recording {
     /// Name of the sensor description that the presses belong to.
     pub sensor: String,

@@ -10,6 +10,19 @@ pub enum InverseError {
     /// A shape that can't be.
     #[error(transparent)]
     Shape(#[from] ShapeError),
+    /// More is known of a shape than can be searched.
+    #[error(
+        "a shape's table has {presses:.0} presses of {readings} readings, at most {most:.0} numbers can be searched; \
+         let it span less, or the sensor have fewer ports"
+    )]
+    TooLarge {
+        /// Presses of the table, 2 mm apart.
+        presses: f64,
+        /// Readings of each.
+        readings: usize,
+        /// Most numbers in all.
+        most: f64,
+    },
     /// No shape is known.
     #[error("no known shape: at least one is needed")]
     NoShape,

@@ -30,11 +30,11 @@ pub struct InverseSettings {
     pub spin_walk_rad: f64,
     /// Time after which what told the shape is forgotten to a part of 1/e, s.
     pub shape_memory_s: f64,
-    /// Possible presses of each shape that are followed at once.
+    /// Possible presses of each shape that are followed at once, at most 100.
     pub n_starts: usize,
-    /// Steps towards the best press of each of them in a frame.
+    /// Steps towards the best press of each of them in a frame, at most 100.
     pub n_steps: usize,
-    /// Deepest press that is thought of, mm below first touch. For a fast gel: not deeper than it was taught.
+    /// Deepest press that is thought of, mm below first touch, at most 50. For a fast gel: not deeper than it was taught.
     pub deepest_mm: f64,
 }
 
@@ -85,8 +85,8 @@ impl Checked for InverseSettings {
         ranges.zero_or("depth_walk_mm", depth_walk_mm, 1e-9..=1e4);
         ranges.zero_or("spin_walk_rad", spin_walk_rad, 1e-9..=1e4);
         ranges.number("shape_memory_s", shape_memory_s, 1e-3..=1e6);
-        ranges.number("n_starts", n_starts, 1.0..=1000.0);
-        ranges.number("n_steps", n_steps, 1.0..=1000.0);
+        ranges.number("n_starts", n_starts, 1.0..=100.0);
+        ranges.number("n_steps", n_steps, 1.0..=100.0);
         ranges.number("deepest_mm", deepest_mm, 0.01..=50.0);
     }
 }

@@ -9,7 +9,10 @@ use glam::DVec2;
 use rand::Rng;
 use twintac_config::Checked;
 use twintac_fast::FastGel;
-use twintac_inverse::{ContactModel, FastModel, Inverse, InverseError, InverseSettings, KnownShape, Press};
+use twintac_inverse::{
+    ContactModel, FastModel, Inverse, InverseError, InverseSettings, KnownShape, Press, ReadingTable,
+    TableModel,
+};
 use twintac_random::{normal, stream};
 use twintac_shape::{Shape, Surfaces};
 
@@ -229,6 +232,36 @@ fn the_floor_is_highest_below_the_contact() {
 }
 
 #[test]
+fn what_is_too_large_to_be_searched_is_an_error() {
+    let floor = FastGel::phystac()
+        .unwrap()
+        .with_ports(&vec![DVec2::ZERO; 1_000_000]);
+    let error = Inverse::of_fast_gel(&floor, &shapes(), &Surfaces::new(), settings()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            InverseError::TooLarge {
+                readings: 1_000_000,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let far = ReadingTable {
+        first_mm: [0.0; 3],
+        step_mm: [1e12, 1.0, 1.0],
+        n: [2, 1, 1],
+        readings_kpa: vec![vec![1.0]; 2],
+        force_n: vec![1.0; 2],
+    };
+    let error = Inverse::new(TableModel::new(vec![far]), settings()).unwrap_err();
+    assert!(
+        matches!(error, InverseError::TooLarge { readings: 1, .. }),
+        "{error}"
+    );
+}
+
+#[test]
 fn what_cannot_be_is_an_error() {
     let gel = FastGel::phystac().unwrap();
     let new =
@@ -240,7 +273,7 @@ fn what_cannot_be_is_an_error() {
         ("deepest_mm", serde_json::json!({"deepest_mm": 1000.0})),
         ("n_starts", serde_json::json!({"n_starts": 0})),
         ("n_starts", serde_json::json!({"n_starts": 1_000_000_000_000_u64})),
-        ("n_steps", serde_json::json!({"n_steps": 1_000_000_000_u64})),
+        ("n_steps", serde_json::json!({"n_steps": 101})),
         ("model_part", serde_json::json!({"model_part": -0.01})),
         (
             "model_part_of_largest",

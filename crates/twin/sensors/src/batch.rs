@@ -9,6 +9,15 @@ use crate::chunk::{Chunk, Moment};
 use crate::sensor::Sensor;
 use crate::state::SensorState;
 
+/// Most readings of all sensors of a batch, which take about a gigabyte.
+const MOST_READINGS: usize = 10_000_000;
+
+/// Most sensors of a batch, each with so many taxels.
+#[must_use]
+pub fn most_sensors(n_taxels: usize) -> usize {
+    MOST_READINGS / n_taxels.max(8)
+}
+
 /// Many sensors of one kind, with the memory that steps need: it is kept from step to step. What
 /// touches them is read and not held: [`CoupledBatch`](crate::CoupledBatch)
 /// has friction and loss.
@@ -29,7 +38,7 @@ impl SensorBatch {
     /// With a twin, readings are those of its barometers; without, the pressures at the ports.
     ///
     /// # Panics
-    /// A twin of another number of taxels than the gel has.
+    /// A twin of another number of taxels than the gel has; more sensors than [`most_sensors`].
     #[must_use]
     pub fn new(
         gel: &FastGel,
@@ -46,6 +55,8 @@ impl SensorBatch {
                 "a twin of as many taxels as the gel has"
             );
         }
+        let most = most_sensors(n_taxels);
+        assert!(n_sensors <= most, "at most {most} sensors of {n_taxels} taxels");
         let of_chunk = n_sensors.div_ceil(n_threads.max(1)).max(1);
         let reader = gel.reader();
         let chunk = |first: usize| {

@@ -13,7 +13,7 @@ mod imperfection;
 mod sensor;
 mod state;
 
-pub use batch::SensorBatch;
+pub use batch::{SensorBatch, most_sensors};
 pub use coupled::{CoupledBatch, TouchedTwice};
 pub use hold::{Coupling, HeldTouch, TouchId};
 pub use imperfection::Imperfection;

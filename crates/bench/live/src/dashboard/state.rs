@@ -97,7 +97,7 @@ impl DashboardState {
         self.latest = Some(reading);
     }
 
-    /// Makes the map of the newest frame. Its width is that which told a touch best taxel by taxel, the strongest touch so far.
+    /// Makes the map of the newest frame, through the taxels that have a reading; NaN if none has. Its width is that which told a touch best taxel by taxel, the strongest touch so far.
     ///
     /// # Errors
     /// [`LiveError::Map`].
