@@ -12,6 +12,7 @@ use crate::given::{Array, Given, threads};
 use crate::pickle::{Kept, Reduced, reduced, refused};
 use crate::pool::in_parallel;
 use crate::pose::Pose;
+use crate::sensor::Sensor;
 use crate::shape::Body;
 use crate::shared::Shared;
 use crate::touches::{Touches, bodies};
@@ -71,6 +72,14 @@ impl FastGel {
     #[getter]
     fn sensor(&self) -> &str {
         self.gel.sensor()
+    }
+
+    /// Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
+    /// Names do not count, nor do indenters, limits and the read-out.
+    ///
+    /// Raises `Error`, which says all that differs.
+    fn check(&self, py: Python<'_>, sensor: &Sensor) -> PyResult<()> {
+        self.gel.check(&sensor.sensor.file().sensor).or_raise(py)
     }
 
     /// Where the ports are in the gel's plane, mm; `[n_taxels, 2]`.
@@ -187,7 +196,9 @@ impl FastReader {
         })
     }
 
-    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong.
+    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
+    /// above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
+    /// pressed, or too few pressed there.
     fn novelty(&self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> PyResult<f32> {
         self.reader.work(py, |reader| reader.novelty(&placed(&bodies)))
     }
@@ -206,6 +217,11 @@ impl FastReader {
 }
 
 impl FastReader {
+    /// What it reads with.
+    pub(crate) fn reader(&self) -> &Shared<twintac::FastReader> {
+        &self.reader
+    }
+
     /// What a reading of this gel gives.
     pub(crate) fn answer<'py>(
         &self,

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 
-use crate::error::unusable;
+use crate::error::{OrRaise, unusable};
 use crate::fast::{FastReader, Reading};
 use crate::pickle::refused;
 use crate::pose::Pose;
@@ -32,6 +32,8 @@ impl Friction {
     }
 
     /// One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+    ///
+    /// Raises `Error` for the reader of another gel.
     fn read<'py>(
         &self,
         py: Python<'py>,
@@ -40,6 +42,8 @@ impl Friction {
         gel_from_body: Pose,
     ) -> PyResult<Reading<'py>> {
         self.friction.look(py, |friction| {
+            let check = reader.reader().look(py, |reader| friction.check(reader))?;
+            check.or_raise(py)?;
             reader.answer(py, |reader, pressure_kpa, wrench| {
                 let touching = (&*body.body, gel_from_body.pose);
                 friction.read(reader, touching, pressure_kpa, wrench);

@@ -172,7 +172,7 @@ impl Kept for Coupling {
 /// - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
 /// - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 ///
-/// Raises `Error` for a twin or a coupling of a sensor whose gel it is not, if there is no body, and for a number that is out of its range.
+/// Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number that is out of its range.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct SensorBatch {
     batch: Shared<Batch>,
@@ -242,28 +242,25 @@ impl SensorBatch {
         let n_taxels = gel.gel.n_taxels();
         let twin = twin.map(|twin| Arc::clone(&twin.twin));
         if let Some(twin) = &twin {
-            agrees(py, "twin", &gel.gel, twin.sensor())?;
-            let n_of_twin = twin.sensor().taxels().count();
-            if n_of_twin != n_taxels {
-                let problem = format!("has {n_of_twin} taxels, the gel {n_taxels}");
-                return Err(unusable(py, "twin", &problem));
+            if let Err(mismatch) = gel.gel.check(&twin.sensor().file().sensor) {
+                return Err(unusable(py, "twin", &format!("does not go with `gel`: {mismatch}")));
             }
         }
         let n_sensors = n_sensors.count("n_sensors", 1..=twintac::most_sensors(n_taxels))?;
         let seed = seed.map_or(Ok(0), |seed| seed.seed("seed"))?;
         let n_threads = threads(n_threads)?;
-        if let Some(coupling) = &coupling {
-            agrees(py, "coupling", &gel.gel, &coupling.sensor.sensor)?;
-        }
         let has_twin = twin.is_some();
         let sizes = [n_sensors, n_threads];
         let batch = py.detach(|| match twin {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
-            None => twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed),
+            None => Ok(twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed)),
         });
+        let batch = batch.or_raise(py)?;
         let is_coupled = coupling.is_some();
         let batch = match coupling {
-            Some(own) => Batch::Coupled(batch.with_coupling(own.coupling)),
+            Some(own) => Batch::Coupled(batch.with_coupling(own.coupling).map_err(|mismatch| {
+                unusable(py, "coupling", &format!("does not go with `gel`: {mismatch}"))
+            })?),
             None => Batch::Free(batch),
         };
         Ok(Self {
@@ -469,25 +466,4 @@ impl SensorBatch {
     fn number(&self, sensor: &Given<'_>) -> PyResult<usize> {
         sensor.count("sensor", 0..=self.n_sensors - 1)
     }
-}
-
-/// Refuses a fast gel that is not that of a sensor: whose top over the sensor's taxels has another
-/// height.
-fn agrees(py: Python<'_>, field: &str, gel: &twintac::FastGel, sensor: &twintac::Sensor) -> PyResult<()> {
-    let described = &sensor.file().sensor;
-    let solid = &described.gel.solid;
-    let is_same = described.taxels.iter().all(|taxel| {
-        let place_mm = taxel.position_mm.truncate();
-        let top_mm = solid.top_height_mm(place_mm.x, place_mm.y, &described.surfaces);
-        top_mm.is_none_or(|top_mm| (top_mm - gel.height_mm_at(place_mm)).abs() < 0.5)
-    });
-    if is_same {
-        return Ok(());
-    }
-    let problem = format!(
-        "is of the sensor `{}`, and `gel` of `{}`, whose gel is another",
-        described.name,
-        gel.sensor()
-    );
-    Err(unusable(py, field, &problem))
 }

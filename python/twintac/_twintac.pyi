@@ -793,6 +793,12 @@ class FastGel:
     @property
     def sensor(self) -> str:
         """Name of the sensor whose gel it is."""
+    def check(self, sensor: Sensor) -> None:
+        """Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
+        Names do not count, nor do indenters, limits and the read-out.
+
+        Raises `Error`, which says all that differs.
+        """
     @property
     def ports_mm(self) -> _Float:
         """Where the ports are in the gel's plane, mm; `[n_taxels, 2]`."""
@@ -820,7 +826,10 @@ class FastReader:
         and torque about the top of its middle, N mm, `[6]`.
         """
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
-        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong."""
+        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
+        above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
+        pressed, or too few pressed there.
+        """
 
 @final
 class Friction:
@@ -830,7 +839,10 @@ class Friction:
     """
     def __new__(cls, sensor: Sensor, coefficient: float) -> Friction: ...
     def read(self, reader: FastReader, body: Body, gel_from_body: Pose) -> tuple[_Single, _Single]:
-        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction."""
+        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+
+        Raises `Error` for the reader of another gel.
+        """
     def release(self) -> None:
         """Lets go of what touches: the next moment begins without friction."""
 
@@ -908,7 +920,7 @@ class SensorBatch:
     - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
     - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 
-    Raises `Error` for a twin or a coupling of a sensor whose gel it is not, if there is no body, and for a number that is out of its range.
+    Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number that is out of its range.
     """
     def __new__(
         cls,

@@ -130,6 +130,9 @@ pub(crate) struct FastImperfection {
     /// How to read CSV recordings (TOML) [default: the file that --sensor names].
     #[arg(long, value_name = "FILE", requires = "recordings")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the sensor, where that is another name.
+    #[arg(long, value_name = "NAME", requires = "recordings")]
+    pub(crate) recorded_as: Option<String>,
     /// Sensor description (TOML) [default: the model's].
     #[arg(long, value_name = "FILE", required_unless_present = "model")]
     pub(crate) sensor: Option<PathBuf>,
@@ -428,6 +431,9 @@ pub(crate) struct Evaluate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the model's sensor, where that is another name.
+    #[arg(long, value_name = "NAME", requires = "model")]
+    pub(crate) recorded_as: Option<String>,
     /// Print the figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -449,6 +455,9 @@ pub(crate) struct Adapt {
     /// How to read CSV recordings (TOML) [default: the file that --sensor names].
     #[arg(long, value_name = "FILE", conflicts_with = "run")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the new sensor, where that is another name.
+    #[arg(long, value_name = "NAME", conflicts_with = "run")]
+    pub(crate) recorded_as: Option<String>,
     /// How many presses to adapt with.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "curve")]
     pub(crate) presses: u64,
@@ -535,6 +544,9 @@ pub(crate) struct Locate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the model's sensor, where that is another name.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) recorded_as: Option<String>,
     /// Names of the sensor's indenters that may touch it [default: all].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) indenter: Vec<String>,

@@ -120,6 +120,44 @@ impl Files {
         assert!(said.contains("10 of 10 presses taught this model"), "{said}");
     }
 
+    /// Recordings of another sensor are not its own, though its taxels have the same names; unless
+    /// that is another name of the same sensor.
+    fn refuse_another_sensor(&self) {
+        let (model, presses) = (self.model(), self.folder.path().join("tip.parquet"));
+        let own = self.folder.path().join("run/recordings/presses.parquet");
+        let mut recording = twintac_recording::Recording::read_parquet(&own).unwrap();
+        recording.sensor = "phystac-tip".to_owned();
+        recording.write_parquet(&presses).unwrap();
+        let [model, presses] = [&model, &presses].map(|path| path.to_str().unwrap());
+        let said = |command: &str, more: &[&str]| {
+            let arguments = [command, "--model", model, "--recordings", presses];
+            let output = twintac(&[&arguments[..], more].concat());
+            assert_eq!(output.status.code(), Some(2));
+            String::from_utf8_lossy(&output.stderr).into_owned()
+        };
+        let out = self.folder.path().join("not-adapted");
+        let out = ["--out", out.to_str().unwrap()];
+        for (command, more) in [("evaluate", &[][..]), ("adapt", &out), ("fast imperfection", &[])] {
+            let said = match command {
+                "fast imperfection" => {
+                    let arguments = ["fast", "imperfection", "--model", model, "--recordings", presses];
+                    String::from_utf8_lossy(&twintac(&arguments).stderr).into_owned()
+                }
+                _ => said(command, more),
+            };
+            for part in ["`phystac-tip`, not of `phystac`", "--recorded-as phystac-tip"] {
+                assert!(said.contains(part), "{command}: {said}");
+            }
+        }
+        let renamed = said("evaluate", &["--recorded-as", "phystac-tip"]);
+        assert!(
+            renamed.contains("10 of 10 presses taught this model"),
+            "{renamed}"
+        );
+        let wrong = said("evaluate", &["--recorded-as", "mine"]);
+        assert!(wrong.contains("--recorded-as is `mine`"), "{wrong}");
+    }
+
     /// Its run is judged for other seeds, each with presses of its own.
     fn judge_again(&self) {
         let run = self.folder.path().join("run");
@@ -295,6 +333,7 @@ fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
 fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let files = Files::with_twin();
     files.refuse_what_taught();
+    files.refuse_another_sensor();
     files.judge_again();
     files.adapt();
     files.locate();

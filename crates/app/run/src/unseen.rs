@@ -10,6 +10,7 @@ use digitac::{
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::{Press, Provenance, Recording};
+use twintac_sensor::Sensor;
 
 use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
@@ -52,7 +53,8 @@ pub struct UnseenEvaluation {
 /// and scores the rest.
 ///
 /// # Errors
-/// A model that cannot be read, or that reads other taxels; presses that taught the model; a place that cannot be pressed.
+/// A model that cannot be read, recordings of another sensor than its own; presses that taught the
+/// model; a place that cannot be pressed.
 pub fn evaluate_elsewhere(
     model_folder: &Path,
     recording: &Recording,
@@ -60,9 +62,9 @@ pub fn evaluate_elsewhere(
 ) -> Result<UnseenEvaluation, RunError> {
     let model = Model::load(model_folder)?;
     let record = &model.record;
-    refuse_unfit(recording, record)?;
-    refuse_known(recording, record)?;
     let gel = gel_of(&model, model_folder)?;
+    refuse_other_sensor(recording, gel.sensor())?;
+    refuse_known(recording, record)?;
     let left_out = left_out(gel.sensor());
     let store = DepthTableStore::of(gel.clone(), progress)?;
     let (places, tables) = simulate(&store, recording, &record.bench, progress)?;
@@ -99,20 +101,30 @@ pub fn evaluate_elsewhere(
     })
 }
 
-/// A model reads the taxels that it was trained with, of one press at least.
-pub(crate) fn refuse_unfit(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
+/// A model is of one sensor, by name and by taxels: sensors whose taxels have the same names may
+/// have other gels. Recordings without a press say nothing.
+pub(crate) fn refuse_other_sensor(recording: &Recording, sensor: &Sensor) -> Result<(), RunError> {
     if recording.presses.is_empty() {
         return Err(RunError::Input(format!(
             "the recordings of `{}` have no press: give some that have",
             recording.sensor
         )));
     }
-    if recording.taxels == record.taxels {
+    if recording.sensor != sensor.name {
+        return Err(RunError::Input(format!(
+            "the recordings are of the sensor `{}`, not of `{}`; if they call the same sensor otherwise, say so with --recorded-as {}",
+            recording.sensor, sensor.name, recording.sensor
+        )));
+    }
+    let taxels = sensor.taxels.iter().map(|taxel| &taxel.name);
+    if recording.taxels.iter().eq(taxels.clone()) {
         return Ok(());
     }
     Err(RunError::Input(format!(
-        "the model reads taxels {:?}, the recordings have {:?}",
-        record.taxels, recording.taxels
+        "the sensor `{}` has taxels {:?}, the recordings have {:?}",
+        sensor.name,
+        taxels.collect::<Vec<_>>(),
+        recording.taxels
     )))
 }
 

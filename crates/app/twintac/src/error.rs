@@ -48,6 +48,10 @@ pub enum Error {
     #[cfg(feature = "fast")]
     #[error(transparent)]
     Fast(#[from] twintac_fast::FastFileError),
+    /// A fast twin is not that of a sensor.
+    #[cfg(feature = "fast")]
+    #[error(transparent)]
+    FastMismatch(#[from] twintac_fast::FastGelMismatch),
     /// A sensor cannot be read.
     #[cfg(feature = "live")]
     #[error(transparent)]

@@ -195,7 +195,9 @@ pub use twin::Twin;
 pub use digitac::{Prediction, PressCertainty, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
-pub use twintac_fast::{Body, FastBatch, FastFileError, FastGel, FastReader, Friction, Touch};
+pub use twintac_fast::{
+    Body, FastBatch, FastFileError, FastGel, FastGelMismatch, FastReader, Friction, Touch,
+};
 #[cfg(feature = "fast")]
 pub use twintac_inverse::{
     Contact, FastModel, FloorMap, Inverse, InverseError, InverseSettings, KnownShape, ReadingTable,

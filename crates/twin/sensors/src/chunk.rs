@@ -72,6 +72,11 @@ impl Chunk {
         }
     }
 
+    /// The gel of all of them.
+    pub(crate) fn gel(&self) -> &FastReader {
+        &self.gel
+    }
+
     /// What the gels do under what touches them; the first sensor has this number.
     pub(crate) fn read<T: Copy + Into<Touch>>(
         &mut self,

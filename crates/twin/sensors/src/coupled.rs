@@ -1,7 +1,7 @@
 //! Sensors whose gels hold what touches them.
 
 use thiserror::Error;
-use twintac_fast::Body;
+use twintac_fast::{Body, FastGelMismatch};
 
 use crate::batch::SensorBatch;
 use crate::chunk::Moment;
@@ -28,12 +28,17 @@ pub struct TouchedTwice {
 
 impl SensorBatch {
     /// The same sensors, which hold what touches them, with friction and loss.
-    #[must_use]
-    pub fn with_coupling(self, coupling: Coupling) -> CoupledBatch {
-        CoupledBatch {
+    ///
+    /// # Errors
+    /// Friction on another gel.
+    pub fn with_coupling(self, mut coupling: Coupling) -> Result<CoupledBatch, FastGelMismatch> {
+        if let Some(chunk) = self.chunks.first() {
+            coupling.friction.check(chunk.gel())?;
+        }
+        Ok(CoupledBatch {
             batch: self,
             coupling,
-        }
+        })
     }
 }
 

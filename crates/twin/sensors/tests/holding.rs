@@ -26,7 +26,9 @@ fn imperfect(imperfection: Imperfection, sizes: [usize; 2], retardation_s: f64) 
         retardation_s,
     };
     let gel = FastGel::phystac().unwrap();
-    SensorBatch::new(&gel, None, imperfection, sizes, 1).with_coupling(coupling)
+    SensorBatch::new(&gel, None, imperfection, sizes, 1)
+        .with_coupling(coupling)
+        .unwrap()
 }
 
 /// The only thing of this shape.

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use anyhow::Result;
+use twintac_run::fast::sensor_of_model;
 use twintac_run::{
     AdaptationCurve, AdaptationPlan, AdaptedModel, CurvePlan, Run, SensorFile, adapt_model, adaptation_curve,
     import_files, read_recordings,
 };
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::Program;
 use crate::arguments::Adapt;
 use crate::output::{percent, print};
@@ -22,10 +23,15 @@ pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
     let import = arguments.import.clone().or(named);
     let files = expand(&arguments.recordings)?;
     let is_csv = |file: &Path| file.extension().is_some_and(|ending| ending == "csv");
-    let recording = match import {
+    let mut recording = match import {
         Some(import) if files.iter().all(|file| is_csv(file)) => import_files(&import, &files)?.0,
         _ => read_recordings(&files)?,
     };
+    let recorded = match &sensor {
+        Some(sensor) => sensor.clone(),
+        None => sensor_of_model(&arguments.model)?,
+    };
+    rename(&mut recording, arguments.recorded_as.as_deref(), &recorded)?;
     let plan = AdaptationPlan {
         model: &arguments.model,
         sensor: sensor.as_ref(),

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use twintac_recording::Recording;
 use twintac_run::SensorFile;
 
 /// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters.
@@ -48,6 +49,26 @@ fn of_names(pattern: &str) -> String {
         escaped.push(std::path::MAIN_SEPARATOR);
     }
     escaped + &rest.as_path().to_string_lossy()
+}
+
+/// Gives recordings the name of the sensor that they are of, where `recorded_as` says that they
+/// have another one for it.
+pub(crate) fn rename(
+    recording: &mut Recording,
+    recorded_as: Option<&str>,
+    sensor: &SensorFile,
+) -> Result<()> {
+    let Some(name) = recorded_as else {
+        return Ok(());
+    };
+    if recording.sensor != name {
+        bail!(
+            "--recorded-as is `{name}`, but the recordings call their sensor `{}`",
+            recording.sensor
+        );
+    }
+    recording.sensor.clone_from(&sensor.sensor.name);
+    Ok(())
 }
 
 /// Reads a sensor description, or without a file that of PhysTac.

@@ -1,11 +1,12 @@
 //! `twintac locate`: where and how deep a sensor is touched, from its readings, by its trained twin.
 
 use anyhow::Result;
+use twintac_run::fast::sensor_of_model;
 use twintac_run::{
     Located, LocatedFrame, LocatedPress, LocationErrors, Locator, Progress, import_files, read_recordings,
 };
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::arguments::Locate;
 use crate::output::{print, print_csv};
 use crate::progress::Bars;
@@ -13,10 +14,12 @@ use crate::progress::Bars;
 /// Finds what touches in each frame, and prints it; how far off that is goes to standard error.
 pub(crate) fn run(arguments: &Locate) -> Result<()> {
     let files = expand(&arguments.recordings)?;
-    let recording = match &arguments.import {
+    let mut recording = match &arguments.import {
         Some(import) => import_files(import, &files)?.0,
         None => read_recordings(&files)?,
     };
+    let recorded_as = arguments.recorded_as.as_deref();
+    rename(&mut recording, recorded_as, &sensor_of_model(&arguments.model)?)?;
     let settings = Locator::settings(arguments.settings.as_deref())?;
     let bars = Bars::default();
     let locator = Locator::open(&arguments.model, &arguments.indenter, settings, &bars)?;

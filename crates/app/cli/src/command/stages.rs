@@ -1,9 +1,10 @@
 //! The stages as commands of their own.
 
 use anyhow::{Context, Result};
+use twintac_run::fast::sensor_of_model;
 use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files, read_recordings};
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::Program;
 use crate::arguments::{Align, Evaluate, Report, Train};
 use crate::output::{percent, print};
@@ -40,10 +41,12 @@ pub(crate) fn evaluate(arguments: &Evaluate, program: &Program) -> Result<()> {
     let model = arguments.model.as_ref();
     let model = model.context("give a model with --model, or a run with --run")?;
     let files = expand(&arguments.recordings)?;
-    let recording = match &arguments.import {
+    let mut recording = match &arguments.import {
         Some(import) => import_files(import, &files)?.0,
         None => read_recordings(&files)?,
     };
+    let recorded_as = arguments.recorded_as.as_deref();
+    rename(&mut recording, recorded_as, &sensor_of_model(model)?)?;
     let found = evaluate_elsewhere(model, &recording, &Bars::default())?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);

@@ -14,7 +14,7 @@ use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
 use crate::model::{gel_like, gel_of};
 use crate::settings::ports_mm;
-use crate::unseen::{Pressed, refuse_known, refuse_unfit, simulate};
+use crate::unseen::{Pressed, refuse_known, refuse_other_sensor, simulate};
 use crate::{Caller, RunError, SensorFile};
 
 /// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
@@ -48,12 +48,12 @@ impl<'a> NewGel<'a> {
                 model_folder.display()
             )));
         }
-        refuse_unfit(recording, record)?;
         refuse_known(recording, record)?;
         let gel = match sensor {
             Some(sensor) => gel_like(model, model_folder, sensor)?,
             None => gel_of(model, model_folder)?,
         };
+        refuse_other_sensor(recording, gel.sensor())?;
         let bench = record.bench.clone().with_ports_at(&ports_mm(gel.sensor()));
         let softer = BenchEstimate {
             stiffness: Some(Estimate {

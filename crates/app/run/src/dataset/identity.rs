@@ -179,9 +179,11 @@ fn of_twin(
 fn fast_gel(source: &FastSource, sensor: &SensorFile) -> Result<Keyed<FastTables>, RunError> {
     match source {
         FastSource::BuiltIn => {
-            let fast = match sensor.sensor.name.as_str() {
-                "phystac-tip" => FastGel::phystac_tip()?,
-                _ => FastGel::phystac()?,
+            let tip = FastGel::phystac_tip()?;
+            let fast = match tip.check(&sensor.sensor) {
+                Ok(()) => tip,
+                Err(_) if sensor.sensor.name == tip.sensor() => tip, // and is refused by its own name
+                Err(_) => FastGel::phystac()?,
             };
             let bytes = fast.to_bytes()?;
             let tables = FastTables::of(fast, &sensor.sensor, "the fast gel that is built in")?;

@@ -28,8 +28,13 @@ pub use strange::{Told, ToldKind};
 /// File of the fast twin in its folder.
 pub const FAST_GEL: &str = "fast.safetensors";
 
-/// One lesson of so many is not taught but judged on.
+/// One lesson of so many is not taught but judged on, and one of so many where lessons are few: how
+/// far off the gel is where few lessons pressed is known from them.
 const ONE_HELD_OUT_OF: usize = 20;
+const ONE_HELD_OUT_OF_FEW: usize = 5;
+
+/// Fewer lessons than that are few.
+const FEW_LESSONS: usize = 500;
 
 /// Held out is what has edges at most so much longer than the shortest of all.
 const HELD_OUT_LONGER: f64 = 1.2;
@@ -127,15 +132,20 @@ pub fn train_fast(
     let lessons = solved.presses(lesson, settings.n_lessons)?;
     let (mut taught, mut held_out) = (Vec::new(), Vec::new());
     let edges_mm = lessons.iter().map(|lesson| lesson.edge_mm);
+    let one_held_out_of = match lessons.len() < FEW_LESSONS {
+        true => ONE_HELD_OUT_OF_FEW,
+        false => ONE_HELD_OUT_OF,
+    };
     let longest_held_out_mm = HELD_OUT_LONGER * edges_mm.fold(f64::INFINITY, f64::min);
     for (number, lesson) in lessons.into_iter().enumerate() {
         // On a coarse mesh the solved gel reads too little: nobody is judged by it.
-        let is_held_out = number % ONE_HELD_OUT_OF == 0 && lesson.edge_mm < longest_held_out_mm;
+        let is_held_out = number % one_held_out_of == 0 && lesson.edge_mm < longest_held_out_mm;
         if is_held_out { &mut held_out } else { &mut taught }.push(lesson);
     }
     let n_reports = settings.train.n_steps / twintac_fast::REPORT_STEPS;
     let work = Work::start(progress, "training", n_reports);
-    let gel = FastGel::train(&sensor.sensor, &taught, &settings.train, seed, &mut |state| {
+    let lessons = (&taught[..], &held_out[..]);
+    let gel = FastGel::train(&sensor.sensor, lessons, &settings.train, seed, &mut |state| {
         let [pressure, wrench] = [state.pressure, state.wrench].map(|error| 100.0 * error);
         work.step(&format!("pressure {pressure:.2} %, force {wrench:.2} %"));
     })?;

@@ -26,7 +26,7 @@ pub use frames::{LocatedFrame, LocatedPress};
 use crate::doubtful::left_out;
 use crate::model::gel_of;
 use crate::press_checksum::press_checksum;
-use crate::unseen::refuse_unfit;
+use crate::unseen::refuse_other_sensor;
 use crate::{Progress, RunError};
 
 /// Time within which the zero follows a sensor that nothing touches, s.
@@ -130,10 +130,10 @@ impl Locator {
     /// untouched. For a reading that is not usable, the taxel's last usable one stands.
     ///
     /// # Errors
-    /// Recordings of other taxels; poses beside the gel.
+    /// Recordings of another sensor; poses beside the gel.
     pub fn locate(&self, recording: &Recording) -> Result<Located, RunError> {
         let record = &self.model.record;
-        refuse_unfit(recording, record)?;
+        refuse_other_sensor(recording, self.gel.sensor())?;
         let taught: Vec<bool> = recording
             .presses
             .iter()
