@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 /// What `git` prints in a folder, without white space around it.
-pub fn git(root: &Path, arguments: &[&str]) -> Result<String> {
+pub(crate) fn git(root: &Path, arguments: &[&str]) -> Result<String> {
     let output = Command::new("git")
         .args(arguments)
         .current_dir(root)

@@ -95,7 +95,7 @@ fn steps_allocate_nothing() {
     let held_steps: Vec<Vec<HeldTouch>> = steps.iter().map(held).collect();
     let counted_holding = || {
         let batch = SensorBatch::new(&gel, Some(&twin), imperfection(), [N_SENSORS, 1], 1);
-        let mut batch = batch.with_coupling(coupling.clone());
+        let mut batch = batch.with_coupling(coupling.clone()).unwrap();
         let (mut readings_kpa, mut wrench) = (vec![0.0; N_SENSORS * N_TAXELS], vec![[0.0; 6]; N_SENSORS]);
         let mut step = |touches: &[HeldTouch]| {
             let step = batch.step(0.01, &bodies, touches, &ends, &mut readings_kpa, &mut wrench);

@@ -185,6 +185,7 @@ mod tests {
 
     use glam::DVec3;
     use twintac_sensor::SensorFile;
+    use twintac_shape::SurfaceFile;
 
     use super::*;
 
@@ -196,9 +197,7 @@ mod tests {
         let surface = TriangleSurface::from_triangles(&triangles).unwrap();
         let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
         sensor.surfaces.insert("gel.stl".to_owned(), Arc::new(surface));
-        sensor.gel.solid = Solid::Stl {
-            path: "gel.stl".to_owned(),
-        };
+        sensor.gel.solid = Solid::Stl(SurfaceFile::new("gel.stl"));
         TaughtGel::of(&sensor)
     }
 
