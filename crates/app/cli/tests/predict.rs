@@ -329,6 +329,7 @@ fn deepest(predicted: &Value) -> (f64, Vec<f64>) {
     (force_n[deepest], numbers(&press["readings_kpa"][deepest]))
 }
 
+// long: one model, which takes seconds to train, is used in every way.
 #[test]
 fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
     let files = Files::with_twin();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use twintac_config::Checked;
-use twintac_recording::Recording;
+
 use twintac_simulate::Gel;
 use twintac_store::{Finished, Keyed, Owner, Stage, Stages, read_json, write_file, write_json};
 
@@ -15,7 +15,6 @@ use crate::error::At;
 use crate::fast::FAST_GEL;
 use crate::fast::tables::FastTables;
 use crate::progress::go_on;
-use crate::stages::recordings::read_recording;
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
 
 /// The sensor's description in a run's folder.
@@ -207,14 +206,6 @@ impl Run {
     #[must_use]
     pub fn logs_folder(&self) -> PathBuf {
         self.folder.join("logs")
-    }
-
-    /// The presses, as recorded.
-    ///
-    /// # Errors
-    /// There are none yet, they are of another sensor than the run, or they cannot be read.
-    pub fn recording(&self) -> Result<Recording, RunError> {
-        read_recording(&self.recordings()?)
     }
 
     /// The gel as the twin simulates it.

@@ -263,7 +263,7 @@ fn what_does_not_fit_is_said() {
         sensor: Some(strip),
         ..fast(1)
     });
-    assert!(text.contains("ports are elsewhere"), "{text}");
+    assert!(text.contains("number of ports: 8, the sensor's 4"), "{text}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

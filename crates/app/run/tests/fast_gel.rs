@@ -33,8 +33,12 @@ fn lessons_are_kept_and_tables_follow_from_them() {
     };
     let train = |seed: u64| train_fast(&sensor, folder, &settings, seed, &Caller::default());
     let found = train(1).unwrap();
-    assert_eq!(found.n_taught + found.held_out.overall.unwrap().n_frames.min(1), 20);
-    assert!(found.exams.overall.unwrap().nearest_percent < 50.0, "{found:?}");
+    // One of five is held out where there are few.
+    assert_eq!(found.n_taught, 16);
+    assert!(
+        found.held_out.overall.unwrap().nearest_percent < 50.0,
+        "{found:?}"
+    );
     let bytes = std::fs::read(folder.join(FAST_GEL)).unwrap();
     assert!(folder.join("judgement.png").exists());
 

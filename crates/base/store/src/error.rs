@@ -54,7 +54,7 @@ pub enum StoreError {
     },
     /// What a stage needs is not there, or is not as its inputs say.
     #[error(transparent)]
-    NotCurrent(#[from] crate::NotCurrent),
+    NotCurrent(#[from] NotCurrent),
 }
 
 impl StoreError {
@@ -63,4 +63,13 @@ impl StoreError {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }
     }
+}
+
+/// A stage is not there, or is not as its inputs say.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: the stage {why}; make it with `{made_by}`", folder.display())]
+pub struct NotCurrent {
+    pub(crate) folder: PathBuf,
+    pub(crate) why: String,
+    pub(crate) made_by: &'static str,
 }

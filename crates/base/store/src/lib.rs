@@ -32,7 +32,7 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 pub use digest::Digest;
-pub use error::StoreError;
+pub use error::{NotCurrent, StoreError};
 pub use folder::PartialFolder;
 pub use json::{read_json, write_file, write_json};
 pub use kept::{Kept, Recipe, Store};
@@ -40,7 +40,7 @@ pub use keyed::Keyed;
 pub use made_from::MadeFrom;
 pub use owner::Owner;
 pub use partial::PartialFile;
-pub use stage::{Finished, NotCurrent, Outcome, Stage, Stages};
+pub use stage::{Finished, Outcome, Stage, Stages};
 
 /// Writes a file under a temporary name and renames it.
 ///

@@ -8,7 +8,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::folder::remove;
-use crate::{Digest, MadeFrom, PartialFolder, StoreError, read_json, write_json};
+use crate::{Digest, MadeFrom, NotCurrent, PartialFolder, StoreError, read_json, write_json};
 
 /// The file that says what a folder was made from.
 const RECORD: &str = "stage.json";
@@ -82,15 +82,6 @@ impl Serialize for Finished {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.record.outputs.serialize(serializer)
     }
-}
-
-/// A stage is not there, or is not as its inputs say.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: the stage {why}; make it with `{made_by}`", folder.display())]
-pub struct NotCurrent {
-    folder: PathBuf,
-    why: String,
-    made_by: &'static str,
 }
 
 /// The stages of a folder, made by one build of a program.

@@ -54,7 +54,7 @@ impl FastGel {
         let center_mm = (0.5 * (low + high)).with_z(high.z);
         let places_mm = lesson_places_mm(sensor);
         let places = (&places_mm[..], sensor.taxels.len());
-        let frames = Frames::of(lessons, &layout, places, center_mm)?;
+        let frames = Frames::of(lessons, &layout, places, center_mm, &sensor.surfaces)?;
         // A surface of triangles may have the heights of its mirror image, and other sides.
         let has_known_sides = !matches!(sensor.gel.solid, Solid::Stl { .. });
         let is_symmetric = layout.grid().is_symmetric(center_mm.truncate());
@@ -85,7 +85,7 @@ impl FastGel {
             center_mm,
             networks,
         };
-        trained.calibrate_novelty(held_out)?;
+        trained.calibrate_novelty(held_out, &sensor.surfaces)?;
         Ok(trained)
     }
 }

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 use twintac_plot::{Ink, Panel, Panels, Scene, Series, png, svg};
 use twintac_recording::Provenance;
-use twintac_store::Owner;
 
 use super::new_gel::NewGel;
 use crate::cross_validation::Spread;
@@ -87,7 +86,6 @@ pub fn adaptation_curve(
     plan: &CurvePlan,
     out: &Path,
 ) -> Result<AdaptationCurve, RunError> {
-    let _owner = Owner::of(out)?;
     let model = Model::load(model_folder)?;
     let (recording, metrics) = (run.recording()?, run.metrics()?);
     let split = Model::load(&run.training()?.file(HELD_OUT))?.record.split;
@@ -98,12 +96,11 @@ pub fn adaptation_curve(
             teachers.len()
         )));
     }
-    let tables = out.join("depth_tables");
     let gel = NewGel::open(
         (&model, model_folder),
         Some(run.sensor()),
         &recording,
-        &tables,
+        out,
         run.caller(),
     )?;
     let as_learned = gel.judge_as_learned(&split.test)?;

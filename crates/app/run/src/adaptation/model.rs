@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use digitac::{Adaptation, Model, Origin, Split};
 use serde::Serialize;
 use twintac_recording::{Provenance, Recording};
-use twintac_store::Owner;
 
 use super::new_gel::NewGel;
 use crate::files::write_json;
@@ -68,11 +67,9 @@ pub struct AdaptedModel {
 /// A model that cannot be read, that reads other taxels, that has no gains, or that some of the presses taught; a place that cannot be pressed;
 /// a file that cannot be written.
 pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<AdaptedModel, RunError> {
-    let _owner = Owner::of(plan.out)?;
     let model = Model::load(plan.model)?;
     let (recording, record) = (plan.recording, &model.record);
-    let tables = plan.out.join("depth_tables");
-    let gel = NewGel::open((&model, plan.model), plan.sensor, recording, &tables, caller)?;
+    let gel = NewGel::open((&model, plan.model), plan.sensor, recording, plan.out, caller)?;
     let all: Vec<usize> = (0..recording.presses.len()).collect();
     let used = gel.choose(&all, plan.presses, plan.seed)?;
     let adapted = gel.adapt(&used)?;

@@ -9,6 +9,7 @@ use digitac::{
 };
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
+use twintac_store::Owner;
 
 use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
@@ -29,16 +30,18 @@ pub(super) struct NewGel<'a> {
     pub(super) left_out: BTreeSet<usize>,
     places: Places,
     tables: Vec<DepthTable>,
+    /// Nobody else works in the folder meanwhile.
+    _owner: Owner,
 }
 
 impl<'a> NewGel<'a> {
-    /// Simulates the places of a recording; tables over depth are kept in `tables_folder`. `sensor` describes the gel where it is not as the
+    /// Simulates the places of a recording; tables over depth are kept in `depth_tables` of the folder `out`. `sensor` describes the gel where it is not as the
     /// model's description says.
     pub(super) fn open(
         (model, model_folder): (&'a Model, &Path),
         sensor: Option<&SensorFile>,
         recording: &'a Recording,
-        tables_folder: &Path,
+        out: &Path,
         caller: &Caller,
     ) -> Result<Self, RunError> {
         let record = &model.record;
@@ -48,12 +51,12 @@ impl<'a> NewGel<'a> {
                 model_folder.display()
             )));
         }
-        refuse_known(recording, record)?;
         let gel = match sensor {
             Some(sensor) => gel_like(model, model_folder, sensor)?,
             None => gel_of(model, model_folder)?,
         };
         refuse_other_sensor(recording, gel.sensor())?;
+        refuse_known(recording, record)?;
         let bench = record.bench.clone().with_ports_at(&ports_mm(gel.sensor()));
         let softer = BenchEstimate {
             stiffness: Some(Estimate {
@@ -63,7 +66,9 @@ impl<'a> NewGel<'a> {
             ..bench.clone()
         };
         let (left_out, progress) = (left_out(gel.sensor()), &*caller.progress);
-        let store = DepthTableStore::of(gel, progress)?.kept_in(tables_folder, &caller.program);
+        // A folder is made only for what is not refused.
+        let owner = Owner::of(out)?;
+        let store = DepthTableStore::of(gel, progress)?.kept_in(&out.join("depth_tables"), &caller.program);
         let (places, tables) = simulate(&store, recording, &softer, progress)?;
         Ok(Self {
             recording,
@@ -72,6 +77,7 @@ impl<'a> NewGel<'a> {
             left_out,
             places,
             tables,
+            _owner: owner,
         })
     }
 

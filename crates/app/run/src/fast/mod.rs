@@ -13,7 +13,6 @@ use twintac_fast::{FastGel, Judgement, TrainSettings, lesson_places_mm};
 use twintac_plot::png;
 use twintac_recording::Provenance;
 use twintac_sensor::SensorFile;
-use twintac_shape::Surfaces;
 use twintac_store::{Keyed, Owner, Store, write_file, write_json};
 use twintac_teach::{TeachError, Teacher, exam_surfaces};
 
@@ -151,7 +150,8 @@ pub fn train_fast(
     })?;
     drop(work);
     write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
-    let surfaces = exam_surfaces().map_err(TeachError::from)?;
+    let mut surfaces = exam_surfaces().map_err(TeachError::from)?;
+    surfaces.extend(sensor.sensor.surfaces.clone());
     let result = FastResult {
         strange: (n_strange > 0)
             .then(|| Told::of(&gel, &held_out, &strange))
@@ -160,7 +160,7 @@ pub fn train_fast(
         provenance: Provenance::Simulated,
         own_indenters: is_own,
         n_taught: taught.len(),
-        held_out: gel.judge(&held_out, &Surfaces::new())?,
+        held_out: gel.judge(&held_out, &surfaces)?,
         exams: gel.judge(&exams, &surfaces)?,
         slides: gel.judge(&slides, &surfaces)?,
     };

@@ -250,6 +250,14 @@ impl<C: Change> Stage for Taking<'_, C> {
 }
 
 impl Run {
+    /// The presses, as recorded.
+    ///
+    /// # Errors
+    /// There are none yet, they are of another sensor than the run, or they cannot be read.
+    pub fn recording(&self) -> Result<Recording, RunError> {
+        read_recording(&self.recordings()?)
+    }
+
     /// Makes the run's recordings of files of any laboratory, which the description `import` says how to read. All of them must belong to
     /// the run's sensor.
     ///

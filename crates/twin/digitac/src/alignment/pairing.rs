@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, Ranges};
 use twintac_depth_table::DepthTable;
-use twintac_recording::{Control, Press, Recording};
+use twintac_recording::{Control, Press, Recording, null_as_nan};
 
 use super::{Warp, WarpSettings};
 use crate::bench_fit::{BenchEstimate, Places, deepest_pose, features};
@@ -26,7 +26,7 @@ pub struct PairedPress {
     /// Measured force, N; `[n_frames]`, if there was one.
     pub measured_force_n: Option<Vec<f64>>,
     /// Readings above the unloaded baseline, on the recording's own clock, kPa, NaN where one is missing; `[n_frames][n_taxels]`.
-    #[serde(deserialize_with = "twintac_recording::null_as_nan")]
+    #[serde(deserialize_with = "null_as_nan")]
     pub readings_kpa: Vec<Vec<f64>>,
     /// Whether the reading is usable; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,

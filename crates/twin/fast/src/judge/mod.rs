@@ -106,11 +106,15 @@ impl FastGel {
     }
 
     /// Learns from presses that were not taught how far readings are off where few lessons pressed.
-    pub(crate) fn calibrate_novelty(&mut self, held_out: &[Lesson]) -> Result<(), ShapeError> {
+    pub(crate) fn calibrate_novelty(
+        &mut self,
+        held_out: &[Lesson],
+        surfaces: &Surfaces,
+    ) -> Result<(), ShapeError> {
         let (mut reader, mut seen) = (self.reader(), Vec::new());
         for press in held_out {
-            let body = Body::new(&press.shape, &Surfaces::new())?;
-            for frame in PressErrors::of(self, press, &Surfaces::new())?.frames {
+            let body = Body::new(&press.shape, surfaces)?;
+            for frame in PressErrors::of(self, press, surfaces)?.frames {
                 let inputs = reader.inputs(&[(&body, frame.gel_from_indenter)]);
                 seen.push((inputs.to_vec(), frame.of_moment as f32));
             }
