@@ -7,8 +7,14 @@ use pyo3::prelude::*;
 use twintac::{DatasetPlan, FastSource, Shard, check_dataset, merge_dataset};
 
 use crate::error::{OrRaise, unusable};
+use crate::given::Given;
 use crate::long_call::followed;
+use crate::pickle::refused;
+use crate::pool::in_parallel;
 use crate::settings::to_python;
+
+/// Most presses of a data set.
+const MOST_PRESSES: usize = 100_000_000;
 
 /// Many simulated presses, made in shards by as many processes and machines as there are. A press depends on the seed and on its own name alone: however the data set
 /// is divided, its shards merge to the same bytes.
@@ -35,15 +41,15 @@ pub(crate) enum Fast {
 #[pymethods]
 impl Dataset {
     #[new]
-    #[pyo3(signature = (*, sensor=None, protocol=None, indenters=Vec::new(), n_presses=None, seed=1, fast=Fast::Chosen(false), twin=None, imperfection=None, settings=None))]
+    #[pyo3(signature = (*, sensor=None, protocol=None, indenters=Vec::new(), n_presses=None, seed=None, fast=Fast::Chosen(false), twin=None, imperfection=None, settings=None), text_signature = "(*, sensor=None, protocol=None, indenters=..., n_presses=None, seed=1, fast=..., twin=None, imperfection=None, settings=None)")]
     #[expect(clippy::too_many_arguments)] // named ones
     fn new(
         py: Python<'_>,
         sensor: Option<PathBuf>,
         protocol: Option<PathBuf>,
         indenters: Vec<String>,
-        n_presses: Option<usize>,
-        seed: u64,
+        n_presses: Option<Given<'_>>,
+        seed: Option<Given<'_>>,
         fast: Fast,
         twin: Option<PathBuf>,
         imperfection: Option<PathBuf>,
@@ -56,12 +62,13 @@ impl Dataset {
                 "does not go with a protocol, which names its own",
             ));
         }
+        let n_presses = n_presses.map(|given| given.count("n_presses", 1..=MOST_PRESSES));
         let plan = DatasetPlan {
             sensor,
             protocol,
             indenters,
-            n_presses,
-            seed,
+            n_presses: n_presses.transpose()?,
+            seed: seed.map_or(Ok(1), |seed| seed.seed("seed"))?,
             fast: match fast {
                 Fast::Chosen(false) => None,
                 Fast::Chosen(true) => Some(FastSource::BuiltIn),
@@ -71,7 +78,9 @@ impl Dataset {
             imperfection,
             settings,
         };
-        let dataset = py.detach(|| twintac::Dataset::open(&plan)).or_raise(py)?;
+        let dataset = py
+            .detach(|| in_parallel(|| twintac::Dataset::open(&plan)))
+            .or_raise(py)?;
         Ok(Self {
             dataset: Arc::new(dataset),
         })
@@ -93,17 +102,20 @@ impl Dataset {
     /// `manifest_file`. Ctrl-C ends it before its next press.
     ///
     /// Raises `Error` for a folder that holds another data set or another division, and for a shard that is not from 1 to `of`.
-    #[pyo3(signature = (folder, shard=1, of=1, *, progress=None))]
+    #[pyo3(signature = (folder, shard=None, of=None, *, progress=None), text_signature = "($self, folder, shard=1, of=1, *, progress=None)")]
     fn make<'py>(
         &self,
         py: Python<'py>,
         folder: PathBuf,
-        shard: u32,
-        of: u32,
+        shard: Option<Given<'_>>,
+        of: Option<Given<'_>>,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let dataset = Arc::clone(&self.dataset);
-        let shard = Shard::new(shard, of).or_raise(py)?;
+        let number = |field: &str, given: Option<Given<'_>>| {
+            given.map_or(Ok(1), |given| given.count(field, 1..=u32::MAX as usize))
+        };
+        let shard = Shard::new(number("shard", shard)? as u32, number("of", of)? as u32).or_raise(py)?;
         let made = followed(py, progress.as_ref(), move |progress| {
             dataset.make(shard, &folder, progress.as_ref())
         })?;
@@ -141,6 +153,14 @@ impl Dataset {
             merge_dataset(&folder, file.as_deref(), progress.as_ref())
         })?;
         to_python(py, &whole.or_raise(py)?)
+    }
+
+    /// What is made of files is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "Dataset",
+            "make it in each process, of the same files: its identity says whether it is the same",
+        )
     }
 
     fn __repr__(&self) -> String {

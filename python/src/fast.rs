@@ -3,18 +3,31 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use numpy::ndarray::Ix2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::array::{Numbers, rows};
-use crate::error::{OrRaise, unreadable};
+use crate::array::rows;
+use crate::error::{OrRaise, unreadable, unusable};
+use crate::given::{Array, Given, threads};
+use crate::pickle::{Kept, Reduced, reduced, refused};
+use crate::pool::in_parallel;
 use crate::pose::Pose;
+use crate::sensor::Sensor;
 use crate::shape::Body;
-use crate::touches::{Counts, Touches, bodies};
+use crate::shared::Shared;
+use crate::touches::{Touches, bodies};
 
 /// What every reading of a fast gel is.
 pub(crate) const PROVENANCE: &str = "simulated";
+
+/// Most ports of a gel.
+const MOST_PORTS: usize = 1_000_000;
+
+/// By how much a port may be beside the floor, mm.
+const ROUNDING_MM: f64 = 1e-6;
+
+/// Most pressures of one call, which take a gigabyte.
+const MOST_PRESSURES: usize = 250_000_000;
 
 /// Pressures at the ports and wrenches of many sensors.
 pub(crate) type Answers<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
@@ -61,6 +74,14 @@ impl FastGel {
         self.gel.sensor()
     }
 
+    /// Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
+    /// Names do not count, nor do indenters, limits and the read-out.
+    ///
+    /// Raises `Error`, which says all that differs.
+    fn check(&self, py: Python<'_>, sensor: &Sensor) -> PyResult<()> {
+        self.gel.check(&sensor.sensor.file().sensor).or_raise(py)
+    }
+
     /// Where the ports are in the gel's plane, mm; `[n_taxels, 2]`.
     #[getter]
     fn ports_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -74,21 +95,27 @@ impl FastGel {
 
     /// The same gel with its ports at other places of the floor, x and y, mm, `[n_ports, 2]`: finer than taxels are.
     ///
-    /// Raises `Error` for an array of another shape.
-    fn with_ports(&self, py: Python<'_>, places_mm: Numbers<'_, Ix2>) -> PyResult<Self> {
-        if places_mm.as_array().ncols() != 2 {
-            return Err(crate::error::unusable(
-                py,
-                "places_mm",
-                "has another shape than [n_ports, 2]",
-            ));
+    /// Raises `Error` for an array of another shape, no place, more than a million, and a place that is not on the gel's floor.
+    fn with_ports(&self, py: Python<'_>, places_mm: Given<'_>) -> PyResult<Self> {
+        let [low, high] = self.gel.bounds_mm();
+        let expected = format!(
+            "[n_ports, 2], mm, from ({}, {}) to ({}, {})",
+            low.x, low.y, high.x, high.y
+        );
+        let refused = |problem: String| unusable(py, "places_mm", &format!("{problem}, expected {expected}"));
+        let places_mm: Array<2> = places_mm.numbers("places_mm", &expected)?;
+        let [n_ports, n_columns] = places_mm.shape;
+        if n_columns != 2 || !(1..=MOST_PORTS).contains(&n_ports) {
+            let problem = format!("has the shape {:?}", places_mm.shape);
+            return Err(refused(format!("{problem}, at most {MOST_PORTS} ports")));
         }
-        let places: Vec<glam::DVec2> = places_mm
-            .as_array()
-            .rows()
-            .into_iter()
-            .map(|row| [row[0], row[1]].into())
-            .collect();
+        let places: Vec<glam::DVec2> = places_mm.rows().map(|row| [row[0], row[1]].into()).collect();
+        let is_there = |place: &&glam::DVec2| {
+            place.cmpge(low - ROUNDING_MM).all() && place.cmple(high + ROUNDING_MM).all()
+        };
+        if let Some(place) = places.iter().find(|place| !is_there(place)) {
+            return Err(refused(format!("has the place ({}, {})", place.x, place.y)));
+        }
         Ok(Self {
             gel: Arc::new(self.gel.with_ports(&places)),
         })
@@ -96,35 +123,61 @@ impl FastGel {
 
     /// Prepares one sensor to be read. Each thread needs a reader of its own.
     fn reader(&self, py: Python<'_>) -> FastReader {
+        let reader = py.detach(|| self.gel.reader());
         FastReader {
-            reader: py.detach(|| self.gel.reader()),
+            n_taxels: reader.n_taxels(),
+            reader: Shared::new(reader),
         }
     }
 
     /// Prepares many sensors to be read in one call, which these bodies touch. It uses all cores, or `n_threads`.
     ///
-    /// Raises `Error` if there is no body.
+    /// Raises `Error` if there is no body, and for a number of threads that is not from 1 to 1024.
     #[pyo3(signature = (bodies, n_threads=None))]
-    fn batch(&self, py: Python<'_>, bodies: Vec<Body>, n_threads: Option<usize>) -> PyResult<FastBatch> {
+    fn batch(&self, py: Python<'_>, bodies: Vec<Body>, n_threads: Option<Given<'_>>) -> PyResult<FastBatch> {
         let bodies = self::bodies(py, bodies)?;
-        let n_threads = n_threads.unwrap_or_else(n_cores);
+        let n_threads = threads(n_threads)?;
         Ok(FastBatch {
-            batch: py.detach(|| self.gel.batch(n_threads)),
+            batch: Shared::new(py.detach(|| self.gel.batch(n_threads))),
             n_taxels: self.gel.n_taxels(),
+            n_threads,
             bodies,
         })
     }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<FastGel of {:?} with {} ports>",
+            self.gel.sensor(),
+            self.gel.n_taxels()
+        )
+    }
 }
 
-/// Threads unless another number is asked for.
-pub(crate) fn n_cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+impl Kept for FastGel {
+    /// The bytes of its file.
+    type State = Vec<u8>;
+
+    fn state(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        self.gel.to_bytes().or_raise(py)
+    }
+
+    fn restored(py: Python<'_>, bytes: Vec<u8>) -> PyResult<Self> {
+        let gel = twintac::FastGel::from_bytes(&bytes).or_raise(py)?;
+        Ok(Self { gel: Arc::new(gel) })
+    }
 }
 
 /// A fast gel of one sensor, ready to be read: what `FastGel.reader` returns.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct FastReader {
-    reader: twintac::FastReader,
+    reader: Shared<twintac::FastReader>,
+    n_taxels: usize,
 }
 
 #[pymethods]
@@ -137,31 +190,51 @@ impl FastReader {
 
     /// What the gel does under bodies at these poses in its frame (`gel_from_body`). Returns the pressure at each port, kPa, `[n_taxels]`; and force on the gel, N,
     /// and torque about the top of its middle, N mm, `[6]`.
-    fn read<'py>(&mut self, py: Python<'py>, bodies: Vec<(Body, Pose)>) -> Reading<'py> {
+    fn read<'py>(&self, py: Python<'py>, bodies: Vec<(Body, Pose)>) -> PyResult<Reading<'py>> {
         self.answer(py, |reader, pressure_kpa, wrench| {
             reader.read(&placed(&bodies), pressure_kpa, wrench);
         })
     }
 
-    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong.
-    fn novelty(&mut self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> f32 {
-        py.detach(|| self.reader.novelty(&placed(&bodies)))
+    /// How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
+    /// above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
+    /// pressed, or too few pressed there.
+    fn novelty(&self, py: Python<'_>, bodies: Vec<(Body, Pose)>) -> PyResult<f32> {
+        self.reader.work(py, |reader| reader.novelty(&placed(&bodies)))
+    }
+
+    /// What reads is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "FastReader",
+            "pickle the FastGel, and take a reader of it in each process, with FastGel.reader",
+        )
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<FastReader of {} ports, {PROVENANCE}>", self.n_taxels)
     }
 }
 
 impl FastReader {
+    /// What it reads with.
+    pub(crate) fn reader(&self) -> &Shared<twintac::FastReader> {
+        &self.reader
+    }
+
     /// What a reading of this gel gives.
     pub(crate) fn answer<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         read: impl FnOnce(&mut twintac::FastReader, &mut [f32], &mut [f32; 6]) + Send,
-    ) -> Reading<'py> {
-        let (mut pressure_kpa, mut wrench) = (vec![0.0; self.reader.n_taxels()], [0.0; 6]);
-        py.detach(|| read(&mut self.reader, &mut pressure_kpa, &mut wrench));
-        (
+    ) -> PyResult<Reading<'py>> {
+        let (mut pressure_kpa, mut wrench) = (vec![0.0; self.n_taxels], [0.0; 6]);
+        self.reader
+            .work(py, |reader| read(reader, &mut pressure_kpa, &mut wrench))?;
+        Ok((
             PyArray1::from_vec(py, pressure_kpa),
             PyArray1::from_slice(py, &wrench),
-        )
+        ))
     }
 }
 
@@ -176,11 +249,12 @@ fn placed(bodies: &[(Body, Pose)]) -> Vec<(&twintac::Body, twintac::Pose)> {
 pub(crate) type Reading<'py> = (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>);
 
 /// Fast gels of many sensors of one kind, read in one call: what `FastGel.batch` returns.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct FastBatch {
-    batch: twintac::FastBatch,
+    batch: Shared<twintac::FastBatch>,
     bodies: Vec<twintac::Body>,
     n_taxels: usize,
+    n_threads: usize,
 }
 
 #[pymethods]
@@ -201,11 +275,11 @@ impl FastBatch {
     /// Raises `Error`, whose `field` is the array that has another shape, or numbers that cannot be.
     #[pyo3(signature = (gel_from_body, body=None, ends=None))]
     fn read<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
-        gel_from_body: Numbers<'_, Ix2>,
-        body: Option<Counts<'_>>,
-        ends: Option<Counts<'_>>,
+        gel_from_body: Given<'_>,
+        body: Option<Given<'_>>,
+        ends: Option<Given<'_>>,
     ) -> PyResult<Answers<'py>> {
         let Touches { touches, ends } = Touches::checked(
             py,
@@ -215,15 +289,41 @@ impl FastBatch {
             self.bodies.len(),
         )?;
         let n_sensors = ends.len();
+        let most = MOST_PRESSURES / self.n_taxels;
+        if n_sensors > most {
+            let problem = format!(
+                "makes {n_sensors} sensors of {} ports, expected at most {most}",
+                self.n_taxels
+            );
+            return Err(unusable(py, "ends", &problem));
+        }
         let mut pressure_kpa = vec![0.0; n_sensors * self.n_taxels];
         let mut wrench = vec![[0.0; 6]; n_sensors];
-        py.detach(|| {
-            self.batch
-                .read(&self.bodies, &touches, &ends, &mut pressure_kpa, &mut wrench)
-        });
+        self.batch.work(py, |batch| {
+            let (pressure_kpa, wrench) = (&mut pressure_kpa[..], &mut wrench[..]);
+            let mut read = || batch.read(&self.bodies, &touches, &ends, pressure_kpa, wrench);
+            // Nobody has to be woken for one thread.
+            if self.n_threads > 1 {
+                in_parallel(read)
+            } else {
+                read()
+            }
+        })?;
         Ok((
             rows(py, pressure_kpa, [n_sensors, self.n_taxels])?,
             rows(py, wrench.into_flattened(), [n_sensors, 6])?,
         ))
+    }
+    /// What reads is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "FastBatch",
+            "pickle the FastGel and the bodies, and make one in each process, with FastGel.batch",
+        )
+    }
+
+    fn __repr__(&self) -> String {
+        let (n_bodies, n_taxels) = (self.bodies.len(), self.n_taxels);
+        format!("<FastBatch of {n_taxels} ports, {n_bodies} bodies, {PROVENANCE}>")
     }
 }

@@ -1,35 +1,38 @@
 //! The pressure on a gel's floor, finer than the taxels.
 
-use std::sync::Arc;
-
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::array::rows;
+use crate::contact::{Contact, Origin};
 use crate::error::unusable;
 use crate::fast::PROVENANCE;
-use crate::inverse::Contact;
+use crate::pickle::refused;
+use crate::shared::Shared;
 
 /// Reads the pressure on a gel's floor on a grid: what a contact would make there by the fast gel. What `Inverse.floor_map` returns.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct FloorMap {
-    map: twintac::FloorMap,
-    /// Names of the shapes of the inverse, which are in memory once.
-    shapes: Arc<[String]>,
+    map: Shared<twintac::FloorMap>,
+    /// Places of columns and rows, mm.
+    places_mm: [Vec<f64>; 2],
+    origin: Origin,
 }
 
 impl FloorMap {
-    pub(crate) fn new(map: twintac::FloorMap, shapes: Arc<[String]>) -> Self {
-        Self { map, shapes }
-    }
-
-    /// Places along an axis, mm.
-    fn along(&self, axis: usize) -> Vec<f64> {
-        let place_mm = |number: usize| {
-            let at = [number, 0];
-            self.map.place_mm(at[axis], at[1 - axis]).to_array()[axis]
+    pub(crate) fn new(map: twintac::FloorMap, origin: Origin) -> Self {
+        let along = |axis: usize| {
+            let place_mm = |number: usize| {
+                let at = [number, 0];
+                map.place_mm(at[axis], at[1 - axis]).to_array()[axis]
+            };
+            (0..map.n()[axis]).map(place_mm).collect()
         };
-        (0..self.map.n()[axis]).map(place_mm).collect()
+        Self {
+            places_mm: [along(0), along(1)],
+            map: Shared::new(map),
+            origin,
+        }
     }
 }
 
@@ -44,30 +47,38 @@ impl FloorMap {
     /// Places of the columns in the gel's plane, mm; `[n_columns]`.
     #[getter]
     fn x_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.along(0))
+        PyArray1::from_slice(py, &self.places_mm[0])
     }
 
     /// Places of the rows in the gel's plane, mm; `[n_rows]`.
     #[getter]
     fn y_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.along(1))
+        PyArray1::from_slice(py, &self.places_mm[1])
     }
 
     /// The map under a contact that the same inverse has found, kPa; `[n_rows, n_columns]`, the row of smallest y first. Each point is the mean over a disc as large as a port.
     ///
     /// Raises `Error` for a contact that another inverse has found.
-    fn read<'py>(&mut self, py: Python<'py>, contact: &Contact) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        if !Arc::ptr_eq(&contact.shapes, &self.shapes) {
+    fn read<'py>(&self, py: Python<'py>, contact: &Contact) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        if !contact.origin.is(&self.origin) {
             let problem = "was found by another inverse, expected one of the inverse that made this map";
             return Err(unusable(py, "contact", problem));
         }
-        let [n_columns, n_rows] = self.map.n();
-        let pressure_kpa = py.detach(|| self.map.read(&contact.contact).to_vec());
+        let [n_columns, n_rows] = self.places_mm.each_ref().map(Vec::len);
+        let pressure_kpa = self.map.work(py, |map| map.read(&contact.contact).to_vec())?;
         rows(py, pressure_kpa, [n_rows, n_columns])
     }
 
+    /// A map is none: it is prepared where it is used.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "FloorMap",
+            "keep what FloorMap.read returns, or prepare one in each process",
+        )
+    }
+
     fn __repr__(&self) -> String {
-        let [n_columns, n_rows] = self.map.n();
+        let [n_columns, n_rows] = self.places_mm.each_ref().map(Vec::len);
         format!("<FloorMap of {n_columns} by {n_rows} places, simulated>")
     }
 }

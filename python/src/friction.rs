@@ -2,18 +2,22 @@
 
 use pyo3::prelude::*;
 
-use crate::error::unusable;
+use crate::error::{OrRaise, unusable};
 use crate::fast::{FastReader, Reading};
+use crate::pickle::refused;
 use crate::pose::Pose;
 use crate::sensor::Sensor;
 use crate::shape::Body;
+use crate::shared::Shared;
 
 /// Friction of one body on one sensor's gel, from one moment to the next: the gel's top is sheared with the body, until it slips. Nothing is held yet.
 ///
 /// `coefficient` is Coulomb's, 0 or more; anything else raises `Error`.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct Friction {
-    friction: twintac::Friction,
+    friction: Shared<twintac::Friction>,
+    sensor: String,
+    coefficient: f64,
 }
 
 #[pymethods]
@@ -21,27 +25,50 @@ impl Friction {
     #[new]
     fn new(py: Python<'_>, sensor: &Sensor, coefficient: f64) -> PyResult<Self> {
         Ok(Self {
-            friction: friction(py, sensor, ("coefficient", coefficient))?,
+            friction: Shared::new(friction(py, sensor, ("coefficient", coefficient))?),
+            sensor: sensor.sensor.name().to_owned(),
+            coefficient,
         })
     }
 
     /// One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+    ///
+    /// Raises `Error` for the reader of another gel.
     fn read<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
-        reader: &mut FastReader,
+        reader: &FastReader,
         body: &Body,
         gel_from_body: Pose,
-    ) -> Reading<'py> {
-        reader.answer(py, |reader, pressure_kpa, wrench| {
-            let touching = (&*body.body, gel_from_body.pose);
-            self.friction.read(reader, touching, pressure_kpa, wrench);
-        })
+    ) -> PyResult<Reading<'py>> {
+        self.friction.look(py, |friction| {
+            let check = reader.reader().look(py, |reader| friction.check(reader))?;
+            check.or_raise(py)?;
+            reader.answer(py, |reader, pressure_kpa, wrench| {
+                let touching = (&*body.body, gel_from_body.pose);
+                friction.read(reader, touching, pressure_kpa, wrench);
+            })
+        })?
     }
 
     /// Lets go of what touches: the next moment begins without friction.
-    fn release(&mut self) {
-        self.friction.release();
+    fn release(&self, py: Python<'_>) -> PyResult<()> {
+        self.friction.look(py, twintac::Friction::release)
+    }
+
+    /// What is held is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "Friction",
+            "make one in each process, of the same sensor and coefficient",
+        )
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Friction on {:?}, coefficient {}>",
+            self.sensor, self.coefficient
+        )
     }
 }
 

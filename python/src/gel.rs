@@ -6,12 +6,13 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use twintac::{PressFrame, RunSettings};
+use twintac::{PressFrame, RunSettings, SimulateSettings};
 
 use crate::array::rows;
 use crate::error::{OrRaise, unusable};
 use crate::long_call::{followed, long_call};
 use crate::path::{Followed, PressPath};
+use crate::pickle::{Kept, Reduced, reduced};
 use crate::pose::Pose;
 use crate::press::Press;
 use crate::sensor::Sensor;
@@ -25,7 +26,20 @@ use crate::state::GelState;
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Gel {
     gel: Arc<twintac::Gel>,
+    sensor: Sensor,
+    settings: SimulateSettings,
     taxels: Vec<String>,
+}
+
+impl Gel {
+    fn of(sensor: &Sensor, settings: SimulateSettings) -> Self {
+        Self {
+            gel: Arc::new(twintac::Gel::with_settings(&sensor.sensor, settings.clone())),
+            taxels: sensor.sensor.taxels().map(str::to_owned).collect(),
+            sensor: sensor.clone(),
+            settings,
+        }
+    }
 }
 
 #[pymethods]
@@ -34,11 +48,7 @@ impl Gel {
     #[pyo3(signature = (sensor, settings=None))]
     fn new(py: Python<'_>, sensor: &Sensor, settings: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
         let settings = but(py, RunSettings::fine(), settings.as_ref(), "simulate")?;
-        let gel = twintac::Gel::with_settings(&sensor.sensor, settings.simulate);
-        Ok(Self {
-            gel: Arc::new(gel),
-            taxels: sensor.sensor.taxels().map(str::to_owned).collect(),
-        })
+        Ok(Self::of(sensor, settings.simulate))
     }
 
     /// Presses the gel down to the depth of the press, which takes about a second. A gel whose material relaxes does so at the speed of the press. Ctrl-C ends the wait.
@@ -102,6 +112,32 @@ impl Gel {
             taxels: self.taxels.clone(),
         })
     }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        let [high, fine] = [
+            self.settings.edges_per_height,
+            self.settings.edges_per_contact_radius,
+        ];
+        let name = self.sensor.sensor.name();
+        format!("<Gel of {name:?}, {high} edges per height, {fine} per contact radius>")
+    }
+}
+
+impl Kept for Gel {
+    type State = (<Sensor as Kept>::State, SimulateSettings);
+
+    fn state(&self, py: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.sensor.state(py)?, self.settings.clone()))
+    }
+
+    fn restored(py: Python<'_>, (sensor, settings): Self::State) -> PyResult<Self> {
+        Ok(Self::of(&Sensor::restored(py, sensor)?, settings))
+    }
 }
 
 /// A simulated press, from first touch to full depth: what `Gel.press` returns. Each frame is deeper than the one before.
@@ -148,7 +184,24 @@ impl Pressed {
         rows(py, readings, [frames.len(), self.pressed.readings_kpa().len()])
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!("<Pressed, {} frames, simulated>", self.pressed.frames().len())
+    }
+}
+
+impl Kept for Pressed {
+    type State = twintac::Pressed;
+
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::Pressed> {
+        Ok(self.pressed.clone())
+    }
+
+    fn restored(_: Python<'_>, pressed: twintac::Pressed) -> PyResult<Self> {
+        Ok(Self { pressed })
     }
 }

@@ -2,23 +2,22 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
 
-use numpy::PyArray2;
-use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use twintac::{FastModel, InverseSettings, KnownShape, Locator, LocatorTracker, Surfaces, TableModel};
 
-use crate::array::{Numbers, in_order, rows};
+use crate::contact::{Contact, Origin};
 use crate::error::{OrRaise, unusable};
 use crate::fast::FastGel;
 use crate::floor::FloorMap;
+use crate::given::{Array, Given, since};
 use crate::long_call::{followed, long_call};
+use crate::pickle::refused;
 use crate::recording::Provenance;
-use crate::sensors::since;
 use crate::settings::over;
 use crate::shape::Shape;
+use crate::shared::Shared;
 use crate::table::ReadingTable;
 
 /// Finds from readings what touches: place, depth, force, and which of the known shapes.
@@ -40,8 +39,7 @@ use crate::table::ReadingTable;
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Inverse {
     model: Model,
-    /// Names; where they are in memory tells contacts of this inverse from those of others.
-    shapes: Arc<[String]>,
+    origin: Origin,
     n_taxels: usize,
 }
 
@@ -62,9 +60,9 @@ impl Inverse {
         shapes: BTreeMap<String, Shape>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = checked(py, InverseSettings::default(), settings.as_ref())?;
+        let settings = over(InverseSettings::default(), settings.as_ref(), py)?;
         let (gel, n_taxels) = (gel.gel.clone(), gel.gel.n_taxels());
-        let names = shapes.keys().cloned().collect();
+        let origin = Origin::of(shapes.keys().cloned().collect());
         let surfaces: Surfaces = shapes.values().flat_map(|shape| shape.surfaces.clone()).collect();
         let known = shapes.into_iter().map(|(name, shape)| KnownShape {
             name,
@@ -76,7 +74,7 @@ impl Inverse {
         })?;
         Ok(Self {
             model: Model::Fast(Box::new(inverse.or_raise(py)?)),
-            shapes: names,
+            origin,
             n_taxels,
         })
     }
@@ -91,7 +89,7 @@ impl Inverse {
         tables: BTreeMap<String, ReadingTable>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = checked(py, InverseSettings::default(), settings.as_ref())?;
+        let settings = over(InverseSettings::default(), settings.as_ref(), py)?;
         let (shapes, tables): (Vec<String>, Vec<ReadingTable>) = tables.into_iter().unzip();
         let n_taxels = tables.first().map_or(0, ReadingTable::n_taxels);
         if let Some(other) = tables.iter().map(ReadingTable::n_taxels).find(|n| *n != n_taxels) {
@@ -107,7 +105,7 @@ impl Inverse {
         })?;
         Ok(Self {
             model: Model::Tables(inverse.or_raise(py)?),
-            shapes: shapes.into(),
+            origin: Origin::of(shapes.into()),
             n_taxels,
         })
     }
@@ -126,13 +124,13 @@ impl Inverse {
         progress: Option<Bound<'_, PyAny>>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let settings = checked(py, Locator::settings(None).or_raise(py)?, settings.as_ref())?;
+        let settings = over(Locator::settings(None).or_raise(py)?, settings.as_ref(), py)?;
         let locator = followed(py, progress.as_ref(), move |progress| {
             Locator::open(&folder, &indenters, settings, progress.as_ref())
         })?;
         let locator = locator.or_raise(py)?;
         Ok(Self {
-            shapes: locator.indenters().to_vec().into(),
+            origin: Origin::of(locator.indenters().to_vec().into()),
             n_taxels: locator.taxels().len(),
             model: Model::Twin(Box::new(locator)),
         })
@@ -141,18 +139,18 @@ impl Inverse {
     /// Names of the shapes; in alphabetical order, or of a twin as its sensor's description has its indenters.
     #[getter]
     fn shapes(&self) -> Vec<String> {
-        self.shapes.to_vec()
+        self.origin.shapes.to_vec()
     }
 
     /// Follows the contact of a sensor that nothing has touched yet. `provenance` says where its readings come from: `"real"`, `"emulated"` or `"simulated"`.
     fn start(&self, provenance: Provenance) -> Tracker {
         Tracker {
-            tracker: match &self.model {
+            tracker: Shared::new(match &self.model {
                 Model::Fast(inverse) => Follower::Fast(Box::new(inverse.start())),
                 Model::Tables(inverse) => Follower::Tables(Box::new(inverse.start())),
                 Model::Twin(locator) => Follower::Twin(Box::new(locator.start())),
-            },
-            shapes: Arc::clone(&self.shapes),
+            }),
+            origin: self.origin.clone(),
             n_taxels: self.n_taxels,
             provenance,
         }
@@ -172,30 +170,32 @@ impl Inverse {
             ));
         };
         let map = py.detach(|| inverse.floor_map(spacing_mm)).or_raise(py)?;
-        Ok(FloorMap::new(map, Arc::clone(&self.shapes)))
+        Ok(FloorMap::new(map, self.origin.clone()))
+    }
+
+    /// An inverse is none: it is made where it is used.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "Inverse",
+            "make it in each process, of the same shapes and settings",
+        )
     }
 
     fn __repr__(&self) -> String {
-        format!("<Inverse of {:?}>", self.shapes)
+        let by = match self.model {
+            Model::Fast(_) => "a fast gel",
+            Model::Tables(_) => "tables",
+            Model::Twin(_) => "a twin",
+        };
+        format!("<Inverse by {by}, of {:?}>", self.origin.shapes)
     }
 }
 
-/// Settings but for those of keywords, if they can be.
-fn checked(
-    py: Python<'_>,
-    base: InverseSettings,
-    own: Option<&Bound<'_, PyDict>>,
-) -> PyResult<InverseSettings> {
-    let settings = over(base, own, py)?;
-    settings.check().or_raise(py)?;
-    Ok(settings)
-}
-
 /// Follows the contact of one sensor, frame by frame: what `Inverse.start` returns.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct Tracker {
-    tracker: Follower,
-    shapes: Arc<[String]>,
+    tracker: Shared<Follower>,
+    origin: Origin,
     n_taxels: usize,
     provenance: Provenance,
 }
@@ -217,133 +217,49 @@ impl Tracker {
     /// Takes a frame, `since_previous_s` after the one before: readings above the untouched sensor, kPa, `[n_taxels]`. Of an inverse by a twin, a NaN is a taxel without
     /// a usable reading: its last usable one stands. Returns what touches, or `None` if the readings are within noise.
     ///
-    /// Raises `Error` for a time below 0, another number of readings, and readings that are not finite.
+    /// Raises `Error` for a time below 0, another number of readings, and readings that are not finite or beyond a million kPa.
     fn update(
-        &mut self,
+        &self,
         py: Python<'_>,
         since_previous_s: f64,
-        readings_kpa: Numbers<'_, Ix1>,
+        readings_kpa: Given<'_>,
     ) -> PyResult<Option<Contact>> {
         since(py, since_previous_s)?;
-        let readings_kpa = in_order(&readings_kpa).into_owned(); // other threads may write into the array meanwhile
-        let is_usable = |kpa: &f64| kpa.is_finite() || matches!(self.tracker, Follower::Twin(_));
-        if readings_kpa.len() != self.n_taxels || !readings_kpa.iter().all(is_usable) {
-            let problem = format!("has to have {} finite numbers", self.n_taxels);
+        let expected = format!("{} numbers, kPa", self.n_taxels);
+        let readings_kpa: Array<1> = readings_kpa.numbers("readings_kpa", &expected)?;
+        let readings_kpa = readings_kpa.values;
+        if readings_kpa.len() != self.n_taxels {
+            let problem = format!("has {} numbers, expected {expected}", readings_kpa.len());
             return Err(unusable(py, "readings_kpa", &problem));
         }
-        let tracker = &mut self.tracker;
-        let contact = py.detach(|| match tracker {
-            Follower::Fast(tracker) => tracker.update(since_previous_s, &readings_kpa).cloned(),
-            Follower::Tables(tracker) => tracker.update(since_previous_s, &readings_kpa).cloned(),
+        let contact = self.tracker.work(py, |tracker| match tracker {
+            Follower::Fast(tracker) => tracker
+                .update(since_previous_s, &readings_kpa)
+                .map(Option::<&_>::cloned),
+            Follower::Tables(tracker) => tracker
+                .update(since_previous_s, &readings_kpa)
+                .map(Option::<&_>::cloned),
             Follower::Twin(tracker) => {
                 let valid: Vec<bool> = readings_kpa.iter().map(|kpa| kpa.is_finite()).collect();
-                tracker.update(since_previous_s, &readings_kpa, &valid).cloned()
+                tracker
+                    .update(since_previous_s, &readings_kpa, &valid)
+                    .map(Option::<&_>::cloned)
             }
-        });
-        Ok(contact.map(|contact| Contact {
-            shapes: Arc::clone(&self.shapes),
+        })?;
+        Ok(contact.or_raise(py)?.map(|contact| Contact {
+            origin: self.origin.clone(),
             provenance: self.provenance.to_string(),
             contact,
         }))
     }
-}
 
-/// What touches, with how sure that is: what `Tracker.update` returns. Deviations are standard deviations. An inverse by tables may not know the force: it is 0 then.
-#[pyclass(frozen, module = "twintac")]
-pub(crate) struct Contact {
-    pub(crate) contact: twintac::Contact,
-    /// Names of the shapes of the inverse that has found it, which are in memory once.
-    pub(crate) shapes: Arc<[String]>,
-    /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
-    #[pyo3(get)]
-    provenance: String,
-}
-
-#[pymethods]
-impl Contact {
-    /// Name of the most probable shape, of which the rest is said.
-    #[getter]
-    fn shape(&self) -> &str {
-        &self.shapes[self.contact.shape]
-    }
-
-    /// How probable each of the known shapes is; they sum up to 1.
-    #[getter]
-    fn shape_probabilities(&self) -> BTreeMap<&str, f64> {
-        let names = self.shapes.iter().map(String::as_str);
-        names
-            .zip(self.contact.shape_probabilities.iter().copied())
-            .collect()
-    }
-
-    /// Place of the shape's origin in the gel's plane, x and y, mm.
-    #[getter]
-    fn place_mm(&self) -> (f64, f64) {
-        self.contact.place_mm.into()
-    }
-
-    /// Depth below first touch, mm.
-    #[getter]
-    fn depth_mm(&self) -> f64 {
-        self.contact.depth_mm
-    }
-
-    /// Turn about the vertical, radians, up to what makes no difference to the shape; 0 for a round one.
-    #[getter]
-    fn spin_rad(&self) -> f64 {
-        self.contact.spin_rad
-    }
-
-    /// Force into the gel, N.
-    #[getter]
-    fn force_n(&self) -> f64 {
-        self.contact.force_n
-    }
-
-    /// Deviation of the place along x and along y, mm.
-    #[getter]
-    fn place_deviation_mm(&self) -> (f64, f64) {
-        self.contact.place_deviation_mm.into()
-    }
-
-    /// Deviation of the depth, mm.
-    #[getter]
-    fn depth_deviation_mm(&self) -> f64 {
-        self.contact.depth_deviation_mm
-    }
-
-    /// Deviation of the spin, radians; 0 for a round shape.
-    #[getter]
-    fn spin_deviation_rad(&self) -> f64 {
-        self.contact.spin_deviation_rad
-    }
-
-    /// Deviation of the force, N.
-    #[getter]
-    fn force_deviation_n(&self) -> f64 {
-        self.contact.force_deviation_n
-    }
-
-    /// Covariance of x, y and depth, mm, and spin, radians; `[4, 4]`.
-    #[getter]
-    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows(py, self.contact.covariance.as_flattened().to_vec(), [4, 4])
-    }
-
-    /// What the shape leaves of the readings, in deviations of a frame by itself: far above 1, something else touches.
-    #[getter]
-    fn misfit(&self) -> f64 {
-        self.contact.misfit
+    /// A tracker is none: it is started where it is used.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused("Tracker", "start one in each process, with Inverse.start")
     }
 
     fn __repr__(&self) -> String {
-        let (x_mm, y_mm) = self.place_mm();
-        format!(
-            "<Contact {:?} at ({x_mm:.2}, {y_mm:.2}) mm, {:.2} mm deep, {:.2} N, {}>",
-            self.shape(),
-            self.depth_mm(),
-            self.force_n(),
-            self.provenance
-        )
+        let (n_taxels, provenance) = (self.n_taxels, &self.provenance);
+        format!("<Tracker of {n_taxels} taxels, {provenance}>")
     }
 }

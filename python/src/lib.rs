@@ -4,26 +4,32 @@
 
 mod array;
 mod arrow;
+mod contact;
 mod dataset;
 mod error;
 mod fast;
 mod floor;
 mod friction;
 mod gel;
+mod given;
 mod inverse;
 mod long_call;
 mod map;
 mod path;
+mod pickle;
+mod pool;
 mod pose;
 mod press;
 mod program;
 mod reader;
 mod recording;
+mod restore;
 mod run;
 mod sensor;
 mod sensors;
 mod settings;
 mod shape;
+mod shared;
 mod state;
 mod table;
 mod tasks;
@@ -36,6 +42,8 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _twintac {
     #[pymodule_export]
+    use crate::contact::Contact;
+    #[pymodule_export]
     use crate::dataset::Dataset;
     #[pymodule_export]
     use crate::fast::{FastBatch, FastGel, FastReader};
@@ -46,7 +54,7 @@ mod _twintac {
     #[pymodule_export]
     use crate::gel::{Gel, Pressed};
     #[pymodule_export]
-    use crate::inverse::{Contact, Inverse, Tracker};
+    use crate::inverse::{Inverse, Tracker};
     #[pymodule_export]
     use crate::map::PressureMap;
     #[pymodule_export]
@@ -62,11 +70,13 @@ mod _twintac {
     #[pymodule_export]
     use crate::recording::Recording;
     #[pymodule_export]
+    use crate::restore::_restored;
+    #[pymodule_export]
     use crate::run::Run;
     #[pymodule_export]
     use crate::sensor::Sensor;
     #[pymodule_export]
-    use crate::sensors::{Coupling, Imperfection, SensorBatch};
+    use crate::sensors::{Coupling, Imperfection, SensorBatch, SensorState};
     #[pymodule_export]
     use crate::shape::{Body, Shape};
     #[pymodule_export]
@@ -77,4 +87,9 @@ mod _twintac {
     use crate::tasks::Tasks;
     #[pymodule_export]
     use crate::twin::{Prediction, Twin, TwinAtPlace, TwinState};
+
+    /// The version of this package.
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)] // Python's name
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

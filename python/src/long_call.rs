@@ -11,6 +11,9 @@ use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use twintac::Progress;
 
+use crate::pool::in_parallel;
+use crate::shared::Shared;
+
 /// How long Ctrl-C may wait to be heard.
 const PATIENCE: Duration = Duration::from_millis(50);
 
@@ -34,8 +37,23 @@ pub(crate) fn long_call<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
+    long_call_on(py, Arc::new(Shared::new(())), |()| work())
+}
+
+/// The same with a value that no other thread may have meanwhile, also after Ctrl-C.
+pub(crate) fn long_call_on<V: Send + 'static, T: Send + 'static>(
+    py: Python<'_>,
+    value: Arc<Shared<V>>,
+    work: impl FnOnce(&mut V) -> T + Send + 'static,
+) -> PyResult<T> {
     let (sender, receiver) = channel();
-    let worker = std::thread::spawn(move || drop(sender.send(Message::Done(work()))));
+    let worker = std::thread::spawn(move || {
+        let mut held = value.hold();
+        let value = &mut *held;
+        let done = in_parallel(|| work(value));
+        drop(held);
+        drop(sender.send(Message::Done(done)));
+    });
     match listen(py, receiver, None)? {
         Some(done) => Ok(done),
         None => end(py, worker),
@@ -61,7 +79,10 @@ pub(crate) fn followed<T: Send + 'static>(
         total: AtomicUsize::new(0),
         stops: Arc::clone(&stops),
     };
-    let worker = std::thread::spawn(move || drop(sender.send(Message::Done(work(Arc::new(teller))))));
+    let worker = std::thread::spawn(move || {
+        let done = in_parallel(|| work(Arc::new(teller)));
+        drop(sender.send(Message::Done(done)));
+    });
     match listen(
         py,
         receiver,

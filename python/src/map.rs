@@ -3,24 +3,39 @@
 use std::path::PathBuf;
 
 use numpy::PyArray2;
-use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
 
-use crate::array::{Numbers, in_order, rows};
-use crate::error::OrRaise;
+use crate::array::rows;
+use crate::error::{OrRaise, unusable};
+use crate::given::{Array, Given};
+use crate::pickle::{Kept, Reduced, reduced};
 use crate::recording::Provenance;
 use crate::sensor::Sensor;
 
 /// A continuous map over the gel of what a few taxels read: 96 columns and 64 rows, interpolated between the taxels. A notebook shows its picture.
 ///
-/// - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`.
+/// - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`. A taxel whose reading is NaN or masked is left out: the map is that of the other
+///   taxels, and NaN everywhere if there is none.
 /// - `provenance`: where they come from: `"real"`, `"emulated"` or `"simulated"`.
 ///
-/// Raises `Error` for another number of readings than the sensor has taxels.
+/// Raises `Error` for another number of readings than the sensor has taxels, and for one that is infinite.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct PressureMap {
     map: twintac::PressureMap,
+    sensor: Sensor,
+    readings_kpa: Vec<f64>,
     provenance: Provenance,
+}
+
+impl PressureMap {
+    fn of(py: Python<'_>, sensor: &Sensor, readings_kpa: Vec<f64>, provenance: Provenance) -> PyResult<Self> {
+        Ok(Self {
+            map: twintac::PressureMap::of(&sensor.sensor, &readings_kpa).or_raise(py)?,
+            sensor: sensor.clone(),
+            readings_kpa,
+            provenance,
+        })
+    }
 }
 
 #[pymethods]
@@ -29,11 +44,20 @@ impl PressureMap {
     fn new(
         py: Python<'_>,
         sensor: &Sensor,
-        readings_kpa: Numbers<'_, Ix1>,
+        readings_kpa: Given<'_>,
         provenance: Provenance,
     ) -> PyResult<Self> {
-        let map = twintac::PressureMap::of(&sensor.sensor, &in_order(&readings_kpa)).or_raise(py)?;
-        Ok(Self { map, provenance })
+        let expected = format!("one for each of {} taxels, kPa", sensor.sensor.taxels().count());
+        let readings_kpa: Array<1> = readings_kpa.numbers("readings_kpa", &expected)?;
+        if readings_kpa.values.len() != sensor.sensor.taxels().count() {
+            let problem = format!("has {} numbers, expected {expected}", readings_kpa.values.len());
+            return Err(unusable(py, "readings_kpa", &problem));
+        }
+        if readings_kpa.values.iter().any(|kpa| kpa.is_infinite()) {
+            let problem = "has an infinite number, expected finite ones, and NaN for a taxel without a reading";
+            return Err(unusable(py, "readings_kpa", problem));
+        }
+        Self::of(py, sensor, readings_kpa.values, provenance)
     }
 
     /// Where the readings come from: `"real"`, `"emulated"` or `"simulated"`.
@@ -49,15 +73,49 @@ impl PressureMap {
         rows(py, self.map.pressure_kpa().to_vec(), [n_rows, n_columns])
     }
 
+    /// Names of the taxels without a reading: the map was made without them.
+    #[getter]
+    fn missing(&self) -> Vec<String> {
+        self.map.missing().to_vec()
+    }
+
     /// The picture that a notebook shows: the text of an SVG file.
     fn _repr_svg_(&self) -> String {
         self.map.svg()
     }
 
-    /// Draws the map, with the taxels marked, into a file: `.svg` or `.png`.
+    /// Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
     ///
     /// Raises `Error` for a name with another ending, and for a file that cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.map.write(path)).or_raise(py)
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        let (sensor, provenance) = (self.sensor.sensor.name(), &self.provenance);
+        match self.map.missing() {
+            [] => format!("<PressureMap of {sensor:?}, {provenance}>"),
+            names => format!(
+                "<PressureMap of {sensor:?} without {}, {provenance}>",
+                names.join(", ")
+            ),
+        }
+    }
+}
+
+impl Kept for PressureMap {
+    type State = (<Sensor as Kept>::State, Vec<f64>, Provenance);
+
+    fn state(&self, py: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.sensor.state(py)?, self.readings_kpa.clone(), self.provenance))
+    }
+
+    fn restored(py: Python<'_>, (sensor, readings_kpa, provenance): Self::State) -> PyResult<Self> {
+        Self::of(py, &Sensor::restored(py, sensor)?, readings_kpa, provenance)
     }
 }

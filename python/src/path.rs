@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use numpy::ndarray::{Ix1, Ix2};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use twintac::{FollowedFrame, Zero};
 
-use crate::array::{Numbers, in_order, rows};
+use crate::array::rows;
 use crate::error::{OrRaise, unreadable, unusable};
 use crate::fast::PROVENANCE;
+use crate::given::{Array, Given};
+use crate::pickle::{Kept, Reduced, reduced};
 use crate::pose::poses;
 
 /// A path of an indenter over and into a gel, through poses or to forces: down, aside, tilted, and up again. Between its poses the indenter moves evenly.
@@ -37,27 +38,26 @@ impl PressPath {
     fn new(
         py: Python<'_>,
         indenter: &str,
-        time_s: Numbers<'_, Ix1>,
-        gel_from_indenter: Numbers<'_, Ix2>,
+        time_s: Given<'_>,
+        gel_from_indenter: Given<'_>,
         zero: &str,
         rate_hz: Option<f64>,
-        force_n: Option<Numbers<'_, Ix1>>,
+        force_n: Option<Given<'_>>,
     ) -> PyResult<Self> {
         let poses = poses(py, "gel_from_indenter", &gel_from_indenter)?;
-        let of_each = |field: &str, numbers: &Numbers<'_, Ix1>| {
-            let numbers = in_order(numbers).into_owned();
-            if numbers.len() == poses.len() {
-                return Ok(numbers);
+        let of_each = |field: &str, given: &Given<'_>, unit: &str| {
+            let expected = format!("[{}], one for each pose, {unit}", poses.len());
+            let numbers: Array<1> = given.numbers(field, &expected)?;
+            if numbers.values.len() == poses.len() {
+                return Ok(numbers.values);
             }
-            let problem = format!(
-                "has {} numbers, expected one for each of {} poses",
-                numbers.len(),
-                poses.len()
-            );
+            let problem = format!("has the shape {:?}, expected {expected}", numbers.shape);
             Err(unusable(py, field, &problem))
         };
-        let time_s = of_each("time_s", &time_s)?;
-        let force_n = force_n.map(|force_n| of_each("force_n", &force_n)).transpose()?;
+        let time_s = of_each("time_s", &time_s, "s")?;
+        let force_n = force_n
+            .map(|force_n| of_each("force_n", &force_n, "N"))
+            .transpose()?;
         let mut path = twintac::PressPath::through(indenter, time_s.into_iter().zip(poses));
         path.zero = match zero {
             "board" => Zero::Board,
@@ -97,6 +97,11 @@ impl PressPath {
     fn time_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let frames = self.path.frames();
         PyArray1::from_iter(py, frames.iter().map(|frame| frame.time_s))
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
     }
 
     fn __repr__(&self) -> String {
@@ -200,8 +205,45 @@ impl Followed {
             .collect()
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __len__(&self) -> usize {
         self.followed.frames.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let n_frames = self.__len__();
+        match self.failure() {
+            None => format!("<Followed, {n_frames} frames, {PROVENANCE}>"),
+            Some(failure) => format!("<Followed, {n_frames} frames, {PROVENANCE}, ends early: {failure}>"),
+        }
+    }
+}
+
+impl Kept for PressPath {
+    type State = twintac::PressPath;
+
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::PressPath> {
+        Ok(self.path.clone())
+    }
+
+    fn restored(_: Python<'_>, path: twintac::PressPath) -> PyResult<Self> {
+        Ok(Self { path })
+    }
+}
+
+impl Kept for Followed {
+    type State = (twintac::Followed, Vec<String>);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.followed.clone(), self.taxels.clone()))
+    }
+
+    fn restored(_: Python<'_>, (followed, taxels): Self::State) -> PyResult<Self> {
+        Ok(Self { followed, taxels })
     }
 }
 

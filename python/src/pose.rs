@@ -1,11 +1,11 @@
 //! Poses.
 
 use glam::DQuat;
-use numpy::ndarray::{Ix1, Ix2};
 use pyo3::prelude::*;
 
-use crate::array::{Numbers, few, in_order};
 use crate::error::unusable;
+use crate::given::{Array, Given};
+use crate::pickle::{Kept, Reduced, reduced};
 
 /// How far a quaternion's length may be from 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
@@ -31,18 +31,14 @@ impl Pose {
         signature = (position_mm, quaternion=None),
         text_signature = "(position_mm, quaternion=(0.0, 0.0, 0.0, 1.0))"
     )]
-    fn new(
-        py: Python<'_>,
-        position_mm: Numbers<'_, Ix1>,
-        quaternion: Option<Numbers<'_, Ix1>>,
-    ) -> PyResult<Self> {
+    fn new(py: Python<'_>, position_mm: Given<'_>, quaternion: Option<Given<'_>>) -> PyResult<Self> {
         let quaternion = quaternion
-            .map(|quaternion| few(py, "quaternion", &quaternion))
+            .map(|quaternion| quaternion.few("quaternion", ", x, y, z and w"))
             .transpose()?;
         Ok(Self {
             pose: checked(
                 py,
-                few(py, "position_mm", &position_mm)?,
+                position_mm.few("position_mm", ", mm")?,
                 quaternion.unwrap_or(NO_TURN),
             )?,
         })
@@ -60,6 +56,11 @@ impl Pose {
         self.pose.rotation.into()
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Pose({:?}, quaternion={:?})",
@@ -69,18 +70,32 @@ impl Pose {
     }
 }
 
+impl Kept for Pose {
+    type State = twintac::Pose;
+
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::Pose> {
+        Ok(self.pose)
+    }
+
+    fn restored(_: Python<'_>, pose: twintac::Pose) -> PyResult<Self> {
+        Ok(Self { pose })
+    }
+}
+
 /// Poses, `[n_poses, 7]`: place in mm and quaternion `(x, y, z, w)`; or `[n_poses, 3]`, places of what is not turned.
-pub(crate) fn poses(py: Python<'_>, field: &str, rows: &Numbers<'_, Ix2>) -> PyResult<Vec<twintac::Pose>> {
-    let n_columns = rows.as_array().ncols();
+pub(crate) fn poses(py: Python<'_>, field: &str, rows: &Given<'_>) -> PyResult<Vec<twintac::Pose>> {
+    let expected = "[n, 7], place in mm and quaternion (x, y, z, w), or [n, 3], the place alone";
+    let rows: Array<2> = rows.numbers(field, expected)?;
+    let n_columns = rows.shape[1];
     if n_columns != 7 && n_columns != 3 {
-        let problem = format!("has {n_columns} columns, expected 7 (place and quaternion) or 3 (place)");
+        let problem = format!("has the shape {:?}, expected {expected}", rows.shape);
         return Err(unusable(py, field, &problem));
     }
     let pose = |pose: &[f64]| {
         let quaternion = pose.get(3..7).map_or(NO_TURN, |q| [q[0], q[1], q[2], q[3]]);
         checked(py, [pose[0], pose[1], pose[2]], quaternion)
     };
-    in_order(rows).chunks_exact(n_columns).map(pose).collect()
+    rows.rows().map(pose).collect()
 }
 
 /// The pose, if it is one.

@@ -1,10 +1,20 @@
 //! Presses as they are asked for.
 
-use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::array::{Numbers, few};
 use crate::error::unusable;
+use crate::given::Given;
+use crate::pickle::{Kept, Reduced, reduced};
+
+/// Largest depth, and farthest place, mm.
+const LARGEST_MM: f64 = 1000.0;
+
+/// Longest hold, s.
+const LONGEST_S: f64 = 3600.0;
+
+/// Slowest press, mm/s.
+const SLOWEST_MM_PER_S: f64 = 1e-3;
 
 /// A straight press: down to a depth, a hold, and back up.
 ///
@@ -12,12 +22,12 @@ use crate::error::unusable;
 /// - `at_mm`: place of the indenter's origin in the gel's plane, mm; the middle of the gel unless given.
 /// - `depth_mm`: depth below first touch, mm, above 0.
 /// - `spin_rad`: turn of the indenter about the axis of the press, radians.
-/// - `speed_mm_per_s`: speed down and up, mm/s, above 0.
-/// - `hold_s`: time at full depth, s.
+/// - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
+/// - `hold_s`: time at full depth, s, an hour at most.
 ///
 /// Raises `Error`, whose `field` is the argument that cannot be. Whether the sensor has the indenter is seen when it presses.
 #[pyclass(frozen, eq, get_all, from_py_object, module = "twintac")]
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Press {
     /// Name of one of the sensor's indenters.
     indenter: String,
@@ -43,32 +53,35 @@ impl Press {
     fn new(
         py: Python<'_>,
         indenter: String,
-        at_mm: Option<Numbers<'_, Ix1>>,
+        at_mm: Option<Given<'_>>,
         depth_mm: f64,
         spin_rad: f64,
         speed_mm_per_s: f64,
         hold_s: f64,
     ) -> PyResult<Self> {
-        let at_mm = at_mm.map(|at_mm| few::<2>(py, "at_mm", &at_mm)).transpose()?;
+        let at_mm = at_mm.map(|at_mm| at_mm.few::<2>("at_mm", ", mm")).transpose()?;
         let at_mm = at_mm.map_or((0.0, 0.0), Into::into);
-        for (field, value) in [("depth_mm", depth_mm), ("speed_mm_per_s", speed_mm_per_s)] {
-            if !(value > 0.0 && value.is_finite()) {
+        let of_size = -LARGEST_MM..=LARGEST_MM;
+        for (field, value, range, unit) in [
+            ("depth_mm", depth_mm, f64::MIN_POSITIVE..=LARGEST_MM, "mm"),
+            ("speed_mm_per_s", speed_mm_per_s, SLOWEST_MM_PER_S..=1e4, "mm/s"),
+            ("hold_s", hold_s, 0.0..=LONGEST_S, "s"),
+            ("at_mm", at_mm.0, of_size.clone(), "mm"),
+            ("at_mm", at_mm.1, of_size, "mm"),
+            ("spin_rad", spin_rad, -1e3..=1e3, "radians"),
+        ] {
+            if !range.contains(&value) {
+                let (least, most) = (range.start(), range.end());
+                let expected = match *least {
+                    f64::MIN_POSITIVE => format!("above 0, and at most {most} {unit}"),
+                    least => format!("from {least} to {most} {unit}"),
+                };
                 return Err(unusable(
                     py,
                     field,
-                    &format!("is {value}, expected a number above 0"),
+                    &format!("is {value}, expected a number {expected}"),
                 ));
             }
-        }
-        if !(hold_s >= 0.0 && hold_s.is_finite()) {
-            return Err(unusable(
-                py,
-                "hold_s",
-                &format!("is {hold_s}, expected 0 or more"),
-            ));
-        }
-        if ![at_mm.0, at_mm.1, spin_rad].iter().all(|value| value.is_finite()) {
-            return Err(unusable(py, "at_mm", "or `spin_rad` is not finite"));
         }
         Ok(Self {
             indenter,
@@ -80,11 +93,28 @@ impl Press {
         })
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Press({:?}, at_mm={:?}, depth_mm={:?}, spin_rad={:?}, speed_mm_per_s={:?}, hold_s={:?})",
             self.indenter, self.at_mm, self.depth_mm, self.spin_rad, self.speed_mm_per_s, self.hold_s
         )
+    }
+}
+
+impl Kept for Press {
+    type State = Self;
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self> {
+        Ok(self.clone())
+    }
+
+    fn restored(_: Python<'_>, state: Self) -> PyResult<Self> {
+        Ok(state)
     }
 }
 

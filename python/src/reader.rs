@@ -7,9 +7,12 @@ use std::time::Duration;
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{OrRaise, unusable};
+use crate::given::Given;
 use crate::long_call::long_call;
+use crate::pickle::{Kept, Reduced, reduced, refused};
 use crate::sensor::Sensor;
 
 /// How long Ctrl-C and `close` may wait to be heard.
@@ -23,6 +26,8 @@ const PATIENCE: Duration = Duration::from_millis(50);
 pub(crate) struct Reader {
     /// None once it is closed.
     reader: Mutex<Option<twintac::Reader>>,
+    /// The process whose thread reads: one that is forked from it has none.
+    process: u32,
     /// Tells threads that wait for a frame to let go of it.
     is_closed: AtomicBool,
     provenance: String,
@@ -44,6 +49,7 @@ impl Reader {
             notes: reader.notes().to_vec(),
             taxels,
             reader: Mutex::new(Some(reader)),
+            process: std::process::id(),
             is_closed: AtomicBool::new(false),
         })
     }
@@ -57,7 +63,15 @@ impl Reader {
     /// Raises `Error` for a bus that cannot be opened, and a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
     #[staticmethod]
     #[pyo3(signature = (bus, sensor, *, counts_per_pa=None))]
-    fn open(py: Python<'_>, bus: PathBuf, sensor: &Sensor, counts_per_pa: Option<u16>) -> PyResult<Self> {
+    fn open(
+        py: Python<'_>,
+        bus: PathBuf,
+        sensor: &Sensor,
+        counts_per_pa: Option<Given<'_>>,
+    ) -> PyResult<Self> {
+        let range = 1..=u16::MAX as usize;
+        let counts_per_pa = counts_per_pa.map(|counts| counts.count("counts_per_pa", range));
+        let counts_per_pa = counts_per_pa.transpose()?.map(|counts| counts as u16);
         #[cfg(target_os = "linux")]
         return Self::start(py, sensor, move |sensor| {
             twintac::Reader::open(bus, sensor, counts_per_pa)
@@ -106,6 +120,9 @@ impl Reader {
     /// Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing.
     fn close(&self, py: Python<'_>) {
         self.is_closed.store(true, Ordering::Relaxed);
+        if std::process::id() != self.process {
+            return; // the thread that reads is the other process's
+        }
         py.detach(|| drop(self.reader.lock().unwrap_or_else(PoisonError::into_inner).take()));
     }
 
@@ -128,6 +145,14 @@ impl Reader {
         self.close(py);
     }
 
+    /// What reads is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "Reader",
+            "one process reads a sensor; give the others its readings, which can be pickled",
+        )
+    }
+
     fn __repr__(&self) -> String {
         format!("<Reader of {} taxels, {}>", self.taxels.len(), self.provenance)
     }
@@ -136,6 +161,10 @@ impl Reader {
 impl Reader {
     /// The next frame; none of a reader that is closed.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Reading>> {
+        if std::process::id() != self.process {
+            let problem = "was opened by the process before this one was forked, and reads there: open one in this process";
+            return Err(unusable(py, "reader", problem));
+        }
         while !self.is_closed.load(Ordering::Relaxed) {
             let heard = py.detach(|| {
                 let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
@@ -146,7 +175,7 @@ impl Reader {
                 Some(frame) => {
                     if let Some(reading) = frame.or_raise(py)? {
                         let provenance = self.provenance.clone();
-                        return Ok(Some(Reading { reading, provenance }));
+                        return Ok(Some(Reading::of(reading, provenance)));
                     }
                 }
             }
@@ -159,10 +188,47 @@ impl Reader {
 /// A frame of a sensor: what `Reader.read` returns.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Reading {
-    reading: twintac::Reading,
+    frame: Frame,
     /// Where the readings come from: `"real"` or `"emulated"`.
     #[pyo3(get)]
     provenance: String,
+}
+
+/// What a frame says.
+#[derive(Clone, Serialize, Deserialize)]
+pub(crate) struct Frame {
+    sequence: u64,
+    time_s: f64,
+    /// `[n_taxels]`, as are the other lists.
+    readings_kpa: Vec<Option<f64>>,
+    faults: Vec<Option<String>>,
+    temperatures_c: Vec<Option<f64>>,
+}
+
+impl Reading {
+    fn of(reading: twintac::Reading, provenance: String) -> Self {
+        let faults = reading.faults.into_iter();
+        let frame = Frame {
+            sequence: reading.sequence,
+            time_s: reading.time_s,
+            readings_kpa: reading.readings_kpa,
+            faults: faults.map(|fault| fault.map(str::to_owned)).collect(),
+            temperatures_c: reading.temperatures_c,
+        };
+        Self { frame, provenance }
+    }
+}
+
+impl Kept for Reading {
+    type State = (Frame, String);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.frame.clone(), self.provenance.clone()))
+    }
+
+    fn restored(_: Python<'_>, (frame, provenance): Self::State) -> PyResult<Self> {
+        Ok(Self { frame, provenance })
+    }
 }
 
 #[pymethods]
@@ -170,37 +236,42 @@ impl Reading {
     /// Its number, from 0, of all frames that were asked of the sensor: numbers that are missing were missed, or the bus gave none. The first ones made the tare.
     #[getter]
     fn sequence(&self) -> u64 {
-        self.reading.sequence
+        self.frame.sequence
     }
 
     /// When the taxels were triggered, s since the sensor was switched on.
     #[getter]
     fn time_s(&self) -> f64 {
-        self.reading.time_s
+        self.frame.time_s
     }
 
     /// Readings above what the taxels read untouched, kPa, `[n_taxels]`; NaN of a taxel that gives no usable one.
     #[getter]
     fn readings_kpa<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        or_nan(py, &self.reading.readings_kpa)
+        or_nan(py, &self.frame.readings_kpa)
     }
 
     /// Whether each taxel's reading can be used; `[n_taxels]`.
     #[getter]
     fn is_valid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        PyArray1::from_iter(py, self.reading.readings_kpa.iter().map(Option::is_some))
+        PyArray1::from_iter(py, self.frame.readings_kpa.iter().map(Option::is_some))
     }
 
     /// Why a taxel's reading cannot be used, in a word or two, `[n_taxels]`; `None` of a taxel that works.
     #[getter]
-    fn faults(&self) -> Vec<Option<&'static str>> {
-        self.reading.faults.clone()
+    fn faults(&self) -> Vec<Option<String>> {
+        self.frame.faults.clone()
     }
 
     /// Temperatures of the barometers, °C, `[n_taxels]`; NaN of one that gives none.
     #[getter]
     fn temperatures_c<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        or_nan(py, &self.reading.temperatures_c)
+        or_nan(py, &self.frame.temperatures_c)
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
     }
 
     fn __repr__(&self) -> String {

@@ -5,15 +5,19 @@ use std::path::PathBuf;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList};
+use serde::{Deserialize, Serialize};
 use twintac::{Column, Recorded, import_files};
 
 use crate::arrow::{STREAM, stream};
 use crate::error::{OrRaise, unusable};
 use crate::long_call::long_call;
+use crate::pickle::{Kept, Reduced, reduced};
 use crate::sensor::Sensor;
 use crate::settings::to_python;
 
 /// Where numbers come from: `"real"`, `"emulated"` or `"simulated"`.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(transparent)]
 pub(crate) struct Provenance(twintac::Provenance);
 
 impl std::fmt::Display for Provenance {
@@ -93,7 +97,7 @@ impl Recording {
     /// - `time_s`: time, s;
     /// - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame, mm, and a quaternion;
     /// - `force_n`: force into the gel, N; NaN where it is not known;
-    /// - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable.
+    /// - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable. A reading that did not come is NaN.
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
         for (name, column) in self.recording.columns() {
@@ -115,7 +119,7 @@ impl Recording {
     }
 
     /// The columns for whatever reads Arrow by its PyCapsule interface: `polars.DataFrame(recording)`, `pyarrow.table(recording)`, `pandas.DataFrame.from_arrow(recording)`, or DuckDB.
-    /// Types are those of `columns`, texts are strings, and a force that is not known is null. No other schema is given, whatever `requested_schema` is.
+    /// Types are those of `columns`, texts are strings, and a force that is not known and a reading that did not come are null. No other schema is given, whatever `requested_schema` is.
     #[pyo3(signature = (requested_schema=None))]
     fn __arrow_c_stream__<'py>(
         &self,
@@ -174,6 +178,11 @@ impl Recording {
         to_python(py, &found.or_raise(py)?)
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __len__(&self) -> usize {
         self.recording.presses.len()
     }
@@ -184,6 +193,18 @@ impl Recording {
             "<Recording of {} presses of {sensor:?}, {provenance}>",
             self.__len__()
         )
+    }
+}
+
+impl Kept for Recording {
+    type State = twintac::Recording;
+
+    fn state(&self, _: Python<'_>) -> PyResult<twintac::Recording> {
+        Ok(self.recording.clone())
+    }
+
+    fn restored(_: Python<'_>, recording: twintac::Recording) -> PyResult<Self> {
+        Ok(Self { recording })
     }
 }
 

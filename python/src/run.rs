@@ -8,7 +8,9 @@ use pyo3::types::PyDict;
 use twintac::{RunError, RunSettings, Silent};
 
 use crate::error::OrRaise;
+use crate::given::Given;
 use crate::long_call::followed;
+use crate::pickle::{Kept, Reduced, reduced};
 use crate::program::caller;
 use crate::recording::Recording;
 use crate::sensor::Sensor;
@@ -43,15 +45,16 @@ impl Run {
     ///
     /// Raises `Error`, whose `field` is the setting that cannot be, and for a folder that cannot be written.
     #[staticmethod]
-    #[pyo3(signature = (folder, sensor, source, *, seed=1, settings=None))]
+    #[pyo3(signature = (folder, sensor, source, *, seed=None, settings=None), text_signature = "(folder, sensor, source, *, seed=1, settings=None)")]
     fn start(
         py: Python<'_>,
         folder: PathBuf,
         sensor: &Sensor,
         source: &str,
-        seed: u64,
+        seed: Option<Given<'_>>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let seed = seed.map_or(Ok(1), |seed| seed.seed("seed"))?;
         let settings = but(py, RunSettings::default(), settings.as_ref(), "")?;
         let run = twintac::Run::start(&folder, &sensor.sensor, source, seed, settings, caller(py)?);
         Ok(Self {
@@ -70,13 +73,14 @@ impl Run {
 
     /// Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute. Ctrl-C stops it.
     #[staticmethod]
-    #[pyo3(signature = (folder, *, seed=1, progress=None))]
+    #[pyo3(signature = (folder, *, seed=None, progress=None), text_signature = "(folder, *, seed=1, progress=None)")]
     fn demo(
         py: Python<'_>,
         folder: PathBuf,
-        seed: u64,
+        seed: Option<Given<'_>>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let seed = seed.map_or(Ok(1), |seed| seed.seed("seed"))?;
         let caller = caller(py)?;
         let run = followed(py, progress.as_ref(), move |progress| {
             twintac::Run::demo(&folder, seed, twintac::Caller { progress, ..caller })
@@ -132,5 +136,27 @@ impl Run {
     #[getter]
     fn report_path(&self) -> PathBuf {
         self.run.report_path()
+    }
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Run in {:?}>", self.run.folder())
+    }
+}
+
+impl Kept for Run {
+    /// Its folder.
+    type State = PathBuf;
+
+    fn state(&self, _: Python<'_>) -> PyResult<PathBuf> {
+        let folder = self.run.folder();
+        Ok(std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned()))
+    }
+
+    fn restored(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        Self::open(py, folder)
     }
 }

@@ -1,5 +1,6 @@
 //! Sensors as they are described.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use numpy::PyArray2;
@@ -7,6 +8,8 @@ use pyo3::prelude::*;
 
 use crate::array::rows;
 use crate::error::OrRaise;
+use crate::pickle::{Kept, Reduced, reduced};
+use crate::shape::corners_mm;
 
 /// A sensor as its description says: gel, taxels, and the indenters that it can be pressed with.
 ///
@@ -87,11 +90,33 @@ impl Sensor {
         self.sensor.file().sensor.describe()
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "<Sensor {:?} with {} taxels>",
             self.name(),
             self.sensor.taxels().count()
         )
+    }
+}
+
+impl Kept for Sensor {
+    /// Where the description lies, its text, and the corners of the triangles of each surface that it names, mm.
+    type State = (PathBuf, String, BTreeMap<String, Vec<[[f64; 3]; 3]>>);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        let file = self.sensor.file();
+        let surfaces = file.sensor.surfaces.iter();
+        let surfaces = surfaces.map(|(name, surface)| (name.clone(), corners_mm(surface)));
+        Ok((file.path(), file.text.clone(), surfaces.collect()))
+    }
+
+    fn restored(py: Python<'_>, (path, text, surfaces): Self::State) -> PyResult<Self> {
+        let sensor = twintac::Sensor::with_surfaces(&path, &text, &surfaces).or_raise(py)?;
+        Ok(Self { sensor })
     }
 }

@@ -9,6 +9,9 @@ use twintac::{RunError, RunSettings};
 
 use crate::error::{OrRaise, unusable};
 
+/// Most lists and dictionaries in each other: one that has itself would never end.
+const DEEPEST: usize = 16;
+
 /// Settings but for those of keywords.
 pub(crate) fn over<T: Serialize + DeserializeOwned>(
     base: T,
@@ -27,19 +30,34 @@ pub(crate) fn over<T: Serialize + DeserializeOwned>(
             let problem = format!("is no setting; there are {}", names.join(", "));
             return Err(unusable(py, &name, &problem));
         };
-        *value = value_of(&own, &name)?;
+        *value = value_of(&own, &name, DEEPEST)?;
         settings = serde_json::from_value(Value::Object(all)).map_err(misfit)?;
     }
     Ok(settings)
 }
 
 /// Numbers, texts, and lists and dictionaries of them, of Python or of NumPy. `name` is the field in which they stand.
-fn value_of(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
+fn value_of(value: &Bound<'_, PyAny>, name: &str, deepest: usize) -> PyResult<Value> {
+    let Some(below) = deepest.checked_sub(1) else {
+        return Err(unusable(
+            value.py(),
+            name,
+            &format!("has more than {DEEPEST} lists or dictionaries in each other"),
+        ));
+    };
     if let Ok(flag) = value.cast::<PyBool>() {
         return Ok(flag.is_true().into());
     }
     if let Ok(number) = value.cast::<PyInt>() {
-        return Ok(number.extract::<i64>()?.into());
+        let integer = number.extract::<i64>().map_err(|_| {
+            let problem = format!(
+                "is {number}, expected an integer from {} to {}",
+                i64::MIN,
+                i64::MAX
+            );
+            unusable(value.py(), name, &problem)
+        });
+        return Ok(integer?.into());
     }
     if let Ok(number) = value.cast::<PyFloat>() {
         let number: f64 = number.extract()?;
@@ -57,31 +75,38 @@ fn value_of(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
         return Ok(text.extract::<String>()?.into());
     }
     if let Ok(values) = value.cast::<PyDict>() {
-        return Ok(Value::Object(values_of(values, name)?));
+        return Ok(Value::Object(values_of(values, name, below)?));
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
-        let each = value.try_iter()?.map(|value| value_of(&value?, name));
+        let each = value.try_iter()?.map(|value| value_of(&value?, name, below));
         return Ok(Value::Array(each.collect::<PyResult<_>>()?));
     }
     if value.hasattr("tolist")? {
-        return value_of(&value.call_method0("tolist")?, name); // of NumPy
+        return value_of(&value.call_method0("tolist")?, name, below); // of NumPy
     }
     if value.hasattr("__fspath__")? {
-        return value_of(&value.call_method0("__fspath__")?, name);
+        return value_of(&value.call_method0("__fspath__")?, name, below);
     }
     let kind = value.get_type().name()?;
     let problem = format!("is of type {kind}, expected a number, a text, a list or a dictionary");
     Err(unusable(value.py(), name, &problem))
 }
 
-fn values_of(values: &Bound<'_, PyDict>, within: &str) -> PyResult<Map<String, Value>> {
+fn values_of(values: &Bound<'_, PyDict>, within: &str, deepest: usize) -> PyResult<Map<String, Value>> {
     let named = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| -> PyResult<(String, Value)> {
-        let name: String = name.extract()?;
+        let name: String = name.extract().map_err(|_| {
+            let within = if within.is_empty() { "settings" } else { within };
+            unusable(
+                values.py(),
+                within,
+                &format!("has the key {name}, expected a text"),
+            )
+        })?;
         let path = match within {
             "" => name.clone(),
             _ => format!("{within}.{name}"),
         };
-        Ok((name, value_of(&value, &path)?))
+        Ok((name, value_of(&value, &path, deepest)?))
     };
     values.iter().map(named).collect()
 }
@@ -94,7 +119,7 @@ pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResul
 
 /// The text of a TOML file with these values, in a table if it has a name.
 pub(crate) fn as_toml(py: Python<'_>, values: Option<&Bound<'_, PyDict>>, table: &str) -> PyResult<String> {
-    let mut all = values.map_or_else(|| Ok(Map::new()), |values| values_of(values, ""))?;
+    let mut all = values.map_or_else(|| Ok(Map::new()), |values| values_of(values, "", DEEPEST))?;
     if !table.is_empty() {
         all = Map::from_iter([(table.to_owned(), Value::Object(all))]);
     }

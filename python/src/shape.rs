@@ -1,18 +1,18 @@
 //! Rigid shapes.
 
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use numpy::ndarray::{ArrayView1, Ix1, Ix2};
-use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
-use twintac::{Part, Surfaces, TriangleSurface};
+use twintac::{LengthUnit, Part, SurfaceFile, Surfaces, TriangleSurface};
 
-use crate::array::{Numbers, few};
 use crate::error::{OrRaise, unreadable, unusable};
+use crate::given::{Array, Given};
 use crate::long_call::long_call;
+use crate::pickle::{Kept, Reduced, reduced};
 use crate::pose::Pose;
 
 /// A rigid shape that presses. `edge_radius_mm` rounds every convex edge without moving any face. Prismatic shapes have their profile in the xy
@@ -45,7 +45,7 @@ impl Shape {
         let lowest_mm = surface.vertices_mm().iter().map(|corner| corner.z);
         let lowest_mm = lowest_mm.fold(f64::INFINITY, f64::min);
         let part = Part {
-            shape: twintac::Shape::Stl { path: path.clone() },
+            shape: twintac::Shape::Stl(SurfaceFile::new(path.clone())),
             whole_from_part: twintac::Pose::from_position(lowest_mm * DVec3::Z),
         };
         let surfaces = Surfaces::from([(path, Arc::new(surface))]);
@@ -74,9 +74,9 @@ impl Shape {
 
     /// A box of this full size along x, y and z, mm, whose edges are rounded with `edge_radius_mm`.
     #[staticmethod]
-    fn r#box(py: Python<'_>, size_mm: Numbers<'_, Ix1>, edge_radius_mm: f64) -> PyResult<Self> {
+    fn r#box(py: Python<'_>, size_mm: Given<'_>, edge_radius_mm: f64) -> PyResult<Self> {
         let shape = twintac::Shape::Box {
-            size_mm: few(py, "size_mm", &size_mm)?,
+            size_mm: size_mm.few("size_mm", ", mm")?,
             edge_radius_mm,
         };
         Self::of(py, shape, Surfaces::new())
@@ -147,16 +147,28 @@ impl Shape {
         Self::of(py, shape, Surfaces::new())
     }
 
-    /// A closed triangle surface in an STL file, in mm; its lowest point is moved to the origin's z.
+    /// A closed triangle surface in an STL file, whose `unit` is "mm", "cm", "m" or "inch", or in which a length of 1 is `scale` mm; its lowest point is
+    /// moved to the origin's z.
     ///
-    /// Raises `Error` with the file if it cannot be read or its surface is not closed.
+    /// Raises `Error` with the file if it cannot be read, its surface is not closed, or its size cannot be in that unit.
     #[staticmethod]
-    fn stl(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, unit=None, scale=None))]
+    fn stl(py: Python<'_>, path: PathBuf, unit: Option<&str>, scale: Option<f64>) -> PyResult<Self> {
+        let named = |unit: &str| {
+            let known = unit.parse::<LengthUnit>();
+            known.map_err(|problem| unusable(py, "unit", &format!("is `{unit}`, {problem}")))
+        };
+        let file = SurfaceFile {
+            path: path.display().to_string(),
+            unit: unit.map(named).transpose()?,
+            scale,
+        };
+        file.validate().or_raise(py)?;
         let bytes = std::fs::read(&path).map_err(|error| unreadable(py, &path, &error))?;
-        let surface = TriangleSurface::from_stl(&bytes).map_err(|error| unreadable(py, &path, &error))?;
-        let path = path.display().to_string();
-        let surfaces = Surfaces::from([(path.clone(), Arc::new(surface))]);
-        Self::of(py, twintac::Shape::Stl { path }, surfaces)
+        let surface = TriangleSurface::from_stl(&bytes, file.mm_per_unit());
+        let surface = surface.map_err(|error| unreadable(py, &path, &error))?;
+        let surfaces = Surfaces::from([(file.name().into_owned(), Arc::new(surface))]);
+        Self::of(py, twintac::Shape::Stl(file), surfaces)
     }
 
     /// A closed surface of triangles: places of its corners, mm, `[n_vertices, 3]`, and the corners of each triangle, counter-clockwise seen from outside,
@@ -164,41 +176,30 @@ impl Shape {
     ///
     /// Raises `Error` for arrays of another shape, a corner that is not there, and a surface that is not closed.
     #[staticmethod]
-    fn surface(
-        py: Python<'_>,
-        vertices_mm: Numbers<'_, Ix2>,
-        triangles: PyArrayLike<'_, i64, Ix2, AllowTypeChange>,
-    ) -> PyResult<Self> {
-        let (vertices_mm, triangles) = (vertices_mm.as_array(), triangles.as_array());
-        for (name, n_columns) in [
-            ("vertices_mm", vertices_mm.ncols()),
-            ("triangles", triangles.ncols()),
-        ] {
+    fn surface(py: Python<'_>, vertices_mm: Given<'_>, triangles: Given<'_>) -> PyResult<Self> {
+        let vertices_mm: Array<2> = vertices_mm.numbers("vertices_mm", "[n_vertices, 3], mm")?;
+        let (shape, triangles) = triangles.integers::<2>("triangles", "[n_triangles, 3]")?;
+        let [n_vertices, _] = vertices_mm.shape;
+        for (name, [_, n_columns]) in [("vertices_mm", vertices_mm.shape), ("triangles", shape)] {
             if n_columns != 3 {
-                return Err(unusable(
-                    py,
-                    name,
-                    &format!("has {n_columns} columns, expected 3"),
-                ));
+                let problem = format!("has {n_columns} columns, expected 3");
+                return Err(unusable(py, name, &problem));
             }
         }
         let corner = |number: i64| {
-            let row = usize::try_from(number)
-                .ok()
-                .filter(|row| *row < vertices_mm.nrows());
+            let row = usize::try_from(number).ok().filter(|row| *row < n_vertices);
             let row = row.ok_or_else(|| {
-                let n = vertices_mm.nrows();
+                let n = n_vertices;
                 unusable(
                     py,
                     "triangles",
                     &format!("has a corner {number}, expected 0 to {}", n.saturating_sub(1)),
                 )
             })?;
-            let [x, y, z] = [0, 1, 2].map(|axis| vertices_mm[[row, axis]]);
-            PyResult::Ok(DVec3::new(x, y, z))
+            PyResult::Ok(DVec3::from_slice(&vertices_mm.values[3 * row..][..3]))
         };
-        let triangle = |row: ArrayView1<'_, i64>| Ok([corner(row[0])?, corner(row[1])?, corner(row[2])?]);
-        let triangles = triangles.rows().into_iter().map(triangle);
+        let triangle = |row: &[i64]| Ok([corner(row[0])?, corner(row[1])?, corner(row[2])?]);
+        let triangles = triangles.chunks_exact(3).map(triangle);
         let triangles = triangles.collect::<PyResult<Vec<[DVec3; 3]>>>()?;
         let surface = TriangleSurface::from_triangles(&triangles);
         let surface = surface.map_err(|error| unusable(py, "triangles", &error.to_string()))?;
@@ -220,9 +221,49 @@ impl Shape {
         Self::of(py, twintac::Shape::Union { parts }, surfaces)
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!("<Shape {:?}>", self.shape)
     }
+}
+
+impl Kept for Shape {
+    /// The shape, and the corners of the triangles of each surface that it names, mm.
+    type State = (twintac::Shape, BTreeMap<String, Vec<[[f64; 3]; 3]>>);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        let surfaces = self.surfaces.iter();
+        let surfaces = surfaces.map(|(name, surface)| (name.clone(), corners_mm(surface)));
+        Ok((self.shape.clone(), surfaces.collect()))
+    }
+
+    fn restored(py: Python<'_>, (shape, surfaces): Self::State) -> PyResult<Self> {
+        let surface = |(name, triangles): (String, Vec<[[f64; 3]; 3]>)| {
+            let triangles: Vec<[DVec3; 3]> =
+                triangles.iter().map(|corners| corners.map(DVec3::from)).collect();
+            let surface = TriangleSurface::from_triangles(&triangles);
+            let surface = surface.map_err(|error| unusable(py, "Shape", &error.to_string()))?;
+            PyResult::Ok((name, Arc::new(surface)))
+        };
+        Ok(Self {
+            shape,
+            surfaces: surfaces.into_iter().map(surface).collect::<PyResult<_>>()?,
+        })
+    }
+}
+
+/// The corners of a surface's triangles, mm.
+pub(crate) fn corners_mm(surface: &TriangleSurface) -> Vec<[[f64; 3]; 3]> {
+    let corner = |number: u32| surface.vertices_mm()[number as usize].to_array();
+    surface
+        .triangles()
+        .iter()
+        .map(|triangle| triangle.map(corner))
+        .collect()
 }
 
 /// A shape whose distances are known at once: what the fast gel reads.
@@ -232,13 +273,38 @@ impl Shape {
 #[derive(Clone)]
 pub(crate) struct Body {
     pub(crate) body: Arc<twintac::Body>,
+    shape: Shape,
 }
 
 #[pymethods]
 impl Body {
     #[new]
     fn new(py: Python<'_>, shape: Shape) -> PyResult<Self> {
-        let body = long_call(py, move || twintac::Body::new(&shape.shape, &shape.surfaces))?.or_raise(py)?;
-        Ok(Self { body: Arc::new(body) })
+        let own = shape.clone();
+        let body = long_call(py, move || twintac::Body::new(&own.shape, &own.surfaces))?.or_raise(py)?;
+        let body = Arc::new(body);
+        Ok(Self { body, shape })
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Body of {:?}>", self.shape.shape)
+    }
+}
+
+impl Kept for Body {
+    /// Of its shape, which is sampled again.
+    type State = <Shape as Kept>::State;
+
+    fn state(&self, py: Python<'_>) -> PyResult<Self::State> {
+        self.shape.state(py)
+    }
+
+    fn restored(py: Python<'_>, shape: Self::State) -> PyResult<Self> {
+        Self::new(py, Shape::restored(py, shape)?)
     }
 }

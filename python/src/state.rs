@@ -1,6 +1,6 @@
 //! A gel that is pressed frame by frame.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -8,16 +8,18 @@ use twintac::FollowedFrame;
 
 use crate::error::{OrRaise, unusable};
 use crate::fast::PROVENANCE;
-use crate::long_call::long_call;
+use crate::given::since;
+use crate::long_call::long_call_on;
 use crate::path::readings_kpa;
+use crate::pickle::refused;
 use crate::pose::Pose;
-use crate::sensors::since;
+use crate::shared::Shared;
 
 /// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. What `Gel.state` returns. It keeps how it is deformed, what its material
 /// remembers, and where friction holds it.
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct GelState {
-    held: Arc<Mutex<Held>>,
+    held: Arc<Shared<Held>>,
     taxels: Vec<String>,
 }
 
@@ -31,24 +33,24 @@ impl GelState {
     pub(crate) fn new(state: twintac::GelState, taxels: Vec<String>) -> Self {
         let held = Held { state, last: None };
         Self {
-            held: Arc::new(Mutex::new(held)),
+            held: Arc::new(Shared::new(held)),
             taxels,
         }
     }
 
     /// Looks at the gel, once a step that was interrupted is made.
-    fn look<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&mut Held) -> T + Send) -> T {
-        py.detach(|| look(&mut self.held.lock().unwrap_or_else(PoisonError::into_inner)))
+    fn look<T>(&self, py: Python<'_>, look: impl FnOnce(&mut Held) -> T) -> PyResult<T> {
+        self.held.look(py, look)
     }
 
     /// A vector of the last frame; zero before the first.
     fn vector<'py>(
         &self,
         py: Python<'py>,
-        vector: impl Fn(&FollowedFrame) -> glam::DVec3 + Send,
-    ) -> Bound<'py, PyArray1<f64>> {
-        let vector = self.look(py, |held| held.last.as_ref().map(vector));
-        PyArray1::from_slice(py, &vector.unwrap_or_default().to_array())
+        vector: impl Fn(&FollowedFrame) -> glam::DVec3,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let vector = self.look(py, |held| held.last.as_ref().map(vector))?;
+        Ok(PyArray1::from_slice(py, &vector.unwrap_or_default().to_array()))
     }
 }
 
@@ -67,7 +69,7 @@ impl GelState {
     /// (`Gel(sensor, {"max_path_nodes": 4000})`), long ones on a fine gel seconds. Ctrl-C ends the wait; the step is made all the same.
     ///
     /// Raises `Error` if the solver finds no equilibrium: the gel is then as it was before, and smaller steps may do; for a time below 0, and for a force that is not
-    /// above 0 or is not met.
+    /// above 0, is not met, or is more than the sensor stands (`limits.force_n` of its description).
     #[pyo3(signature = (since_previous_s, gel_from_indenter, *, force_n=None))]
     fn step<'py>(
         &self,
@@ -81,9 +83,9 @@ impl GelState {
             let problem = format!("is {force_n}, expected a number above 0");
             return Err(unusable(py, "force_n", &problem));
         }
-        let (held, taxels) = (Arc::clone(&self.held), self.taxels.clone());
-        let readings_kpa = long_call(py, move || {
-            let mut held = held.lock().unwrap_or_else(PoisonError::into_inner);
+        self.look(py, |_| ())?; // it can be stepped in this process
+        let taxels = self.taxels.clone();
+        let readings_kpa = long_call_on(py, Arc::clone(&self.held), move |held| {
             let pose = &gel_from_indenter.pose;
             let frame = match force_n {
                 Some(force_n) => held.state.step_to_force(since_previous_s, pose, force_n),
@@ -98,42 +100,50 @@ impl GelState {
 
     /// Where the indenter is, in the gel's frame; `None` before the first frame.
     #[getter]
-    fn gel_from_indenter(&self, py: Python<'_>) -> Option<Pose> {
-        let pose = self.look(py, |held| held.state.gel_from_indenter());
-        pose.map(|pose| Pose { pose })
+    fn gel_from_indenter(&self, py: Python<'_>) -> PyResult<Option<Pose>> {
+        let pose = self.look(py, |held| held.state.gel_from_indenter())?;
+        Ok(pose.map(|pose| Pose { pose }))
     }
 
     /// How far the indenter is below where, at the place and turn of the first of the poses that `Gel.state` was given, it first touches the gel, mm; `None` before the
     /// first frame.
     #[getter]
-    fn depth_mm(&self, py: Python<'_>) -> Option<f64> {
+    fn depth_mm(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.depth_mm))
     }
 
     /// Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. A press straight down has a negative z. Zero before the first frame.
     #[getter]
-    fn force_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    fn force_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.vector(py, |frame| frame.force_n)
     }
 
     /// Torque of the indenter on the gel about the indenter's origin at the last frame, in the gel's frame, N mm; `[3]`. Zero before the first frame.
     #[getter]
-    fn torque_n_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    fn torque_n_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.vector(py, |frame| frame.torque_n_mm)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        match self.depth_mm(py) {
+    /// A gel that is pressed is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "GelState",
+            "pickle the Gel, and take a state of it in each process, with Gel.state",
+        )
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(match self.depth_mm(py)? {
             Some(depth_mm) => format!("<GelState pressed {depth_mm:.2} mm deep, {PROVENANCE}>"),
             None => format!("<GelState untouched, {PROVENANCE}>"),
-        }
+        })
     }
 
     /// Takes the indenter away: the gel is as it was before the first frame, and remembers nothing.
-    fn rest(&self, py: Python<'_>) {
+    fn rest(&self, py: Python<'_>) -> PyResult<()> {
         self.look(py, |held| {
             held.state.rest();
             held.last = None;
-        });
+        })
     }
 }

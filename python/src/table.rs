@@ -1,10 +1,10 @@
 //! What is read of a shape at places and depths.
 
-use numpy::ndarray::{Ix1, Ix3, Ix4};
 use pyo3::prelude::*;
 
-use crate::array::{Numbers, in_order};
 use crate::error::unusable;
+use crate::given::{Array, Given};
+use crate::pickle::{Kept, Reduced, reduced};
 
 /// How far the distances of an axis may differ, as part of them.
 const EVENNESS: f64 = 1e-6;
@@ -35,45 +35,51 @@ impl ReadingTable {
     #[pyo3(signature = (x_mm, y_mm, depth_mm, readings_kpa, force_n=None))]
     fn new(
         py: Python<'_>,
-        x_mm: Numbers<'_, Ix1>,
-        y_mm: Numbers<'_, Ix1>,
-        depth_mm: Numbers<'_, Ix1>,
-        readings_kpa: Numbers<'_, Ix4>,
-        force_n: Option<Numbers<'_, Ix3>>,
+        x_mm: Given<'_>,
+        y_mm: Given<'_>,
+        depth_mm: Given<'_>,
+        readings_kpa: Given<'_>,
+        force_n: Option<Given<'_>>,
     ) -> PyResult<Self> {
-        let axes = [("x_mm", &x_mm), ("y_mm", &y_mm), ("depth_mm", &depth_mm)];
-        let axes = axes.map(|(field, axis)| (field, in_order(axis).into_owned()));
+        let [x_mm, y_mm, depth_mm] =
+            [("x_mm", x_mm), ("y_mm", y_mm), ("depth_mm", depth_mm)].map(|(field, axis)| {
+                let axis: Array<1> = axis.numbers(field, "numbers in mm, evenly apart and increasing")?;
+                PyResult::Ok((field, axis.values))
+            });
+        let axes = [x_mm?, y_mm?, depth_mm?];
         let [mut first_mm, mut step_mm] = [[0.0; 3], [1.0; 3]];
         for (number, (field, axis)) in axes.iter().enumerate() {
             [first_mm[number], step_mm[number]] = even(axis).ok_or_else(|| {
                 unusable(
                     py,
                     field,
-                    "has to have numbers that are evenly apart and increase",
+                    "has to have numbers in mm that are evenly apart and increase, and span a metre at most",
                 )
             })?;
         }
         let n = axes.map(|(_, axis)| axis.len());
         let [n_x, n_y, n_depth] = n;
-        let shape = readings_kpa.as_array().shape().to_vec();
+        let expected = format!("[{n_depth}, {n_y}, {n_x}, n_taxels], kPa");
+        let readings_kpa: Array<4> = readings_kpa.numbers("readings_kpa", &expected)?;
+        let (shape, readings_kpa) = (readings_kpa.shape, readings_kpa.values);
         let n_taxels = shape[3];
         if shape[..3] != [n_depth, n_y, n_x] || n_taxels == 0 {
-            let problem = format!("has the shape {shape:?}, expected [{n_depth}, {n_y}, {n_x}, n_taxels]");
+            let problem = format!("has the shape {shape:?}, expected {expected}");
             return Err(unusable(py, "readings_kpa", &problem));
         }
-        let readings_kpa = in_order(&readings_kpa);
-        let force_n = match &force_n {
+        let expected = format!("[{n_depth}, {n_y}, {n_x}], N");
+        let force_n = force_n
+            .map(|force_n| force_n.numbers::<3>("force_n", &expected))
+            .transpose()?;
+        let force_n = match force_n {
             None => vec![0.0; n.iter().product()],
-            Some(force_n) if force_n.as_array().shape() == [n_depth, n_y, n_x] => {
-                in_order(force_n).into_owned()
-            }
+            Some(force_n) if force_n.shape == [n_depth, n_y, n_x] => force_n.values,
             Some(force_n) => {
-                let shape = force_n.as_array().shape().to_vec();
-                let problem = format!("has the shape {shape:?}, expected [{n_depth}, {n_y}, {n_x}]");
+                let problem = format!("has the shape {:?}, expected {expected}", force_n.shape);
                 return Err(unusable(py, "force_n", &problem));
             }
         };
-        for (field, numbers) in [("readings_kpa", &*readings_kpa), ("force_n", &force_n)] {
+        for (field, numbers) in [("readings_kpa", &readings_kpa), ("force_n", &force_n)] {
             if !numbers.iter().all(|number| number.is_finite()) {
                 return Err(unusable(py, field, "has a number that is not finite"));
             }
@@ -89,6 +95,11 @@ impl ReadingTable {
         })
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         let [n_x, n_y, n_depth] = self.table.n;
         format!(
@@ -98,6 +109,38 @@ impl ReadingTable {
     }
 }
 
+impl Kept for ReadingTable {
+    /// The least node and the distance of the nodes along x, y and depth, mm, their numbers; readings and forces at each node.
+    type State = ([[f64; 3]; 2], [usize; 3], Vec<Vec<f64>>, Vec<f64>);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        let table = self.table.clone();
+        Ok((
+            [table.first_mm, table.step_mm],
+            table.n,
+            table.readings_kpa,
+            table.force_n,
+        ))
+    }
+
+    fn restored(
+        _: Python<'_>,
+        ([first_mm, step_mm], n, readings_kpa, force_n): Self::State,
+    ) -> PyResult<Self> {
+        let table = twintac::ReadingTable {
+            first_mm,
+            step_mm,
+            n,
+            readings_kpa,
+            force_n,
+        };
+        Ok(Self { table })
+    }
+}
+
+/// Longest axis, mm.
+const LONGEST_MM: f64 = 1000.0;
+
 /// The first number and the distance of numbers that are evenly apart; a lone one has the distance 1.
 fn even(numbers: &[f64]) -> Option<[f64; 2]> {
     let (first, last) = (*numbers.first()?, *numbers.last()?);
@@ -106,6 +149,6 @@ fn even(numbers: &[f64]) -> Option<[f64; 2]> {
         n => (last - first) / (n - 1) as f64,
     };
     let is_even = |pair: &[f64]| (pair[1] - pair[0] - step).abs() <= EVENNESS * step;
-    let can_be = first.is_finite() && step > 0.0 && step.is_finite();
+    let can_be = first.abs() <= LONGEST_MM && step > 0.0 && last - first <= LONGEST_MM;
     (can_be && numbers.windows(2).all(is_even)).then_some([first, step])
 }

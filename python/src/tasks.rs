@@ -1,15 +1,16 @@
 //! Tasks for reinforcement learning.
 
-use numpy::ndarray::{Ix1, Ix2};
-use numpy::{
-    AllowTypeChange, Element, PyArray1, PyArray2, PyArray3, PyArrayLike, PyArrayMethods, PyReadonlyArray,
-};
+use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use twintac::{Answers, Autoreset, Kind, PICTURE_PX};
 
 use crate::error::{OrRaise, unusable};
-use crate::fast::{FastGel, PROVENANCE, n_cores};
+use crate::fast::{FastGel, PROVENANCE};
+use crate::given::{Array, Given, threads};
+use crate::pickle::refused;
+use crate::pool::in_parallel;
 use crate::sensors::Imperfection;
+use crate::shared::Shared;
 
 /// What a step answers: observations, rewards, terminated, truncated, figures; and observations and figures at the end of episodes that ended.
 type Step<'py> = (
@@ -32,13 +33,25 @@ type Observed<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 /// - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
 /// - `autoreset`: when an environment whose episode is over begins the next one: in the next step (`"NextStep"`), which ignores its action and has a reward of zero; in
 ///   the same step (`"SameStep"`); or when `reset` is called (`"Disabled"`).
-/// - `n_threads`: as many as there are cores unless given; results do not depend on it.
+/// - `n_environments`: 1 or more, and at most ten million readings of their sensors: 1,250,000 of eight taxels.
+/// - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 ///
-/// Raises `Error` for a task that is not there, a gel that it cannot use, and if there is no environment.
-#[pyclass(module = "twintac")]
+/// Raises `Error` for a task that is not there, a gel that it cannot use, and a number that is out of its range.
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct Tasks {
-    tasks: twintac::Tasks,
+    running: Shared<Running>,
+    kind: &'static str,
     autoreset: Autoreset,
+    n_environments: usize,
+    n_observed: usize,
+    n_actions: usize,
+    figures: &'static [&'static str],
+    n_threads: usize,
+}
+
+/// What steps change.
+struct Running {
+    tasks: twintac::Tasks,
     /// What was observed last in episodes that ended, and the figures then.
     last: [Vec<f32>; 2],
 }
@@ -50,19 +63,18 @@ impl Tasks {
     fn new(
         py: Python<'_>,
         kind: &str,
-        n_environments: usize,
+        n_environments: Given<'_>,
         gel: Option<FastGel>,
         imperfection: Option<Imperfection>,
         autoreset: &str,
-        n_threads: Option<usize>,
+        n_threads: Option<Given<'_>>,
     ) -> PyResult<Self> {
         let kind: Kind = kind.parse().or_raise(py)?;
         let autoreset = self::autoreset(py, autoreset)?;
-        if n_environments == 0 {
-            return Err(unusable(py, "n_environments", "is 0, expected at least one"));
-        }
+        let n_environments = n_environments.count("n_environments", 1..=twintac::most_sensors(0))?;
+        let n_threads = threads(n_threads)?;
         let imperfection = imperfection.map_or_else(twintac::usual_imperfection, |own| own.imperfection);
-        let sizes = [n_environments, n_threads.unwrap_or_else(n_cores)];
+        let sizes = [n_environments, n_threads];
         let made = py.detach(|| {
             let gel = match gel {
                 Some(gel) => gel.gel,
@@ -71,11 +83,20 @@ impl Tasks {
             Ok::<_, twintac::Error>(twintac::Tasks::new(kind, &gel, &imperfection, sizes, autoreset)?)
         });
         let tasks = made.or_raise(py)?;
-        let widths = [tasks.n_observed(), tasks.figures().len()];
+        let (n_observed, figures) = (tasks.n_observed(), tasks.figures());
+        let widths = [n_observed, figures.len()];
         Ok(Self {
-            last: widths.map(|width| vec![0.0; n_environments * width]),
-            tasks,
+            kind: kind.name(),
             autoreset,
+            n_environments,
+            n_observed,
+            n_actions: tasks.n_actions(),
+            figures,
+            n_threads,
+            running: Shared::new(Running {
+                last: widths.map(|width| vec![0.0; n_environments * width]),
+                tasks,
+            }),
         })
     }
 
@@ -88,50 +109,47 @@ impl Tasks {
     /// Numbers of an observation, each from -10 to 10.
     #[getter]
     fn n_observed(&self) -> usize {
-        self.tasks.n_observed()
+        self.n_observed
     }
 
     /// Numbers of an action, each from -1 to 1.
     #[getter]
     fn n_actions(&self) -> usize {
-        self.tasks.n_actions()
+        self.n_actions
     }
 
     /// Names of what is true in an environment and not observed, with units; `[n_figures]`.
     #[getter]
     fn figures(&self) -> Vec<&str> {
-        self.tasks.figures().to_vec()
+        self.figures.to_vec()
     }
 
     /// Gives environments seeds, one for each, from the next reset on; `None` leaves an environment the one that it has.
-    fn seed(&mut self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
-        self.check(py, "seeds", seeds.len())?;
-        for (environment, seed) in seeds.into_iter().enumerate() {
-            if let Some(seed) = seed {
-                self.tasks.seed(environment, seed);
+    ///
+    /// Raises `Error` for another number of seeds, and for a seed that is not from 0 to 2⁶⁴ - 1.
+    fn seed(&self, py: Python<'_>, seeds: Given<'_>) -> PyResult<()> {
+        let seeds = seeds.seeds("seeds", self.n_environments)?;
+        self.running.look(py, |running| {
+            for (environment, seed) in seeds.into_iter().enumerate() {
+                if let Some(seed) = seed {
+                    running.tasks.seed(environment, seed);
+                }
             }
-        }
-        Ok(())
+        })
     }
 
     /// Begins the next episode of all environments, or of those where `which`, `[n_environments]`, is true. Returns observations, `[n_environments, n_observed]`, and figures,
     /// `[n_environments, n_figures]`; zeros of the others.
     #[pyo3(signature = (which=None))]
-    fn reset<'py>(
-        &mut self,
-        py: Python<'py>,
-        which: Option<PyReadonlyArray<'_, bool, Ix1>>,
-    ) -> PyResult<Observed<'py>> {
-        let n = self.tasks.n_environments();
-        let which = which.map_or_else(|| vec![true; n], |which| which.as_array().to_vec());
-        self.check(py, "which", which.len())?;
-        let widths = [self.tasks.n_observed(), self.tasks.figures().len()];
+    fn reset<'py>(&self, py: Python<'py>, which: Option<Given<'_>>) -> PyResult<Observed<'py>> {
+        let n = self.n_environments;
+        let which = which.map_or_else(|| Ok(vec![true; n]), |which| which.flags("which", n))?;
+        let widths = [self.n_observed, self.figures.len()];
         let [observed, figures] = widths.map(|width| PyArray2::<f32>::zeros(py, [n, width], false));
         {
             let (mut observed, mut figures) = (observed.readwrite(), figures.readwrite());
             let (observed, figures) = (observed.as_slice_mut()?, figures.as_slice_mut()?);
-            let tasks = &mut self.tasks;
-            py.detach(|| {
+            self.running.work(py, |Running { tasks, .. }| {
                 let rows = observed
                     .chunks_exact_mut(widths[0])
                     .zip(figures.chunks_exact_mut(widths[1]));
@@ -140,7 +158,7 @@ impl Tasks {
                 {
                     tasks.reset(environment, observed, figures);
                 }
-            });
+            })?;
         }
         Ok((observed, figures))
     }
@@ -151,96 +169,95 @@ impl Tasks {
     /// `[n_environments, n_figures]`; and, of environments that began anew in the same step, what was observed before and the figures then, or `None` if there are none.
     ///
     /// Raises `Error` for actions of another shape, or that are not finite.
-    fn step<'py>(
-        &mut self,
-        py: Python<'py>,
-        actions: PyArrayLike<'_, f32, Ix2, AllowTypeChange>,
-    ) -> PyResult<Step<'py>> {
-        let n = self.tasks.n_environments();
-        let actions = actions.as_array();
-        if actions.shape() != [n, self.tasks.n_actions()] {
-            let problem = format!(
-                "has the shape {:?}, expected {:?}",
-                actions.shape(),
-                [n, self.tasks.n_actions()]
-            );
+    fn step<'py>(&self, py: Python<'py>, actions: Given<'_>) -> PyResult<Step<'py>> {
+        let n = self.n_environments;
+        let expected = [n, self.n_actions];
+        let actions: Array<2> = actions.numbers("actions", &format!("{expected:?}"))?;
+        if actions.shape != expected {
+            let problem = format!("has the shape {:?}, expected {expected:?}", actions.shape);
             return Err(unusable(py, "actions", &problem));
         }
-        let actions: Vec<f32> = actions.iter().copied().collect(); // other threads may write into the array meanwhile
+        let actions: Vec<f32> = actions.values.iter().map(|action| *action as f32).collect();
         if actions.iter().any(|action| !action.is_finite()) {
             return Err(unusable(py, "actions", "has a number that is not finite"));
         }
-        let observed = PyArray2::<f32>::zeros(py, [n, self.tasks.n_observed()], false);
-        let figures = PyArray2::<f32>::zeros(py, [n, self.tasks.figures().len()], false);
+        let observed = PyArray2::<f32>::zeros(py, [n, self.n_observed], false);
+        let figures = PyArray2::<f32>::zeros(py, [n, self.figures.len()], false);
         let rewards = PyArray1::<f64>::zeros(py, [n], false);
+        let last;
         let [terminated, truncated] = [(), ()].map(|()| PyArray1::<bool>::zeros(py, [n], false));
         {
             let mut arrays = (observed.readwrite(), figures.readwrite(), rewards.readwrite());
             let mut ends = (terminated.readwrite(), truncated.readwrite());
-            let [last_observed, last_figures] = &mut self.last;
-            let answers = Answers {
-                observed: arrays.0.as_slice_mut()?,
-                figures: arrays.1.as_slice_mut()?,
-                rewards: arrays.2.as_slice_mut()?,
-                terminated: ends.0.as_slice_mut()?,
-                truncated: ends.1.as_slice_mut()?,
-                last_observed,
-                last_figures,
-            };
-            let tasks = &mut self.tasks;
-            py.detach(|| tasks.step(&actions, answers));
+            let (observed, figures) = (arrays.0.as_slice_mut()?, arrays.1.as_slice_mut()?);
+            let (rewards, terminated) = (arrays.2.as_slice_mut()?, ends.0.as_slice_mut()?);
+            let truncated = ends.1.as_slice_mut()?;
+            last = self.running.work(py, |Running { tasks, last }| {
+                let [last_observed, last_figures] = last;
+                let answers = Answers {
+                    observed,
+                    figures,
+                    rewards,
+                    terminated,
+                    truncated,
+                    last_observed,
+                    last_figures,
+                };
+                let step = || tasks.step(&actions, answers);
+                // Nobody has to be woken for one thread.
+                if self.n_threads > 1 {
+                    in_parallel(step)
+                } else {
+                    step()
+                }
+                let any_ended = terminated.iter().chain(truncated.iter()).any(|ends| *ends);
+                (self.autoreset == Autoreset::SameStep && any_ended).then(|| last.clone())
+            })?;
         }
-        let last = self.last(py, &terminated, &truncated)?;
-        Ok((observed, rewards, terminated, truncated, figures, last))
+        let last = last.map(|[observed, figures]| {
+            PyResult::Ok((
+                table(py, &observed, self.n_observed)?,
+                table(py, &figures, self.figures.len())?,
+            ))
+        });
+        Ok((
+            observed,
+            rewards,
+            terminated,
+            truncated,
+            figures,
+            last.transpose()?,
+        ))
     }
 
     /// A picture of one environment, counted from 0: what is there from above, and what its sensor reads. `[240, 600, 3]`, red, green and blue, 0 to 255.
-    fn picture<'py>(&self, py: Python<'py>, environment: usize) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let n = self.tasks.n_environments();
-        if environment >= n {
-            return Err(unusable(
-                py,
-                "environment",
-                &format!("is {environment}, there are {n}"),
-            ));
-        }
-        let pixels = py.detach(|| self.tasks.picture(environment)).or_raise(py)?;
+    fn picture<'py>(&self, py: Python<'py>, environment: Given<'_>) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let environment = environment.count("environment", 0..=self.n_environments - 1)?;
+        let pixels = self
+            .running
+            .work(py, |running| running.tasks.picture(environment))?;
+        let pixels = pixels.or_raise(py)?;
         let [width, height] = PICTURE_PX;
         PyArray1::from_vec(py, pixels).reshape([height, width, 3])
     }
 
+    /// Environments that are stepped are no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "Tasks",
+            "make them in each process, of the same task, gel and imperfection",
+        )
+    }
+
     fn __len__(&self) -> usize {
-        self.tasks.n_environments()
-    }
-}
-
-impl Tasks {
-    /// One of something for each environment.
-    fn check(&self, py: Python<'_>, field: &str, n: usize) -> PyResult<()> {
-        let expected = self.tasks.n_environments();
-        if n == expected {
-            return Ok(());
-        }
-        let problem = format!("has {n} values, expected one for each of {expected} environments");
-        Err(unusable(py, field, &problem))
+        self.n_environments
     }
 
-    /// What was observed last where episodes ended and began anew.
-    fn last<'py>(
-        &self,
-        py: Python<'py>,
-        terminated: &Bound<'py, PyArray1<bool>>,
-        truncated: &Bound<'py, PyArray1<bool>>,
-    ) -> PyResult<Option<Observed<'py>>> {
-        let any = |ends: &Bound<'py, PyArray1<bool>>| ends.readonly().as_array().iter().any(|end| *end);
-        if self.autoreset != Autoreset::SameStep || !(any(terminated) || any(truncated)) {
-            return Ok(None);
-        }
-        let [observed, figures] = &self.last;
-        Ok(Some((
-            table(py, observed, self.tasks.n_observed())?,
-            table(py, figures, self.tasks.figures().len())?,
-        )))
+    fn __repr__(&self) -> String {
+        format!(
+            "<Tasks: {} environments of {}, {PROVENANCE}>",
+            self.n_environments, self.kind
+        )
     }
 }
 

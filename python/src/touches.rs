@@ -1,33 +1,12 @@
 //! What touches many sensors, as arrays.
 
-use numpy::ndarray::{Ix1, Ix2};
-use numpy::{AllowTypeChange, PyArrayLike};
 use pyo3::prelude::*;
-use twintac::Touch;
+use twintac::{Touch, TouchId};
 
-use crate::array::Numbers;
 use crate::error::unusable;
+use crate::given::Given;
 use crate::pose::poses;
 use crate::shape::Body;
-
-/// Numbers of bodies, and ends: integers of any type.
-pub(crate) type Counts<'py> = Bound<'py, PyAny>;
-
-/// Integers; other numbers are not rounded to some.
-fn integers(field: &str, counts: &Counts<'_>) -> PyResult<Vec<i64>> {
-    let py = counts.py();
-    let counts = py.import("numpy")?.call_method1("asarray", (counts,))?;
-    let kind = counts.getattr("dtype")?;
-    if !matches!(&*kind.getattr("kind")?.extract::<String>()?, "i" | "u") && counts.len()? > 0 {
-        return Err(unusable(
-            py,
-            field,
-            &format!("has numbers of type {kind}, expected integers"),
-        ));
-    }
-    let counts: PyArrayLike<'_, i64, Ix1, AllowTypeChange> = counts.extract()?;
-    Ok(counts.as_array().to_vec())
-}
 
 /// What touches each of many sensors.
 pub(crate) struct Touches {
@@ -42,14 +21,17 @@ impl Touches {
     /// - `ends`: where each sensor's touches end, `[n_sensors]`; one touch for each sensor unless given.
     pub(crate) fn checked(
         py: Python<'_>,
-        gel_from_body: &Numbers<'_, Ix2>,
-        body: Option<&Counts<'_>>,
-        ends: Option<&Counts<'_>>,
+        gel_from_body: &Given<'_>,
+        body: Option<&Given<'_>>,
+        ends: Option<&Given<'_>>,
         n_bodies: usize,
     ) -> PyResult<Self> {
         let poses = poses(py, "gel_from_body", gel_from_body)?;
         let n_touches = poses.len();
-        let body = body.map_or_else(|| Ok(vec![0; n_touches]), |body| integers("body", body))?;
+        let body = match body {
+            None => vec![0; n_touches],
+            Some(body) => body.integers::<1>("body", "[n_touches]")?.1,
+        };
         if body.len() != n_touches {
             let problem = format!(
                 "has {} numbers, expected one for each of {n_touches} touches",
@@ -72,11 +54,24 @@ impl Touches {
         Ok(Self {
             touches: touches.collect::<PyResult<_>>()?,
             ends: match ends {
-                Some(ends) => checked_ends(py, &integers("ends", ends)?, n_touches)?,
+                Some(ends) => checked_ends(py, &ends.integers::<1>("ends", "[n_sensors]")?.1, n_touches)?,
                 None => (1..=n_touches).collect(),
             },
         })
     }
+}
+
+/// Which thing each touch is, of integers of any type and sign.
+pub(crate) fn touch_ids(py: Python<'_>, ids: &Given<'_>, n_touches: usize) -> PyResult<Vec<TouchId>> {
+    let ids = ids.integers::<1>("touch_id", "[n_touches]")?.1;
+    if ids.len() != n_touches {
+        let problem = format!(
+            "has {} numbers, expected one for each of {n_touches} touches",
+            ids.len()
+        );
+        return Err(unusable(py, "touch_id", &problem));
+    }
+    Ok(ids.into_iter().map(|id| TouchId(id.cast_unsigned())).collect())
 }
 
 fn checked_ends(py: Python<'_>, ends: &[i64], n_touches: usize) -> PyResult<Vec<usize>> {

@@ -3,18 +3,22 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use numpy::ndarray::Ix2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::array::{Numbers, in_order, of_rows, rows};
-use crate::error::{OrRaise, unusable};
+use crate::array::{of_rows, rows};
+use crate::error::{OrRaise, unreadable, unusable};
 use crate::fast::PROVENANCE;
+use crate::given::{Array, Given, since};
 use crate::long_call::{followed, long_call};
 use crate::path::PressPath;
+use crate::pickle::{Kept, Reduced, reduced, refused};
 use crate::press::Press;
 use crate::sensor::Sensor;
-use crate::sensors::since;
+use crate::shared::Shared;
+
+/// The file of a twin's folder that tells one twin from another.
+const CHECKSUMS: &str = "checksums.json";
 
 /// A trained twin: what the barometers of one sensor would read while its gel is pressed.
 ///
@@ -22,17 +26,36 @@ use crate::sensors::since;
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Twin {
     pub(crate) twin: Arc<twintac::Twin>,
+    folder: PathBuf,
+    /// The checksums of the folder's files.
+    checksums: String,
+}
+
+impl Twin {
+    fn of(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let (twin, checksums) = py
+            .detach(|| {
+                let twin = twintac::Twin::load(&folder)?;
+                Ok::<_, twintac::Error>((twin, std::fs::read_to_string(folder.join(CHECKSUMS))))
+            })
+            .or_raise(py)?;
+        let folder = std::path::absolute(&folder).unwrap_or(folder);
+        Ok(Self {
+            twin: Arc::new(twin),
+            checksums: checksums.map_err(|error| unreadable(py, &folder.join(CHECKSUMS), &error))?,
+            folder,
+        })
+    }
 }
 
 #[pymethods]
 impl Twin {
-    /// Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`).
+    /// Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`). A pickle keeps where the folder is, and finds the same twin there or raises `Error`.
     ///
     /// Raises `Error` for a folder that holds no twin, or a damaged one.
     #[staticmethod]
     fn load(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        let twin = py.detach(|| twintac::Twin::load(folder)).or_raise(py)?;
-        Ok(Self { twin: Arc::new(twin) })
+        Self::of(py, folder)
     }
 
     /// The sensor whose twin it is.
@@ -94,17 +117,35 @@ impl Twin {
         let (twin, press) = (Arc::clone(&self.twin), twintac::Press::from(press));
         Ok(TwinAtPlace {
             n_taxels: self.twin.sensor().taxels().count(),
-            twin: long_call(py, move || twin.at(&press))?.or_raise(py)?,
+            twin: Shared::new(long_call(py, move || twin.at(&press))?.or_raise(py)?),
         })
     }
 
     /// Twins of so many sensors, to be stepped together with pressures at their ports: for programs that solve the gel themselves.
-    #[pyo3(signature = (n_sensors=1))]
-    fn states(&self, n_sensors: usize) -> TwinState {
-        TwinState {
-            shape: [n_sensors, self.twin.sensor().taxels().count()],
-            state: self.twin.states(n_sensors),
-        }
+    ///
+    /// Raises `Error` for no sensor, and for more than make ten million readings.
+    #[pyo3(signature = (n_sensors=None), text_signature = "($self, n_sensors=1)")]
+    fn states(&self, n_sensors: Option<Given<'_>>) -> PyResult<TwinState> {
+        let n_taxels = self.twin.sensor().taxels().count();
+        let range = 1..=twintac::most_sensors(n_taxels);
+        let n_sensors = n_sensors.map_or(Ok(1), |given| given.count("n_sensors", range))?;
+        Ok(TwinState {
+            shape: [n_sensors, n_taxels],
+            state: Shared::new(self.twin.states(n_sensors)),
+        })
+    }
+
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<Twin of {:?}, trained on {} presses>",
+            self.twin.sensor().name(),
+            self.trained_on()
+        )
     }
 }
 
@@ -190,15 +231,62 @@ impl Prediction {
         Some(PyArray1::from_slice(py, &certainty.is_unlike))
     }
 
+    /// What a pickle keeps.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __len__(&self) -> usize {
         self.prediction.time_s.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let (press, n_frames) = (&self.prediction.name, self.__len__());
+        format!("<Prediction of {press:?}, {n_frames} frames, {PROVENANCE}>")
+    }
+}
+
+impl Kept for Twin {
+    /// Its folder, and the checksums there.
+    type State = (PathBuf, String);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.folder.clone(), self.checksums.clone()))
+    }
+
+    fn restored(py: Python<'_>, (folder, checksums): Self::State) -> PyResult<Self> {
+        let twin = Self::of(py, folder)?;
+        if twin.checksums == checksums {
+            return Ok(twin);
+        }
+        let problem = format!(
+            "in {} is another one than was pickled: load it again",
+            twin.folder.display()
+        );
+        Err(unusable(py, "Twin", &problem))
+    }
+}
+
+impl Kept for Prediction {
+    type State = (twintac::Prediction, usize, Option<String>);
+
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.prediction.clone(), self.n_taxels, self.failure.clone()))
+    }
+
+    fn restored(_: Python<'_>, (prediction, n_taxels, failure): Self::State) -> PyResult<Self> {
+        Ok(Self {
+            prediction,
+            n_taxels,
+            failure,
+        })
     }
 }
 
 /// A twin whose sensor is pressed at one place, stepped with depths: what `Twin.at` returns.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct TwinAtPlace {
-    twin: twintac::TwinAtPlace,
+    twin: Shared<twintac::TwinAtPlace>,
     n_taxels: usize,
 }
 
@@ -215,7 +303,7 @@ impl TwinAtPlace {
     ///
     /// Raises `Error` for a time below 0 or a depth that is not finite.
     fn step<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         since_previous_s: f64,
         depth_mm: f64,
@@ -225,52 +313,71 @@ impl TwinAtPlace {
             return Err(unusable(py, "depth_mm", "is not finite"));
         }
         let mut readings_kpa = vec![0.0; self.n_taxels];
-        self.twin.step(since_previous_s, depth_mm, &mut readings_kpa);
+        self.twin.look(py, |twin| {
+            twin.step(since_previous_s, depth_mm, &mut readings_kpa)
+        })?;
         Ok(PyArray1::from_vec(py, readings_kpa))
     }
 
     /// Force of the indenter into the gel at the last frame, N.
     #[getter]
-    fn force_n(&self) -> f64 {
-        self.twin.force_n()
+    fn force_n(&self, py: Python<'_>) -> PyResult<f64> {
+        self.twin.look(py, |twin| twin.force_n())
     }
 
     /// Half the widths of the 90 % intervals around the last readings, kPa, `[n_taxels]`; `None` of a twin that does not know.
     #[getter]
-    fn half_width_kpa<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.twin
-            .half_width_kpa()
-            .map(|widths| PyArray1::from_slice(py, widths))
+    fn half_width_kpa<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        self.twin.look(py, |twin| {
+            let widths = twin.half_width_kpa();
+            widths.map(|widths| PyArray1::from_slice(py, widths))
+        })
     }
 
     /// How unlike the last contact is to what taught the twin, without unit, and whether it is too unlike for readings and intervals to be trusted; `None` of a
     /// twin that does not know.
     #[getter]
-    fn unlikeness(&self) -> Option<(f64, bool)> {
-        self.twin.unlikeness()
+    fn unlikeness(&self, py: Python<'_>) -> PyResult<Option<(f64, bool)>> {
+        self.twin.look(py, |twin| twin.unlikeness())
     }
 
     /// Depth below first touch at which the table ends, mm; deeper, its last pressures stand.
     #[getter]
-    fn max_depth_mm(&self) -> f64 {
-        self.twin.max_depth_mm()
+    fn max_depth_mm(&self, py: Python<'_>) -> PyResult<f64> {
+        self.twin.look(py, |twin| twin.max_depth_mm())
     }
 
     /// Takes what is read now as zero, as a tare of a real sensor does.
-    fn tare(&mut self) {
-        self.twin.tare();
+    fn tare(&self, py: Python<'_>) -> PyResult<()> {
+        self.twin.look(py, twintac::TwinAtPlace::tare)
     }
 
     /// Lets the gel rest until the next frame: it forgets the presses before. The zero stays.
-    fn rest(&mut self) {
-        self.twin.rest();
+    fn rest(&self, py: Python<'_>) -> PyResult<()> {
+        self.twin.look(py, twintac::TwinAtPlace::rest)
+    }
+
+    /// What is pressed is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "TwinAtPlace",
+            "pickle the Twin, and make one in each process, with Twin.at",
+        )
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let deepest_mm = self.max_depth_mm(py)?;
+        let n_taxels = self.n_taxels;
+        Ok(format!(
+            "<TwinAtPlace of {n_taxels} taxels, down to {deepest_mm:.2} mm, {PROVENANCE}>"
+        ))
     }
 }
 
 /// Twins of many sensors, stepped together with pressures at their ports: what `Twin.states` returns. `len()` is the number of sensors.
-#[pyclass(module = "twintac")]
+#[pyclass(frozen, module = "twintac")]
 pub(crate) struct TwinState {
-    state: twintac::TwinState,
+    state: Shared<twintac::TwinState>,
     /// Sensors and taxels.
     shape: [usize; 2],
 }
@@ -286,46 +393,58 @@ impl TwinState {
     /// One more frame of every sensor, `since_previous_s` after the last: from pressures at the ports to what the barometers would read, kPa; both
     /// `[n_sensors, n_taxels]`.
     ///
-    /// Raises `Error` for a time below 0, and for pressures of another shape.
+    /// Raises `Error` for a time below 0, and for pressures of another shape or that are not finite.
     fn step<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         since_previous_s: f64,
-        pressure_kpa: Numbers<'_, Ix2>,
+        pressure_kpa: Given<'_>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         since(py, since_previous_s)?;
-        if pressure_kpa.as_array().shape() != self.shape {
-            let problem = format!(
-                "has the shape {:?}, expected {:?}",
-                pressure_kpa.as_array().shape(),
-                self.shape
-            );
+        let expected = format!("{:?}, kPa", self.shape);
+        let pressure_kpa: Array<2> = pressure_kpa.numbers("pressure_kpa", &expected)?;
+        if pressure_kpa.shape != self.shape {
+            let problem = format!("has the shape {:?}, expected {expected}", pressure_kpa.shape);
             return Err(unusable(py, "pressure_kpa", &problem));
         }
-        let seen = in_order(&pressure_kpa).into_owned(); // other threads may write into the array meanwhile
+        let seen = pressure_kpa.values;
+        if !seen.iter().all(|kpa| kpa.is_finite()) {
+            let problem = "has a number that is not finite: the gel would remember it for ever";
+            return Err(unusable(py, "pressure_kpa", problem));
+        }
         let mut readings_kpa = vec![0.0; seen.len()];
-        py.detach(|| self.state.step(since_previous_s, &seen, &mut readings_kpa));
+        self.state
+            .work(py, |state| state.step(since_previous_s, &seen, &mut readings_kpa))?;
         rows(py, readings_kpa, self.shape)
     }
 
     /// Takes what is read now as zero, as a tare of a real sensor does.
-    fn tare(&mut self) {
-        self.state.tare();
+    fn tare(&self, py: Python<'_>) -> PyResult<()> {
+        self.state.look(py, twintac::TwinState::tare)
     }
 
     /// Takes what a sensor that nothing touches reads as zero.
-    fn tare_untouched(&mut self) {
-        self.state.tare_untouched();
+    fn tare_untouched(&self, py: Python<'_>) -> PyResult<()> {
+        self.state.look(py, twintac::TwinState::tare_untouched)
     }
 
     /// Lets the gel of one sensor, counted from 0, rest until its next frame: it forgets the presses before. Its zero stays.
-    fn rest(&mut self, py: Python<'_>, sensor: usize) -> PyResult<()> {
-        if sensor >= self.shape[0] {
-            let problem = format!("is {sensor}, there are {}", self.shape[0]);
-            return Err(unusable(py, "sensor", &problem));
-        }
-        self.state.rest(sensor);
-        Ok(())
+    fn rest(&self, py: Python<'_>, sensor: Given<'_>) -> PyResult<()> {
+        let sensor = sensor.count("sensor", 0..=self.shape[0] - 1)?;
+        self.state.look(py, |state| state.rest(sensor))
+    }
+
+    /// What is stepped is no value.
+    fn __reduce__(&self) -> PyResult<()> {
+        refused(
+            "TwinState",
+            "pickle the Twin, and make one in each process, with Twin.states",
+        )
+    }
+
+    fn __repr__(&self) -> String {
+        let [n_sensors, n_taxels] = self.shape;
+        format!("<TwinState of {n_sensors} sensors of {n_taxels} taxels, {PROVENANCE}>")
     }
 
     fn __len__(&self) -> usize {

@@ -168,8 +168,26 @@ def test_sensors_refuse_what_cannot_be(ball: Body) -> None:
         sensors.step(0.01, np.zeros((3, 3)))
     with pytest.raises(Error, match="since_previous_s"):
         sensors.step(-0.01, np.zeros((2, 3)))
-    with pytest.raises(Error, match="there are 2"):
-        sensors.rest(2)
+    for on_a_sensor in (sensors.rest, sensors.state):
+        with pytest.raises(Error, match="`sensor` is 2, expected an integer from 0 to 1"):
+            on_a_sensor(2)
+    with pytest.raises(Error, match="at least one"):
+        sensors.set_bodies([])
+
+
+def test_things_that_a_gel_holds_are_told_apart(ball: Body) -> None:
+    gel, coupling = FastGel.phystac(), Coupling(Sensor.phystac(), friction=0.8)
+    sensors, places = SensorBatch(gel, [ball], 1, coupling=coupling), np.array([[-8.0, 0.0, 8.0], [8.0, 0.0, 8.0]])
+    for touch_id, match in ((None, "`touch_id` is missing"), ([1, 1], "touched twice by the thing 1"), ([1], "has 1 numbers"), ([0.5, 1.0], "integers")):
+        with pytest.raises(Error, match=match) as caught:
+            sensors.step(0.01, places, [0, 0], [2], touch_id=touch_id)
+        assert caught.value.field == "touch_id"
+    with pytest.raises(Error, match="phystac-tip"):
+        SensorBatch(gel, [ball], 1, coupling=Coupling(Sensor.phystac_tip(), friction=0.8))
+    with pytest.raises(Error, match="gel_from_body|position_mm"):
+        sensors.step(0.01, places * np.nan, [0, 0], [2], touch_id=[1, 2])
+    with pytest.raises(Error, match="8 taxels without a twin, expected 1 taxels"):
+        SensorBatch(gel.with_ports([[0.0, 0.0]]), [ball], 1).set_state(0, sensors.state(0))
 
 
 def test_an_indenter_that_the_sensor_does_not_have_is_named() -> None:

@@ -1,6 +1,7 @@
 """A gel that is pressed frame by frame, along paths, and by twins."""
 
 import json
+import time
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +48,20 @@ def pressed(gel: Gel, touch: Pose) -> GelState:
 
 def test_a_ball_touches_where_its_lowest_point_meets_the_top(touch: Pose) -> None:
     assert touch.position_mm == pytest.approx((-1.0, 0.0, 8.5), abs=1e-6)
+
+
+def test_a_force_that_the_sensor_does_not_stand_is_refused_at_once(gel: Gel, touch: Pose) -> None:
+    state = pressed(gel, touch)
+    started = time.monotonic()
+    with pytest.raises(Error, match="1000 N, the sensor stands 212 N") as caught:
+        state.step(0.1, moved(touch, 0.0, 0.0), force_n=1000.0)
+    assert caught.value.field == "force_n"
+    poses = [[*moved(touch, 0.0, depth_mm).position_mm] for depth_mm in (-0.1, 0.1)]
+    with pytest.raises(Error, match="stands 212 N"):
+        gel.follow(PressPath("sphere-25", [0.0, 1.0], poses, force_n=[np.nan, 1000.0]), progress=False)
+    assert time.monotonic() - started < 2.0
+    state.step(0.1, moved(touch, 0.0, 0.1), force_n=1.0)
+    assert state.force_n[2] == pytest.approx(-1.0, rel=0.01)
 
 
 def test_a_gel_pushes_back_where_it_is_pressed(gel: Gel, touch: Pose) -> None:

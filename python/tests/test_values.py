@@ -1,5 +1,6 @@
 """Numbers are those of the command line, shapes are as the docs say, and the same call gives the same bits."""
 
+import copy
 import json
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from conftest import DATA, ROOT, run_command
 
 from twintac import (
     Body,
+    Coupling,
     Error,
     FastGel,
     Friction,
@@ -250,6 +252,36 @@ def test_sensors_are_imperfect_by_their_seed_alone() -> None:
     assert np.ptp(own[:, 0]) > np.ptp(perfect[:, 0]) == 0.0
 
 
+def test_one_body_twice_is_two_things() -> None:
+    box = Body(Shape.box((8.0, 8.0, 10.0), 0.0))
+    sensors = SensorBatch(FastGel.phystac(), [box], 1, coupling=Coupling(Sensor.phystac(), friction=0.8, retardation_s=0.005))
+    places = np.array([[-8.0, 0.0, 8.4], [8.0, 0.0, 8.4]])
+    expected = FastGel.phystac().batch([box]).read(places, [0, 0], [2])[1]
+    for order in ([0, 1], [1, 0], [0, 1]):
+        wrench = sensors.step(0.01, places[order], [0, 0], [2], touch_id=order)[1]
+        assert wrench[0, :3] == pytest.approx(expected[0, :3], abs=5e-3) and wrench[0, 2] < -0.05
+        left, right = sensors.wrench_of_touches()[order]
+        assert left[2] == pytest.approx(right[2], abs=5e-3) and left[0] == pytest.approx(-right[0], abs=5e-3)
+
+
+def test_a_sensor_goes_on_from_its_state() -> None:
+    noisy, ball = Imperfection(noise_deviation_kpa=0.1, hysteresis=0.1), Body(Shape.sphere(6.0))
+    sensors = SensorBatch(FastGel.phystac(), [ball], 2, imperfection=noisy, coupling=Coupling(Sensor.phystac(), friction=0.8, retardation_s=0.005))
+
+    def steps() -> npt.NDArray[np.float32]:
+        return np.array([sensors.step(0.01, np.tile([0.1 * n, 0.0, 7.5], (2, 1)), touch_id=[4, 4])[0] for n in range(5)])
+
+    steps()
+    state = sensors.state(0)
+    first = steps()
+    assert not np.array_equal(steps()[:, 0], first[:, 0])
+    for sensor in (0, 1):
+        sensors.set_state(sensor, copy.deepcopy(state))
+    again = steps()
+    assert np.array_equal(again[:, 0], first[:, 0]) and np.array_equal(again[:, 1], first[:, 0])
+    assert repr(state) == "<SensorState of 8 taxels, simulated>"
+
+
 def test_a_contact_is_found_where_it_is() -> None:
     gel, shape = FastGel.phystac(), Shape.sphere(5.0)
     reader, ball = gel.reader(), Body(shape)
@@ -278,7 +310,34 @@ def test_a_surface_presses_as_the_box_that_it_is(tmp_path: Path) -> None:
     (tmp_path / "box.stl").write_text("\n".join([*lines, "endsolid box"]))
     surface, box = Shape.stl(tmp_path / "box.stl"), Shape.box([8.0, 8.0, 8.0], 0.0)
     whole = Shape.union([(surface, Pose((0.0, 0.0, 0.0)))])
+    tenth = Shape.stl(tmp_path / "box.stl", scale=0.1)
+    with pytest.raises(Error, match="0.008 × 0.008 × 0.008 mm large.*`unit = \"m\"`"):
+        Shape.stl(tmp_path / "box.stl", scale=1e-3)
+    with pytest.raises(Error, match="8000 × 8000 × 8000 mm large"):
+        Shape.stl(tmp_path / "box.stl", unit="m")
+    with pytest.raises(Error, match="`unit` is `feet`, expected one of mm, cm, m, inch"):
+        Shape.stl(tmp_path / "box.stl", unit="feet")
+    with pytest.raises(Error, match="one of the two"):
+        Shape.stl(tmp_path / "box.stl", unit="m", scale=2.0)
     reader, pose = FastGel.phystac().reader(), Pose((0.0, 0.0, 7.5))
     expected_kpa = reader.read([(Body(box), pose)])[0]
+    small_kpa = reader.read([(Body(Shape.box([0.8, 0.8, 0.8], 0.0)), pose)])[0]
+    assert reader.read([(Body(tenth), pose)])[0] == pytest.approx(small_kpa, abs=0.05)
     for shape in (surface, whole):
         assert reader.read([(Body(shape), pose)])[0] == pytest.approx(expected_kpa, abs=0.05)
+
+
+def test_a_taxel_without_a_reading_is_left_out_of_the_map() -> None:
+    sensor, readings = Sensor.phystac(), [5.0] * 8
+    whole = PressureMap(sensor, readings, "real")
+    readings[2] = float("nan")
+    without = PressureMap(sensor, readings, "real")
+    masked = PressureMap(sensor, np.ma.masked_array([5.0] * 8, mask=[taxel == 2 for taxel in range(8)]), "real")
+    x_mm, y_mm, _ = sensor.taxel_positions_mm[2]
+    (low_x, low_y, _), (high_x, high_y, _) = sensor.bounds_mm
+    row, column = int((y_mm - low_y) / (high_y - low_y) * 64), int((x_mm - low_x) / (high_x - low_x) * 96)
+    assert without.missing == ["t2"] and whole.missing == []
+    assert np.array_equal(without.pressure_kpa, masked.pressure_kpa)
+    assert without.pressure_kpa[row, column] == pytest.approx(5.0, rel=0.5)
+    assert np.isnan(PressureMap(sensor, [np.nan] * 8, "real").pressure_kpa).all()
+    assert "without t2" in without._repr_svg_() and "without" not in whole._repr_svg_()

@@ -35,12 +35,14 @@ from twintac._twintac import (
     Run,
     Sensor,
     SensorBatch,
+    SensorState,
     Shape,
     Tasks,
     Tracker,
     Twin,
     TwinAtPlace,
     TwinState,
+    __version__,
 )
 
 __all__ = [
@@ -73,10 +75,12 @@ __all__ = [
     "Run",
     "Sensor",
     "SensorBatch",
+    "SensorState",
     "Shape",
     "Tasks",
     "Tracker",
     "Twin",
     "TwinAtPlace",
     "TwinState",
+    "__version__",
 ]

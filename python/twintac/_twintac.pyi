@@ -1,7 +1,7 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, ClassVar, Literal, TypeAlias, final
+from typing import Any, ClassVar, Final, Literal, SupportsIndex, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -44,6 +44,8 @@ __all__ = [
     "Twin",
     "TwinAtPlace",
     "TwinState",
+    "__version__",
+    "_restored",
     "command",
 ]
 
@@ -56,6 +58,9 @@ _Bool: TypeAlias = npt.NDArray[np.bool_]
 _Floats: TypeAlias = npt.ArrayLike
 _Integers: TypeAlias = npt.ArrayLike
 _Number: TypeAlias = float | np.floating[Any] | np.integer[Any]
+_Count: TypeAlias = SupportsIndex
+
+__version__: Final[str]
 
 @final
 class Sensor:
@@ -104,8 +109,8 @@ class Press:
     - `at_mm`: place of the indenter's origin in the gel's plane, mm; the middle of the gel unless given.
     - `depth_mm`: depth below first touch, mm, above 0.
     - `spin_rad`: turn of the indenter about the axis of the press, radians.
-    - `speed_mm_per_s`: speed down and up, mm/s, above 0.
-    - `hold_s`: time at full depth, s.
+    - `speed_mm_per_s`: speed down and up, mm/s, 0.001 or more.
+    - `hold_s`: time at full depth, s, an hour at most.
 
     Raises `Error`, whose `field` is the argument that cannot be. Whether the sensor has the indenter is seen when it presses.
     """
@@ -187,7 +192,7 @@ class GelState:
         (`Gel(sensor, {"max_path_nodes": 4000})`), long ones on a fine gel seconds. Ctrl-C ends the wait; the step is made all the same.
 
         Raises `Error` if the solver finds no equilibrium: the gel is then as it was before, and smaller steps may do; for a time below 0, and for a force that is not
-        above 0 or is not met.
+        above 0, is not met, or is more than the sensor stands (`limits.force_n` of its description).
         """
     @property
     def gel_from_indenter(self) -> Pose | None:
@@ -297,10 +302,11 @@ class Pressed:
 class PressureMap:
     """A continuous map over the gel of what a few taxels read: 96 columns and 64 rows, interpolated between the taxels. A notebook shows its picture.
 
-    - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`.
+    - `readings_kpa`: readings of the sensor above its unloaded baseline, kPa; `[n_taxels]`. A taxel whose reading is NaN or masked is left out: the map is that of the other
+      taxels, and NaN everywhere if there is none.
     - `provenance`: where they come from: `"real"`, `"emulated"` or `"simulated"`.
 
-    Raises `Error` for another number of readings than the sensor has taxels.
+    Raises `Error` for another number of readings than the sensor has taxels, and for one that is infinite.
     """
     def __new__(cls, sensor: Sensor, readings_kpa: _Floats, provenance: _Provenance) -> PressureMap: ...
     @property
@@ -309,10 +315,13 @@ class PressureMap:
     @property
     def pressure_kpa(self) -> _Float:
         """Pressure above the baseline, kPa; `[n_rows, n_columns]`, the row of smallest y first. The grid spans the box that holds the gel (`Sensor.bounds_mm`)."""
+    @property
+    def missing(self) -> list[str]:
+        """Names of the taxels without a reading: the map was made without them."""
     def _repr_svg_(self) -> str:
         """The picture that a notebook shows: the text of an SVG file."""
     def save(self, path: _Path) -> None:
-        """Draws the map, with the taxels marked, into a file: `.svg` or `.png`.
+        """Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
 
         Raises `Error` for a name with another ending, and for a file that cannot be written.
         """
@@ -325,7 +334,7 @@ class Reader:
     frames wait for whom is late, more are missed. Other threads run meanwhile, and Ctrl-C ends the wait for a frame.
     """
     @staticmethod
-    def open(bus: _Path, sensor: Sensor, *, counts_per_pa: int | None = None) -> Reader:
+    def open(bus: _Path, sensor: Sensor, *, counts_per_pa: _Count | None = None) -> Reader:
         """Reads the sensor on a bus such as `/dev/i2c-1`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of its barometers,
         confirmed by who knows the parts; the description's unless given. Takes half a second; Ctrl-C ends the wait.
 
@@ -419,7 +428,7 @@ class Recording:
         - `time_s`: time, s;
         - `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`: pose of the indenter in the gel's frame, mm, and a quaternion;
         - `force_n`: force into the gel, N; NaN where it is not known;
-        - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable.
+        - `<taxel>_kpa`, `<taxel>_raw`, `<taxel>_valid`: what the taxel reads, kPa; the same as it was recorded; whether it is usable. A reading that did not come is NaN.
         """
     def to_pandas(self) -> pandas.DataFrame:
         """The columns as a `pandas.DataFrame`."""
@@ -427,7 +436,7 @@ class Recording:
         """The columns as a `polars.DataFrame`, through Arrow: what `polars.DataFrame(recording)` does."""
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """The columns for whatever reads Arrow by its PyCapsule interface: `polars.DataFrame(recording)`, `pyarrow.table(recording)`, `pandas.DataFrame.from_arrow(recording)`, or DuckDB.
-        Types are those of `columns`, texts are strings, and a force that is not known is null. No other schema is given, whatever `requested_schema` is.
+        Types are those of `columns`, texts are strings, and a force that is not known and a reading that did not come are null. No other schema is given, whatever `requested_schema` is.
         """
     def save(self, path: _Path) -> None:
         """Writes a Parquet file, whole or not at all.
@@ -465,8 +474,8 @@ class Dataset:
         sensor: _Path | None = None,
         protocol: _Path | None = None,
         indenters: Sequence[str] = ...,
-        n_presses: int | None = None,
-        seed: int = 1,
+        n_presses: _Count | None = None,
+        seed: _Count = 1,
         fast: bool | _Path = ...,
         twin: _Path | None = None,
         imperfection: _Path | None = None,
@@ -478,7 +487,7 @@ class Dataset:
     @property
     def identity(self) -> str:
         """What it is made from: the text of `dataset.toml`. Data sets of the same text are the same."""
-    def make(self, folder: _Path, shard: int = 1, of: int = 1, *, progress: Progress = None) -> dict[str, Any]:
+    def make(self, folder: _Path, shard: _Count = 1, of: _Count = 1, *, progress: Progress = None) -> dict[str, Any]:
         """Makes shard `shard` of `of`, counted from 1, in a folder, unless it is complete there. It appears whole or not at all. Returns its manifest, and the paths `parquet` and
         `manifest_file`. Ctrl-C ends it before its next press.
 
@@ -505,7 +514,7 @@ class Twin:
     """
     @staticmethod
     def load(folder: _Path) -> Twin:
-        """Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`).
+        """Loads a twin from the folder that a run leaves it in: `<run>/model` (`Run.model_folder`). A pickle keeps where the folder is, and finds the same twin there or raises `Error`.
 
         Raises `Error` for a folder that holds no twin, or a damaged one.
         """
@@ -533,8 +542,11 @@ class Twin:
 
         Raises `Error` as `predict` does.
         """
-    def states(self, n_sensors: int = 1) -> TwinState:
-        """Twins of so many sensors, to be stepped together with pressures at their ports: for programs that solve the gel themselves."""
+    def states(self, n_sensors: _Count = 1) -> TwinState:
+        """Twins of so many sensors, to be stepped together with pressures at their ports: for programs that solve the gel themselves.
+
+        Raises `Error` for no sensor, and for more than make ten million readings.
+        """
 
 @final
 class Prediction:
@@ -615,13 +627,13 @@ class TwinState:
         """One more frame of every sensor, `since_previous_s` after the last: from pressures at the ports to what the barometers would read, kPa; both
         `[n_sensors, n_taxels]`.
 
-        Raises `Error` for a time below 0, and for pressures of another shape.
+        Raises `Error` for a time below 0, and for pressures of another shape or that are not finite.
         """
     def tare(self) -> None:
         """Takes what is read now as zero, as a tare of a real sensor does."""
     def tare_untouched(self) -> None:
         """Takes what a sensor that nothing touches reads as zero."""
-    def rest(self, sensor: int) -> None:
+    def rest(self, sensor: _Count) -> None:
         """Lets the gel of one sensor, counted from 0, rest until its next frame: it forgets the presses before. Its zero stays."""
     def __len__(self) -> int: ...
 
@@ -637,7 +649,7 @@ class Run:
         sensor: Sensor,
         source: str,
         *,
-        seed: int = 1,
+        seed: _Count = 1,
         settings: dict[str, Any] | None = None,
     ) -> Run:
         """Starts a run, or takes up the one that the folder holds with new settings. `source` says in words where the presses come from. `settings`
@@ -653,7 +665,7 @@ class Run:
         Raises `Error` for a folder that is no run.
         """
     @staticmethod
-    def demo(folder: _Path, *, seed: int = 1, progress: Progress = None) -> Run:
+    def demo(folder: _Path, *, seed: _Count = 1, progress: Progress = None) -> Run:
         """Starts the demo, and has its recordings made: PhysTac, pressed on the emulated bench. `finish` does the rest. All of it takes a minute. Ctrl-C stops it."""
     def import_csv(self, description: _Path, *paths: _Path) -> None:
         """Makes the run's recordings of CSV files of any laboratory, which the description (TOML) says how to read, as `Recording.import_csv` does.
@@ -735,10 +747,11 @@ class Shape:
     def wedge(angle_rad: float, length_mm: float, height_mm: float, edge_radius_mm: float) -> Shape:
         """A roof-shaped wedge that touches with its ridge, which lies along y."""
     @staticmethod
-    def stl(path: _Path) -> Shape:
-        """A closed triangle surface in an STL file, in mm; its lowest point is moved to the origin's z.
+    def stl(path: _Path, *, unit: str | None = None, scale: float | None = None) -> Shape:
+        """A closed triangle surface in an STL file, whose `unit` is "mm", "cm", "m" or "inch", or in which a length of 1 is `scale` mm; its lowest point is
+        moved to the origin's z.
 
-        Raises `Error` with the file if it cannot be read or its surface is not closed.
+        Raises `Error` with the file if it cannot be read, its surface is not closed, or its size cannot be in that unit.
         """
     @staticmethod
     def surface(vertices_mm: _Floats, triangles: _Integers) -> Shape:
@@ -780,20 +793,26 @@ class FastGel:
     @property
     def sensor(self) -> str:
         """Name of the sensor whose gel it is."""
+    def check(self, sensor: Sensor) -> None:
+        """Refuses a sensor whose gel it is not: whose shape, material, shell or ports are others.
+        Names do not count, nor do indenters, limits and the read-out.
+
+        Raises `Error`, which says all that differs.
+        """
     @property
     def ports_mm(self) -> _Float:
         """Where the ports are in the gel's plane, mm; `[n_taxels, 2]`."""
     def with_ports(self, places_mm: _Floats) -> FastGel:
         """The same gel with its ports at other places of the floor, x and y, mm, `[n_ports, 2]`: finer than taxels are.
 
-        Raises `Error` for an array of another shape.
+        Raises `Error` for an array of another shape, no place, more than a million, and a place that is not on the gel's floor.
         """
     def reader(self) -> FastReader:
         """Prepares one sensor to be read. Each thread needs a reader of its own."""
-    def batch(self, bodies: Sequence[Body], n_threads: int | None = None) -> FastBatch:
+    def batch(self, bodies: Sequence[Body], n_threads: _Count | None = None) -> FastBatch:
         """Prepares many sensors to be read in one call, which these bodies touch. It uses all cores, or `n_threads`.
 
-        Raises `Error` if there is no body.
+        Raises `Error` if there is no body, and for a number of threads that is not from 1 to 1024.
         """
 
 @final
@@ -807,7 +826,10 @@ class FastReader:
         and torque about the top of its middle, N mm, `[6]`.
         """
     def novelty(self, bodies: Sequence[tuple[Body, Pose]]) -> float:
-        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel; above 1 readings and force may be wrong."""
+        """How unlike what was taught a contact is, without unit: 0 where nothing is near the gel;
+        above 1 readings and force may be wrong: its shape is new, it is deeper than lessons
+        pressed, or too few pressed there.
+        """
 
 @final
 class Friction:
@@ -817,7 +839,10 @@ class Friction:
     """
     def __new__(cls, sensor: Sensor, coefficient: float) -> Friction: ...
     def read(self, reader: FastReader, body: Body, gel_from_body: Pose) -> tuple[_Single, _Single]:
-        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction."""
+        """One more moment of a sensor that this body alone touches: what `FastReader.read` returns, with friction.
+
+        Raises `Error` for the reader of another gel.
+        """
     def release(self) -> None:
         """Lets go of what touches: the next moment begins without friction."""
 
@@ -892,50 +917,89 @@ class SensorBatch:
     - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
     - `coupling`: how bodies and gels hold each other; neither friction nor loss unless given.
     - `seed`: sensor `n` is the same under the same seed, whatever the other sensors are.
-    - `n_threads`: as many as there are cores unless given; results do not depend on it.
+    - `n_sensors`: 1 or more, and at most ten million readings: 1,250,000 sensors of eight taxels.
+    - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 
-    Raises `Error` for a twin of another number of taxels than the gel has, and if there is no body.
+    Raises `Error` for a twin or a coupling of another gel, if there is no body, and for a number that is out of its range.
     """
     def __new__(
         cls,
         gel: FastGel,
         bodies: Sequence[Body],
-        n_sensors: int,
+        n_sensors: _Count,
         *,
         imperfection: Imperfection | None = None,
         twin: Twin | None = None,
         coupling: Coupling | None = None,
-        seed: int = 0,
-        n_threads: int | None = None,
+        seed: _Count = 0,
+        n_threads: _Count | None = None,
     ) -> SensorBatch: ...
     @property
     def provenance(self) -> _Simulated:
         """What every reading is: simulated."""
+    def set_bodies(self, bodies: Sequence[Body]) -> None:
+        """Puts other bodies in the place of those that may touch. What gels hold, they go on to hold,
+        under the things' `touch_id`.
+
+        Raises `Error` if there is no body.
+        """
     def step(
         self,
         since_previous_s: float,
         gel_from_body: _Floats,
         body: _Integers | None = None,
         ends: _Integers | None = None,
+        *,
+        touch_id: _Integers | None = None,
     ) -> tuple[_Single, _Single]:
-        """One more moment of every sensor, `since_previous_s` after the last. The other arguments are those of `FastBatch.read`.
+        """One more moment of every sensor, `since_previous_s` after the last. `gel_from_body`, `body`
+        and `ends` are those of `FastBatch.read`.
+
+        `touch_id`, an integer for each touch, says which thing it is: the same as long as it is the
+        same thing, and another for each other thing on that sensor. A sensor with a `Coupling`
+        remembers each thing that touches it under this number, wherever it stands in the list and
+        whatever body it has, so it has to be given. What is not in the list is forgotten.
 
         Returns what the bus of each sensor delivered last, kPa, `[n_sensors, n_taxels]`, and force on each gel, N, and torque about the top of its middle, N mm, in the frame of
         the sensor where it is, `[n_sensors, 6]`.
 
-        Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot be.
+        Raises `Error`, whose `field` is the argument that has another shape, or numbers that cannot
+        be, and if a thing touches one sensor twice. Nothing has been done then.
         """
     def wrench_of_touches(self) -> _Single:
-        """What each body did in the last step by itself, in the order of the touches: force on the gel, N, and torque about the top of its middle, N mm,
+        """What each thing did in the last step by itself, in the order of the touches: force on the
+        gel, N, and torque about the top of its middle, N mm,
         `[n_touches, 6]`, in the frame in which the sensor should be. Without a `Coupling` there are none: `[0, 6]`.
         """
-    def rest(self, sensor: int) -> None:
+    def state(self, sensor: _Count) -> SensorState:
+        """What one sensor, counted from 0, is and remembers now: set back, it goes on to the same
+        bits.
+        """
+    def set_state(self, sensor: _Count, state: SensorState) -> None:
+        """Lets one sensor, counted from 0, go on from a state, of its own or of another sensor of such
+        a batch.
+
+        Raises `Error` for the state of a sensor with other taxels, or with a twin where this one
+        has none.
+        """
+    def rest(self, sensor: _Count) -> None:
         """Lets the gel of one sensor, counted from 0, rest until its next step, with the imperfections that it has."""
-    def replace(self, sensor: int, number: int) -> None:
+    def replace(self, sensor: _Count, number: _Count) -> None:
         """Puts another sensor in the place of one, counted from 0, with imperfections that are drawn anew, and lets it rest. `number` tells new sensors apart: those
         below the number of sensors are the first ones.
         """
     def __len__(self) -> int: ...
+
+@final
+class SensorState:
+    """What one sensor of a `SensorBatch` is and remembers at a moment: its imperfections and the noise
+    to come, its twin's memory, and what its gel holds. What `SensorBatch.state`
+    returns.
+    """
+    def __copy__(self) -> SensorState:
+        """It never changes: a copy is itself."""
+    def __deepcopy__(self, _memo: object, /) -> SensorState:
+        """It never changes: a copy is itself."""
 
 @final
 class Tasks:
@@ -947,19 +1011,20 @@ class Tasks:
     - `imperfection`: from what the imperfections of each episode's sensor are drawn; those of a sensor that works unless given.
     - `autoreset`: when an environment whose episode is over begins the next one: in the next step (`"NextStep"`), which ignores its action and has a reward of zero; in
       the same step (`"SameStep"`); or when `reset` is called (`"Disabled"`).
-    - `n_threads`: as many as there are cores unless given; results do not depend on it.
+    - `n_environments`: 1 or more, and at most ten million readings of their sensors: 1,250,000 of eight taxels.
+    - `n_threads`: as many as there are cores unless given, at most 1024; results do not depend on it.
 
-    Raises `Error` for a task that is not there, a gel that it cannot use, and if there is no environment.
+    Raises `Error` for a task that is not there, a gel that it cannot use, and a number that is out of its range.
     """
     def __new__(
         cls,
         kind: str,
-        n_environments: int,
+        n_environments: _Count,
         *,
         gel: FastGel | None = None,
         imperfection: Imperfection | None = None,
         autoreset: Literal["NextStep", "SameStep", "Disabled"] = "NextStep",
-        n_threads: int | None = None,
+        n_threads: _Count | None = None,
     ) -> Tasks: ...
     @property
     def provenance(self) -> _Simulated:
@@ -973,9 +1038,12 @@ class Tasks:
     @property
     def figures(self) -> list[str]:
         """Names of what is true in an environment and not observed, with units; `[n_figures]`."""
-    def seed(self, seeds: Sequence[int | None]) -> None:
-        """Gives environments seeds, one for each, from the next reset on; `None` leaves an environment the one that it has."""
-    def reset(self, which: npt.NDArray[np.bool_] | None = None) -> tuple[_Single, _Single]:
+    def seed(self, seeds: Sequence[_Count | None] | npt.NDArray[np.integer[Any]]) -> None:
+        """Gives environments seeds, one for each, from the next reset on; `None` leaves an environment the one that it has.
+
+        Raises `Error` for another number of seeds, and for a seed that is not from 0 to 2⁶⁴ - 1.
+        """
+    def reset(self, which: npt.ArrayLike | None = None) -> tuple[_Single, _Single]:
         """Begins the next episode of all environments, or of those where `which`, `[n_environments]`, is true. Returns observations, `[n_environments, n_observed]`, and figures,
         `[n_environments, n_figures]`; zeros of the others.
         """
@@ -989,7 +1057,7 @@ class Tasks:
 
         Raises `Error` for actions of another shape, or that are not finite.
         """
-    def picture(self, environment: int) -> npt.NDArray[np.uint8]:
+    def picture(self, environment: _Count) -> npt.NDArray[np.uint8]:
         """A picture of one environment, counted from 0: what is there from above, and what its sensor reads. `[240, 600, 3]`, red, green and blue, 0 to 255."""
     def __len__(self) -> int: ...
 
@@ -1084,7 +1152,7 @@ class Tracker:
         """Takes a frame, `since_previous_s` after the one before: readings above the untouched sensor, kPa, `[n_taxels]`. Of an inverse by a twin, a NaN is a taxel without
         a usable reading: its last usable one stands. Returns what touches, or `None` if the readings are within noise.
 
-        Raises `Error` for a time below 0, another number of readings, and readings that are not finite.
+        Raises `Error` for a time below 0, another number of readings, and readings that are not finite or beyond a million kPa.
         """
 
 @final
@@ -1130,5 +1198,7 @@ class Contact:
     def misfit(self) -> float:
         """What the shape leaves of the readings, in deviations of a frame by itself: far above 1, something else touches."""
 
+def _restored(class_: str, state: bytes) -> Any:
+    """Makes a value of what a pickle has kept of it."""
 def command() -> int:
     """Does what the command line (`sys.argv`) asks for, as the command `twintac` does. Returns the exit code: 0 if all went well, 2 for bad input, 3 if a bench was stopped safely."""

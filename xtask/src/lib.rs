@@ -2,14 +2,16 @@
 //!
 //! The rules are tests: `xtask/tests/rules.rs` lists them. What each crate owns and must never know stands in `xtask/rooms.toml` ([`rooms`]); how
 //! source text is read and judged stands in [`code`]; the commands of README.md are run by [`readme`]; [`results`]
-//! keeps what the paper's experiments found.
+//! keeps what the paper's experiments found; [`figures`] knows which sources made each committed figure.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
 pub mod cargo;
 pub mod code;
 pub mod documents;
+pub mod figures;
 pub mod fuzz;
+mod git;
 pub mod readme;
 pub mod results;
 pub mod rooms;

@@ -18,8 +18,8 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
   test   every test, optimised
   readme the commands of README.md in blocks that are tagged `sh`, word for word; those of `cargo test` last; the book's are run by python/tests/test_docs.py
   rooms  writes the tables of ARCHITECTURE.md from xtask/rooms.toml
-  results  writes the table of docs/results.md from docs/results/metrics.json, and says when that is stale; FILE: the metrics.json of `reproduce --paper` at
-         this commit, which is kept first
+  results  writes the tables of docs/results.md from docs/results/metrics.json and xtask/figures.toml, and fails where code that makes a figure has changed
+         since and nothing says so; FILE: the metrics.json of `reproduce --paper` at this commit, which is kept first
   bench  softbody: how fast presses are followed, and how far off tight solutions they are
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*

@@ -1,21 +1,20 @@
-//! What `twintac reproduce --paper` found, kept as data, and the table in docs/results.md that is written from it.
+//! What `twintac reproduce --paper` found, kept as data, and the tables in docs/results.md that are written from it and from the list of all figures.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::documents::replace_part;
+use crate::figures::{self, Figure};
+use crate::git::git;
 
 const KEPT: &str = "docs/results/metrics.json";
 const PAGE: &str = "docs/results.md";
 const COMMAND: &str = "twintac reproduce --paper";
-/// What the figures depend on.
-const SOURCES: [&str; 5] = ["crates", "protocols", "realities", "sensors", "Cargo.lock"];
 
 /// Figures, and what made them.
 #[derive(Serialize, Deserialize)]
@@ -25,7 +24,7 @@ struct Kept {
     metrics: Value,
 }
 
-/// Keeps a `metrics.json` of this commit, where one is given; writes the table, and says whether the figures are of older sources.
+/// Keeps a `metrics.json` of this commit, where one is given; writes the tables, and fails where figures are of older code and nothing says so.
 pub fn write(root: &Path, metrics: Option<&str>) -> Result<()> {
     if let Some(path) = metrics {
         let text = fs::read_to_string(path).with_context(|| format!("reading {path}"))?;
@@ -46,67 +45,34 @@ pub fn write(root: &Path, metrics: Option<&str>) -> Result<()> {
         let file = root.join(KEPT);
         fs::create_dir_all(file.parent().unwrap_or(root))?;
         fs::write(&file, serde_json::to_string_pretty(&kept)? + "\n")?;
+        figures::are_made_anew(root, KEPT, &kept.commit)?;
     }
-    let (kept, text) = read(root)?;
-    fs::write(root.join(PAGE), fresh(text, &kept)?)?;
-    eprintln!("{}", age(root, &kept)?);
-    Ok(())
+    let (kept, figures, text) = read(root)?;
+    fs::write(root.join(PAGE), fresh(text, &kept, &figures)?)?;
+    figures::check(root, &figures)
 }
 
-/// The table is as [`write`] would leave it.
+/// The tables are as [`write`] would leave them.
 pub fn is_fresh(root: &Path) -> Result<()> {
-    let (kept, text) = read(root)?;
+    let (kept, figures, text) = read(root)?;
     ensure!(
-        fresh(text.clone(), &kept)? == text,
-        "{PAGE} is not what {KEPT} says: run `cargo xtask results`"
+        fresh(text.clone(), &kept, &figures)? == text,
+        "{PAGE} is not what {KEPT} and {} say: run `cargo xtask results`",
+        figures::LIST
     );
     Ok(())
 }
 
-fn read(root: &Path) -> Result<(Kept, String)> {
+fn read(root: &Path) -> Result<(Kept, Vec<Figure>, String)> {
     let kept = fs::read_to_string(root.join(KEPT)).with_context(|| format!("reading {KEPT}"))?;
     let kept = serde_json::from_str(&kept).with_context(|| format!("reading {KEPT}"))?;
     let text = fs::read_to_string(root.join(PAGE)).with_context(|| format!("reading {PAGE}"))?;
-    Ok((kept, text))
+    Ok((kept, figures::read(root)?, text))
 }
 
-/// Whether the sources have changed since.
-fn age(root: &Path, kept: &Kept) -> Result<String> {
-    let Kept { command, commit, .. } = kept;
-    let diff = [&["diff", "--name-only", commit, "--"], &SOURCES[..]].concat();
-    let Ok(changed) = git(root, &diff) else {
-        return Ok(format!(
-            "{KEPT} is of commit {commit}, which is not in this clone"
-        ));
-    };
-    let n = changed.lines().count();
-    Ok(if n == 0 {
-        format!("{KEPT} is of commit {commit}, and so are the sources")
-    } else {
-        format!(
-            "{KEPT} is stale: it is of commit {commit}, and {n} files that it may depend on have changed since; make it again with `{command}`"
-        )
-    })
-}
-
-fn git(root: &Path, arguments: &[&str]) -> Result<String> {
-    let output = Command::new("git")
-        .args(arguments)
-        .current_dir(root)
-        .output()
-        .context("starting git")?;
-    if !output.status.success() {
-        bail!(
-            "`git {}`: {}",
-            arguments.join(" "),
-            String::from_utf8_lossy(&output.stderr).trim()
-        );
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-}
-
-fn fresh(mut text: String, kept: &Kept) -> Result<String> {
+fn fresh(mut text: String, kept: &Kept, figures: &[Figure]) -> Result<String> {
     replace_part(&mut text, "results: paper", &table(kept)).context(PAGE)?;
+    replace_part(&mut text, "results: figures", &figures::table(figures)).context(PAGE)?;
     Ok(text)
 }
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from operator import index
+from typing import Any, ClassVar, SupportsIndex
 
 import gymnasium as gym
 import numpy as np
@@ -43,8 +44,9 @@ class TouchEnv(gym.Env[Single, Single]):
         self.render_mode = render_mode
         self._is_seeded = False
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Single, dict[str, Any]]:
+    def reset(self, *, seed: SupportsIndex | None = None, options: dict[str, Any] | None = None) -> tuple[Single, dict[str, Any]]:
         """Begins the next episode, or the first one of a seed. Returns the observation, `[n_observed]`, and the info."""
+        seed = None if seed is None else index(seed)  # NumPy's integers are none to Gymnasium
         super().reset(seed=seed)
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**63))

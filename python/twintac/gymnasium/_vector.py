@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from operator import index
+from typing import Any, ClassVar, SupportsIndex
 
 import gymnasium as gym
 import numpy as np
@@ -61,7 +62,7 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
             n_threads=n_threads,
         )
         self._figures = self._tasks.figures
-        self.num_envs = num_envs
+        num_envs = self.num_envs = len(self._tasks)
         self.single_observation_space, self.single_action_space = spaces(self._tasks)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
@@ -71,17 +72,18 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         self._observed: Single = np.zeros(self.observation_space.shape or (), np.float32)
 
     def reset(
-        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+        self, *, seed: SupportsIndex | Sequence[SupportsIndex | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Single, dict[str, Any]]:
         """Begins the next episode of each environment, or of those where `options["reset_mask"]`, `[num_envs]`, is true. `seed` gives environment `i` the seed
         `seed + i`, or the one of a list. Returns observations, `[num_envs, n_observed]`, and infos."""
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**62))
         if seed is not None:
-            seeds = [seed + number for number in range(self.num_envs)] if isinstance(seed, int) else list(seed)
-            self._tasks.seed(seeds)
+            is_list = isinstance(seed, Sequence | np.ndarray)
+            self._tasks.seed(seed if is_list else [index(seed) + number for number in range(self.num_envs)])
             self._is_seeded = True
-        which: _Bool | None = (options or {}).get("reset_mask")
+        mask = (options or {}).get("reset_mask")
+        which: _Bool | None = None if mask is None else np.asarray(mask)
         observed, figures = self._tasks.reset(which)
         if which is not None:
             observed = np.where(which[:, None], observed, self._observed)

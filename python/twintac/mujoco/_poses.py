@@ -1,4 +1,6 @@
-"""Quaternions as MuJoCo has them, `(w, x, y, z)`, in arrays of any shape `[…, 4]`."""
+"""Turns: quaternions as MuJoCo has them, `(w, x, y, z)`, in arrays of any shape `[…, 4]`, and
+matrices.
+"""
 
 import numpy as np
 import numpy.typing as npt
@@ -21,11 +23,10 @@ def turned_back(a: _Array) -> _Array:
     return back
 
 
-def rotate(a: _Array, vector: _Array) -> _Array:
-    """Vectors, turned."""
-    across = 2.0 * cross(a[..., 1:], vector)
-    turned: _Array = vector + a[..., :1] * across + cross(a[..., 1:], across)
-    return turned
+def turned(turn: _Array, vector: _Array) -> _Array:
+    """Vectors, `[n, 3]`, turned by matrices, `[n, 3, 3]`."""
+    vectors: _Array = (turn @ vector[:, :, None])[:, :, 0]
+    return vectors
 
 
 def cross(a: _Array, b: _Array) -> _Array:

@@ -1,4 +1,7 @@
-"""Geoms of a model as rigid shapes: the true ones, not the convex hulls with which MuJoCo collides."""
+"""Geoms of a model as rigid shapes: the true ones, not the convex hulls with which MuJoCo collides.
+"""
+
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -9,43 +12,88 @@ from .. import Body, Error, Pose, Shape
 _Array = npt.NDArray[np.float64]
 _Type = mujoco.mjtGeom
 
-# A plane is a slab that is moved along with the sensor, mm.
-_SLAB_MM = (400.0, 400.0, 40.0)
+PLANE, _MESH, _HFIELD = int(_Type.mjGEOM_PLANE), int(_Type.mjGEOM_MESH), int(_Type.mjGEOM_HFIELD)
+# A plane is a slab, of which sensors are above the middle: its frame goes along the plane in
+# strides, mm.
+_SLAB_MM = (20000.0, 20000.0, 40.0)
+PLANE_STRIDE_MM = 5000.0
 _LONGITUDES, _LATITUDES = 48, 24
 
 
-def body_of(model: mujoco.MjModel, geom: int) -> tuple[Body, float]:
-    """A geom's shape, in mm, and the height of the shape's origin in the geom's frame, mm."""
-    shape, origin_mm = _shape(model, geom)
-    return Body(shape), origin_mm
+class Felt(NamedTuple):
+    """A geom as sensors feel it."""
+
+    body: Body
+    origin_mm: float
+    """Height of the shape's origin in the geom's frame."""
+    radius_mm: float
+    """Of the ball about the geom's frame that holds it; without meaning for a plane."""
 
 
-def key_of(model: mujoco.MjModel, geom: int) -> tuple[int, int, bytes]:
+def key_of(model: mujoco.MjModel, kind: int, asset: int, half_m: _Array) -> tuple[object, ...]:
     """What geoms of equal shape have in common."""
-    return int(model.geom_type[geom]), int(model.geom_dataid[geom]), model.geom_size[geom].tobytes()
+    if kind in (_MESH, _HFIELD):
+        return kind, *(part.tobytes() for part in contents(model, kind, asset))
+    return kind, half_m.tobytes()
 
 
-def _shape(model: mujoco.MjModel, geom: int) -> tuple[Shape, float]:
-    a_mm, b_mm, c_mm = (float(size_mm) for size_mm in 1e3 * model.geom_size[geom])
-    kind = _Type(model.geom_type[geom])
-    if kind == _Type.mjGEOM_PLANE:
-        return Shape.box(_SLAB_MM, 0.0), -_SLAB_MM[2]
+def contents(model: mujoco.MjModel, kind: int, asset: int) -> list[npt.NDArray[Any]]:
+    """What a mesh or height field is made of, as views; of other geoms nothing."""
+    if kind == _MESH:
+        first, n_corners = int(model.mesh_vertadr[asset]), int(model.mesh_vertnum[asset])
+        first_triangle, n_triangles = int(model.mesh_faceadr[asset]), int(model.mesh_facenum[asset])
+        return [model.mesh_vert[first : first + n_corners], model.mesh_face[first_triangle : first_triangle + n_triangles]]
+    if kind == _HFIELD:
+        first, n_x, n_y = int(model.hfield_adr[asset]), int(model.hfield_ncol[asset]), int(model.hfield_nrow[asset])
+        return [model.hfield_size[asset], model.hfield_data[first : first + n_x * n_y].reshape(n_y, n_x)]
+    return []
+
+
+def felt(model: mujoco.MjModel, geom: int, kind: int, asset: int, half_m: _Array) -> Felt:
+    """A geom of this kind, asset and size, in mm.
+
+    Raises `ValueError`, which names the geom, for one that sensors do not feel.
+    """
+    if kind in (PLANE, _MESH, _HFIELD):
+        size_mm = np.zeros(3)
+    else:
+        size_mm = 1e3 * half_m
+        if not np.isfinite(size_mm).all():
+            raise ValueError(f"{_called(model, geom)} has the size {half_m}, which is not finite")
+    try:
+        shape, origin_mm, radius_mm = _shape(model, geom, kind, asset, size_mm)
+        return Felt(Body(shape), origin_mm, radius_mm)
+    except Error as error:
+        problem = f"{_called(model, geom)} is a {_Type(kind).name} that sensors do not feel: {error}"
+        raise ValueError(f"{problem}; mend it, or leave it out of `geoms`") from error
+
+
+def _shape(model: mujoco.MjModel, geom: int, kind: int, asset: int, size_mm: _Array) -> tuple[Shape, float, float]:
+    a_mm, b_mm, c_mm = (float(length_mm) for length_mm in size_mm)
+    if kind == PLANE:
+        return Shape.box(_SLAB_MM, 0.0), -_SLAB_MM[2], 0.0
     if kind == _Type.mjGEOM_SPHERE:
-        return Shape.sphere(a_mm), -a_mm
+        return Shape.sphere(a_mm), -a_mm, a_mm
     if kind == _Type.mjGEOM_BOX:
-        return Shape.box((2.0 * a_mm, 2.0 * b_mm, 2.0 * c_mm), 0.0), -c_mm
+        return Shape.box((2.0 * a_mm, 2.0 * b_mm, 2.0 * c_mm), 0.0), -c_mm, float(np.linalg.norm(size_mm))
     if kind == _Type.mjGEOM_CYLINDER:
-        return Shape.cylinder(a_mm, 2.0 * b_mm, 0.0), -b_mm
+        return Shape.cylinder(a_mm, 2.0 * b_mm, 0.0), -b_mm, float(np.hypot(a_mm, b_mm))
     if kind == _Type.mjGEOM_CAPSULE:
-        return _capsule(a_mm, b_mm), 0.0
+        return _capsule(a_mm, b_mm), 0.0, a_mm + b_mm
     if kind == _Type.mjGEOM_ELLIPSOID:
         corners, triangles = _unit_ball()
-        return Shape.surface(corners * (a_mm, b_mm, c_mm), triangles), 0.0
-    if kind == _Type.mjGEOM_MESH:
-        return _mesh(model, geom), 0.0
-    if kind == _Type.mjGEOM_HFIELD:
-        return _height_field(model, int(model.geom_dataid[geom])), 0.0
-    raise ValueError(f"{_called(model, geom)} is a {kind.name}, which sensors do not feel")
+        return Shape.surface(corners * size_mm, triangles), 0.0, float(size_mm.max())
+    if kind == _MESH:
+        corners_mm, triangles = (part.astype(kind) for part, kind in zip(contents(model, _MESH, asset), (float, np.int64)))
+        return Shape.surface(1e3 * corners_mm, triangles), 0.0, _reach(1e3 * corners_mm)
+    if kind == _HFIELD:
+        corners_mm, triangles = _height_field(*contents(model, _HFIELD, asset))
+        return Shape.surface(corners_mm, triangles), 0.0, _reach(corners_mm)
+    raise ValueError(f"{_called(model, geom)} is a {_Type(kind).name}, which sensors do not feel")
+
+
+def _reach(corners_mm: _Array) -> float:
+    return float(np.linalg.norm(corners_mm, axis=1).max())
 
 
 def _capsule(radius_mm: float, half_mm: float) -> Shape:
@@ -57,25 +105,11 @@ def _capsule(radius_mm: float, half_mm: float) -> Shape:
     return Shape.union([(Shape.cylinder(radius_mm, 2.0 * half_mm, 0.0), at(-half_mm)), *ends])
 
 
-def _mesh(model: mujoco.MjModel, geom: int) -> Shape:
-    mesh = int(model.geom_dataid[geom])
-    first, n_corners = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-    corners = model.mesh_vert[first : first + n_corners].astype(float)
-    first, n_triangles = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
-    triangles = model.mesh_face[first : first + n_triangles].astype(np.int64)
-    try:
-        return Shape.surface(1e3 * corners, triangles)
-    except Error as error:
-        problem = f"{_called(model, geom)} has a mesh whose inside is not known: {error}"
-        raise ValueError(f"{problem}; close the mesh, or leave this geom out of `geoms`") from error
-
-
-def _height_field(model: mujoco.MjModel, field: int) -> Shape:
+def _height_field(size_m: npt.NDArray[Any], part: npt.NDArray[Any]) -> tuple[_Array, npt.NDArray[np.int64]]:
     """A height field as a closed block: its grid on top, its base below."""
-    n_y, n_x = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
-    half_x_mm, half_y_mm, top_mm, base_mm = 1e3 * model.hfield_size[field]
-    first = int(model.hfield_adr[field])
-    heights = model.hfield_data[first : first + n_x * n_y].astype(float)
+    n_y, n_x = part.shape
+    half_x_mm, half_y_mm, top_mm, base_mm = 1e3 * size_m.astype(float)
+    heights = part.astype(float).ravel()
     x_mm, y_mm = np.meshgrid(np.linspace(-half_x_mm, half_x_mm, n_x), np.linspace(-half_y_mm, half_y_mm, n_y))
     plan_mm = np.column_stack([x_mm.ravel(), y_mm.ravel()])
     above = np.column_stack([plan_mm, top_mm * heights])
@@ -87,7 +121,7 @@ def _height_field(model: mujoco.MjModel, field: int) -> Shape:
     after, down = np.roll(around, -1), n_x * n_y
     sides = [np.column_stack([around, around + down, after + down]), np.column_stack([around, after + down, after])]
     triangles = np.concatenate([top, top[:, ::-1] + down, *sides])
-    return Shape.surface(np.concatenate([above, below]), triangles)
+    return np.concatenate([above, below]), triangles
 
 
 def _unit_ball() -> tuple[_Array, npt.NDArray[np.int64]]:

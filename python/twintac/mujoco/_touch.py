@@ -1,59 +1,85 @@
 """Sensors that feel what touches their bodies, and push back."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple
 
 import mujoco
-import mujoco.batch
 import numpy as np
 import numpy.typing as npt
 
-from .. import Body, Coupling, FastGel, Imperfection, Sensor, SensorBatch, Twin
-from ._poses import cross, multiply, rotate, turned_back
-from ._shapes import body_of, key_of
+from .. import Coupling, FastGel, Imperfection, Sensor, SensorBatch, SensorState, Twin
+from ._clock import Clock
+from ._geoms import Geoms, number_of
+from ._poses import multiply, turned, turned_back
+from ._push import Push
+from ._shapes import PLANE_STRIDE_MM
+from ._worlds import Data, Worlds
 
 _Array = npt.NDArray[np.float64]
-_Data: TypeAlias = mujoco.MjData | mujoco.batch.Batch
-_PLANE = int(mujoco.mjtGeom.mjGEOM_PLANE)
+_Ints = npt.NDArray[np.intp]
 # Bodies push when they are this close, mm.
 _REACH_MM = 2.0
+# Sensors that are built in, with their gels, by name.
+_BUILT_IN = {"phystac": (Sensor.phystac, FastGel.phystac), "phystac-tip": (Sensor.phystac_tip, FastGel.phystac_tip)}
 
 
 @dataclass(frozen=True)
-class _Geom:
-    number: int
-    body: int
-    shape: int
-    origin_mm: float
-    radius_mm: float
-    is_plane: bool
+class TouchState:
+    """What `TouchSensors` remember at a moment: what `TouchSensors.state` returns."""
+
+    _sensors: tuple[SensorState, ...]
+    _readings_kpa: npt.NDArray[np.float32]
+    _wrench: npt.NDArray[np.float32]
+    _time_s: _Array
+    _written: _Array
+
+
+class _Touches(NamedTuple):
+    """What touches, of all worlds: numbers of world, sensor and geom, `[n_touches]`."""
+
+    world: _Ints
+    sensor: _Ints
+    geom: _Ints
 
 
 class TouchSensors:
     """Touch sensors in one or many worlds of one model.
 
-    - `sites`: names of the sites that are the frames of their gels, z out of the board: `add_sensor` makes them.
-    - `sensor`, `gel`: of all of them; PhysTac and its fast gel unless given.
+    - `sites`: names of the sites that are the frames of their gels, z out of the board:
+      `add_sensor` makes them.
+    - `sensor`, `gel`: of all of them; PhysTac and its fast gel unless given. Of a sensor that is
+      built in, one tells the other.
     - `twin`: its barometers read, with gains and memory; pressures at the ports unless given.
     - `imperfection`: makes each sensor imperfect in its own way; perfect ones unless given.
     - `friction`: Coulomb's coefficient of every body on every gel.
     - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
-    - `geoms`: names of the geoms that can touch; all that collide unless given. Those of the sensor's own body never do.
+    - `geoms`: names of the geoms that can touch; all that collide unless given. Those of the
+      sensor's own body never do.
     - `n_worlds`: worlds of the model, as those of a `mujoco.batch.Batch`.
     - `n_threads`: as many as there are cores unless given; results do not depend on it.
     - `seed`: of the imperfections.
 
-    Call `update` when poses are known and forces are not:
+    Call `update` once in each time step, when poses are known and forces are not:
 
         mujoco.mj_step1(model, data)
         touch.update(data)
         mujoco.mj_step2(model, data)
 
-    or, for a persistent `mujoco.batch.Batch` of `n_worlds` simulations, after `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`.
+    or, for a persistent `mujoco.batch.Batch` of `n_worlds` simulations, after
+    `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)`.
     Steps of 2 ms or less keep bodies of 20 g and more at rest on the gel.
 
-    Raises `ValueError` for a site or geom that the model does not have, and if no geom can touch.
+    `update` writes what gels do into `qfrc_applied`, anew in each step, and nowhere else: what you,
+    a viewer or a reset do to `xfrc_applied` is yours. `pushing` leaves `qfrc_applied` to
+    you as well, and lets MuJoCo's own force sensors feel the gels.
+
+    What a gel remembers of a touch, it remembers of this geom on this sensor in this world. Geoms
+    that have been given another size, mesh or height field are read anew in the next update.
+
+    Raises `ValueError` for a site or geom that the model does not have, if no geom can touch, and
+    for a sensor, gel and twin that do not belong together.
     """
 
     def __init__(
@@ -72,29 +98,20 @@ class TouchSensors:
         n_threads: int | None = None,
         seed: int = 0,
     ) -> None:
-        sensor = Sensor.phystac() if sensor is None else sensor
-        gel = FastGel.phystac() if gel is None else gel
-        self._site = np.array([_number(model, "site", name) for name in sites], int)
-        self._body = model.site_bodyid[self._site].astype(int)
-        self._n_worlds, self._timestep_s = n_worlds, float(model.opt.timestep)
-        low_mm, high_mm = sensor.bounds_mm
-        self._middle_mm = 0.5 * (low_mm + high_mm)
-        self._radius_mm = 0.5 * float(np.linalg.norm(high_mm - low_mm))
-        # About which the wrench counts.
-        self._center_mm = np.array([*self._middle_mm[:2], high_mm[2]])
-        self._geoms, bodies = _touchable(model, geoms)
-        self._geom = np.array([geom.number for geom in self._geoms], int)
-        self._geom_body = np.array([geom.body for geom in self._geoms], int)
-        self._shape = np.array([geom.shape for geom in self._geoms], int)
-        self._origin_mm = np.array([[0.0, 0.0, geom.origin_mm] for geom in self._geoms])
-        self._near_mm = np.array([geom.radius_mm for geom in self._geoms]) + self._radius_mm + _REACH_MM
-        self._is_plane = np.array([geom.is_plane for geom in self._geoms], bool)
-        # The parts of a body do not feel each other.
-        weld = model.body_weldid
-        self._can_touch = weld[self._body][:, None] != weld[self._geom_body][None, :]
+        sensor, gel = _belonging(sensor, gel)
+        twice = {name for name in sites if list(sites).count(name) > 1}
+        if not len(sites) or twice:
+            raise ValueError(f"`sites` has `{twice.pop()}` twice" if twice else "`sites` has none, expected at least one")
+        if n_worlds < 1:
+            raise ValueError(f"`n_worlds` is {n_worlds}, expected 1 or more")
+        self._site = np.array([number_of(model, "site", name) for name in sites], int)
+        self._body: _Ints = model.site_bodyid[self._site].astype(int)
+        self._worlds = Worlds(model, n_worlds)
+        self._geoms = Geoms(model, self._worlds, geoms)
+        self._names = list(sites)
         self._batch = SensorBatch(
             gel,
-            bodies,
+            self._geoms.bodies,
             n_worlds * len(self._site),
             imperfection=imperfection,
             twin=twin,
@@ -102,10 +119,23 @@ class TouchSensors:
             seed=seed,
             n_threads=n_threads,
         )
-        n_taxels = len(sensor.taxels)
-        self._readings_kpa = np.zeros((n_worlds, len(self._site), n_taxels), np.float32)
+        self._clock = Clock(n_worlds)
+        self._push = Push(model, self._worlds, np.concatenate([self._body, self._geoms.body]))
+        self._unfelt_by = self._push.unfelt_by()
+        low_mm, high_mm = sensor.bounds_mm
+        self._middle_mm = 0.5 * (low_mm + high_mm)
+        self._radius_mm = 0.5 * float(np.linalg.norm(high_mm - low_mm))
+        # About which the wrench counts.
+        self._center_mm = np.array([*self._middle_mm[:2], high_mm[2]])
+        # The parts of a body do not feel each other.
+        weld = model.body_weldid
+        self._can_touch = weld[self._body][:, None] != weld[self._geoms.body][None, :]
+        self._readings_kpa = np.zeros((n_worlds, len(self._site), len(gel.ports_mm)), np.float32)
         self._wrench = np.zeros((n_worlds, len(self._site), 6), np.float32)
-        self._applied = np.zeros((n_worlds, model.nbody, 6))
+
+    def __repr__(self) -> str:
+        worlds = "one world" if self._worlds.n_worlds == 1 else f"{self._worlds.n_worlds} worlds"
+        return f"<TouchSensors at {', '.join(self._names)} in {worlds}, {len(self._geoms.number)} geoms can touch, simulated>"
 
     @property
     def provenance(self) -> str:
@@ -114,130 +144,211 @@ class TouchSensors:
 
     @property
     def readings_kpa(self) -> npt.NDArray[np.float32]:
-        """What the sensors read last, kPa, `[n_worlds, n_sensors, n_taxels]`."""
+        """What the sensors read last, kPa, `[n_worlds, n_sensors, n_taxels]`; 0 after a reset. NaN
+        where nobody knows what touches: where the pose of the sensor, or of a geom that can
+        touch it, is not finite.
+        """
         return self._readings_kpa
 
     @property
     def wrench(self) -> npt.NDArray[np.float32]:
-        """Force on each gel, N, and torque about the top of its middle, N mm, in the frame of the gel, `[n_worlds, n_sensors, 6]`."""
+        """Force on each gel, N, and torque about the top of its middle, N mm, in the frame of the
+        gel, `[n_worlds, n_sensors, 6]`; NaN where readings are.
+        """
         return self._wrench
 
-    def update(self, data: _Data) -> npt.NDArray[np.float32]:
-        """One more time step: reads where geoms are, and applies to bodies what the gels do to them (`xfrc_applied`). Returns `readings_kpa`.
+    def update(self, data: Data) -> npt.NDArray[np.float32]:
+        """One more time step: reads where geoms are, and writes what gels do to bodies into
+        `qfrc_applied`, in place of what the last update wrote there. Returns `readings_kpa`.
 
-        Raises `ValueError` for data of another number of worlds.
+        A world whose time has gone back begins anew, as after `reset`. A second call at the same
+        time changes what is pushed, and adds nothing.
+
+        Raises `ValueError`, with nothing done, for data of another model or number of worlds; if
+        more than one time step has passed; if others have written to `qfrc_applied` where gels
+        push;
+        and for a model with force or torque sensors of MuJoCo that should feel the gels: they do
+        within `pushing`.
         """
-        at = [_rows(data, name, self._n_worlds) for name in ("site_xpos", "site_xquat", "geom_xpos", "geom_xquat")]
-        site_mm, site_quat = 1e3 * at[0][:, self._site], at[1][:, self._site]
-        geom_mm, geom_quat = 1e3 * at[2][:, self._geom], at[3][:, self._geom]
-        middle_mm = site_mm + rotate(site_quat, self._middle_mm)
-        to_geom_mm = geom_mm[:, None] - middle_mm[:, :, None]
-        normal = rotate(geom_quat, np.array([0.0, 0.0, 1.0]))[:, None]
-        above_mm = -(to_geom_mm * normal).sum(-1)
-        distance_mm = np.where(self._is_plane, above_mm, np.linalg.norm(to_geom_mm, axis=-1))
-        world, sensor, geom = np.nonzero(self._can_touch & (distance_mm < self._near_mm))
-        # A plane is the same wherever its frame is moved along it.
-        along_mm = to_geom_mm[world, sensor, geom] + above_mm[world, sensor, geom, None] * normal[world, 0, geom]
-        place_mm = geom_mm[world, geom] - np.where(self._is_plane[geom, None], along_mm, 0.0)
-        place_mm = place_mm + rotate(geom_quat[world, geom], self._origin_mm[geom])
-        back = turned_back(site_quat[world, sensor])
-        poses = np.empty((len(world), 7))
-        poses[:, :3] = rotate(back, place_mm - site_mm[world, sensor])
-        turn = multiply(back, geom_quat[world, geom])
-        poses[:, 3:] = turn[:, [1, 2, 3, 0]]
-        number = world * len(self._site) + sensor
-        ends = np.searchsorted(number, np.arange(self._n_worlds * len(self._site)), side="right")
-        readings_kpa, wrench = self._batch.step(self._timestep_s, poses, self._shape[geom], ends)
-        self._readings_kpa = readings_kpa.reshape(self._readings_kpa.shape)
-        self._wrench = wrench.reshape(self._wrench.shape)
-        self._push(data, world, sensor, geom, site_mm, site_quat)
+        if self._unfelt_by is not None:
+            raise ValueError(f"MuJoCo's force sensor `{self._unfelt_by}` does not feel what gels push with `update`: step within `with touch.pushing(data):`")
+        touches = self._sense(data, is_updated=True)
+        self._push.write(data, self._push.generalized(data, self._wrenches(data, touches, self._push.roots_m(data))))
         return self._readings_kpa
 
+    @contextmanager
+    def pushing(self, data: Data) -> Iterator[npt.NDArray[np.float32]]:
+        """`update` for a step that is made inside of the `with` block:
+
+            mujoco.mj_step1(model, data)
+            with touch.pushing(data) as readings_kpa:
+                mujoco.mj_step2(model, data)
+
+        or `batch.step(stage=mujoco.mjtStage.mjSTAGE_VEL)` for a batch. What gels do to bodies is
+        added to `xfrc_applied`, and taken away again at the end of the block, so that MuJoCo's own
+        force
+        sensors feel it, and `qfrc_applied` is yours. Sensors of several kinds push together: `with
+        palm.pushing(data), tips.pushing(data):`.
+
+        Raises `ValueError` as `update` does, and if `xfrc_applied` of bodies that are pushed is
+        written inside of the block: write it before.
+        """
+        touches = self._sense(data, is_updated=bool(self._push.written.any()))
+        if self._push.written.any():
+            self._push.write(data, np.zeros_like(self._push.written))
+        before_s, applied = self._worlds.times_s(data), self._worlds.rows(data, "xfrc_applied")
+        others = applied.copy()
+        applied[:, self._push.bodies] += self._wrenches(data, touches, self._push.middles_m(data))
+        written = applied.copy()
+        stays = np.zeros(applied.shape, bool)
+        try:
+            yield self._readings_kpa
+        finally:
+            applied = self._worlds.rows(data, "xfrc_applied")
+            stays = applied == written
+            applied[stays] = others[stays]
+        # MuJoCo's reset of a world that went astray clears it.
+        changed = ~stays.all((1, 2)) & (self._worlds.times_s(data) > before_s)
+        if changed.any():
+            world = int(np.nonzero(changed)[0][0])
+            raise ValueError(f"`xfrc_applied` of world {world} was written inside of `pushing`, where what gels push stands in it: write it before")
+
     def reset(self, world: int | None = None) -> None:
-        """Lets the gels of a world, counted from 0, rest, or of all: to be called when its data are reset."""
-        worlds = range(self._n_worlds) if world is None else [world]
-        for world in worlds:
-            self._applied[world] = 0.0
-            for sensor in range(len(self._site)):
-                self._batch.rest(world * len(self._site) + sensor)
+        """Lets the gels of a world, counted from 0, rest, or of all, with readings and wrenches of
+        zero: to be called when its data are set to another state.
+        """
+        for number in self._numbers(world):
+            self._rest(number)
+            self._clock.last_s[number] = np.nan
 
-    def _push(
-        self,
-        data: _Data,
-        world: npt.NDArray[np.intp],
-        sensor: npt.NDArray[np.intp],
-        geom: npt.NDArray[np.intp],
-        site_mm: _Array,
-        site_quat: _Array,
-    ) -> None:
-        """Applies what gels and bodies do to each other."""
-        on_gel = self._batch.wrench_of_touches().astype(float)
-        quat = site_quat[world, sensor]
-        force_n, torque_n_m = rotate(quat, on_gel[:, :3]), 1e-3 * rotate(quat, on_gel[:, 3:])
-        at_m = 1e-3 * (site_mm[world, sensor] + rotate(quat, self._center_mm))
-        middle_m = _rows(data, "xipos", self._n_worlds)
-        new = np.zeros_like(self._applied)
-        for body, sign in ((self._body[sensor], 1.0), (self._geom_body[geom], -1.0)):
-            lever_m = at_m - middle_m[world, body]
-            torque = torque_n_m + cross(lever_m, force_n)
-            np.add.at(new, (world, body), sign * np.concatenate([force_n, torque], axis=1))
-        applied = _rows(data, "xfrc_applied", self._n_worlds)
-        applied += new - self._applied
-        self._applied = new
-
-
-def _rows(data: _Data, name: str, n_worlds: int) -> _Array:
-    """A field of one world or many, `[n_worlds, n, …]`."""
-    if isinstance(data, mujoco.MjData):
-        if n_worlds != 1:
-            raise ValueError(f"`data` is of one world, the sensors are of {n_worlds}: hand in the batch")
-        rows: _Array = getattr(data, name)[None]
-        return rows
-    if data.nsim != n_worlds:
-        raise ValueError(f"`data` has {data.nsim} worlds, the sensors are of {n_worlds}")
-    rows = data.bind(name)
-    return rows
-
-
-def _touchable(model: mujoco.MjModel, names: Sequence[str] | None) -> tuple[list[_Geom], list[Body]]:
-    if names is None:
-        collides = (model.geom_contype | model.geom_conaffinity) != 0
-        numbers = [int(number) for number in np.nonzero(collides)[0]]
-    else:
-        numbers = [_number(model, "geom", name) for name in names]
-    shapes: dict[tuple[int, int, bytes], int] = {}
-    bodies: list[Body] = []
-    origins_mm: list[float] = []
-    geoms = []
-    for number in numbers:
-        key = key_of(model, number)
-        if key not in shapes:
-            body, origin_mm = body_of(model, number)
-            shapes[key] = len(bodies)
-            bodies.append(body)
-            origins_mm.append(origin_mm)
-        shape = shapes[key]
-        geoms.append(
-            _Geom(
-                number=number,
-                body=int(model.geom_bodyid[number]),
-                shape=shape,
-                origin_mm=origins_mm[shape],
-                radius_mm=1e3 * float(model.geom_rbound[number]),
-                is_plane=int(model.geom_type[number]) == _PLANE,
-            )
+    def state(self, world: int | None = None) -> TouchState:
+        """What sensors remember now, in a world, counted from 0, or in all: to be kept with the
+        state of the data. Both set back, the same steps give the same bits.
+        """
+        numbers = self._numbers(world)
+        return TouchState(
+            _sensors=tuple(self._batch.state(sensor) for number in numbers for sensor in self._sensors_of(number)),
+            _readings_kpa=self._readings_kpa[numbers].copy(),
+            _wrench=self._wrench[numbers].copy(),
+            _time_s=self._clock.last_s[numbers].copy(),
+            _written=self._push.written[numbers].copy(),
         )
-    if not geoms:
-        raise ValueError("the model has no geom that could touch: all have `contype` and `conaffinity` 0; name some in `geoms`")
-    return geoms, bodies
+
+    def set_state(self, state: TouchState, world: int | None = None) -> None:
+        """Lets the sensors of a world, counted from 0, or of all go on from a state; that of one
+        world may be set in another one.
+
+        Raises `ValueError` for the state of another number of worlds, or of other sensors.
+        """
+        numbers = self._numbers(world)
+        if state._readings_kpa.shape != self._readings_kpa[numbers].shape or state._written.shape != self._push.written[numbers].shape:
+            raise ValueError(f"`state` is of {state._readings_kpa.shape} readings (worlds, sensors, taxels), expected {self._readings_kpa[numbers].shape}, of the same model")
+        sensors = iter(state._sensors)
+        self._readings_kpa, self._wrench = self._readings_kpa.copy(), self._wrench.copy()
+        for place, number in enumerate(numbers):
+            for sensor in self._sensors_of(number):
+                self._batch.set_state(sensor, next(sensors))
+            self._readings_kpa[number], self._wrench[number] = state._readings_kpa[place], state._wrench[place]
+            self._clock.last_s[number] = state._time_s[place]
+            self._push.restore(number, state._written[place])
+
+    def _sense(self, data: Data, is_updated: bool) -> _Touches:
+        """Reads all sensors; `is_updated` if the last update's forces stand in the data. Nothing
+        has been done where it raises.
+        """
+        worlds = self._worlds
+        worlds.look(data)
+        timestep_s = np.broadcast_to(worlds.field(data, "opt.timestep").reshape(-1), worlds.n_worlds)
+        now_s = worlds.times_s(data)
+        since_s, begun, goes_on = self._clock.passed(now_s, timestep_s)
+        if is_updated:
+            self._push.check(data, goes_on)
+        if self._geoms.read(data):
+            self._batch.set_bodies(self._geoms.bodies)
+        touches, poses, touch_id, unknown = self._near(data)
+        for world in np.nonzero(begun)[0]:
+            self._rest(int(world))
+        number = touches.world * len(self._site) + touches.sensor
+        ends = np.searchsorted(number, np.arange(worlds.n_worlds * len(self._site)), side="right")
+        body = self._geoms.shape[touches.world, touches.geom]
+        readings_kpa, wrench = self._batch.step(since_s, poses, body, ends, touch_id=touch_id)
+        self._readings_kpa = readings_kpa.reshape(self._readings_kpa.shape)
+        self._wrench = wrench.reshape(self._wrench.shape)
+        for world, sensor in zip(*np.nonzero(unknown)):
+            self._batch.rest(int(world) * len(self._site) + int(sensor))
+            self._readings_kpa[world, sensor] = np.nan
+            self._wrench[world, sensor] = np.nan
+        self._clock.last_s = now_s
+        return touches
+
+    def _near(self, data: Data) -> tuple[_Touches, _Array, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+        """What is near enough to touch; where, as `gel_from_body`; which thing each is; and of
+        which sensors nobody knows, `[n_worlds, n_sensors]`.
+        """
+        site_mm, site_turn, site_quat, site_is_there = self._places(data, "site", self._site)
+        geom_mm, geom_turn, geom_quat, geom_is_there = self._places(data, "geom", self._geoms.number)
+        unknown = ~site_is_there | (self._can_touch & ~geom_is_there[:, None]).any(-1)
+        with np.errstate(invalid="ignore", over="ignore"):
+            to_geom_mm = geom_mm[:, None] - (site_mm + site_turn @ self._middle_mm)[:, :, None]
+            above_mm = -(to_geom_mm * geom_turn[:, None, :, :, 2]).sum(-1)
+            distance_mm = np.where(self._geoms.is_plane[:, None], above_mm, np.linalg.norm(to_geom_mm, axis=-1))
+            near_mm = (self._geoms.radius_mm + self._radius_mm + _REACH_MM)[:, None]
+        world, sensor, geom = np.nonzero(self._can_touch & (distance_mm < near_mm) & ~unknown[:, :, None])
+        # A plane is the same wherever its frame is, so that its slab follows a sensor, in strides.
+        strides, planes = np.zeros((len(world), 2)), self._geoms.is_plane[world, geom]
+        if planes.any():
+            along_mm = turned(geom_turn[world, geom].swapaxes(1, 2), -to_geom_mm[world, sensor, geom])
+            strides[planes] = np.round(along_mm[planes, :2] / PLANE_STRIDE_MM)
+        origin_mm = np.concatenate([strides * PLANE_STRIDE_MM, self._geoms.origin_mm[world, geom, None]], axis=1)
+        place_mm = geom_mm[world, geom] + turned(geom_turn[world, geom], origin_mm)
+        poses = np.empty((len(world), 7))
+        poses[:, :3] = turned(site_turn[world, sensor].swapaxes(1, 2), place_mm - site_mm[world, sensor])
+        poses[:, 3:] = multiply(turned_back(site_quat[world, sensor]), geom_quat[world, geom])[:, [1, 2, 3, 0]]
+        # Part by part of a plane, and geom by geom: what a sensor holds is one of them.
+        along = (strides.astype(np.int64) & 0xFFFFF) @ np.array([1 << 20, 1])
+        touch_id = along * self._can_touch.shape[1] + geom
+        return _Touches(world, sensor, geom), poses, touch_id, unknown
+
+    def _places(self, data: Data, kind: str, numbers: _Ints) -> tuple[_Array, _Array, _Array, npt.NDArray[np.bool_]]:
+        """Places, mm, turns as matrices and as quaternions, of sites or geoms in all worlds, and
+        which of them are finite.
+        """
+        place_m, turn, quat = (self._worlds.rows(data, f"{kind}_{name}")[:, numbers] for name in ("xpos", "xmat", "xquat"))
+        if not quat.any(-1).all():
+            raise ValueError("`data` has no poses yet: call `mujoco.mj_step1` or `mujoco.mj_forward` before, or `batch.forward(stage=mujoco.mjtStage.mjSTAGE_VEL)`")
+        is_there = np.asarray(np.isfinite(place_m).all(-1) & np.isfinite(quat).all(-1))
+        return 1e3 * place_m, turn.reshape(*turn.shape[:2], 3, 3), quat, is_there
+
+    def _wrenches(self, data: Data, touches: _Touches, about_m: _Array) -> _Array:
+        """What gels and bodies do to each other, as wrenches on bodies about points of theirs."""
+        world, sensor, geom = touches
+        site_mm, site_turn, _, _ = self._places(data, "site", self._site)
+        on_gel, turn = self._batch.wrench_of_touches().astype(float), site_turn[world, sensor]
+        force_n, torque_n_m = turned(turn, on_gel[:, :3]), 1e-3 * turned(turn, on_gel[:, 3:])
+        at_m = 1e-3 * (site_mm[world, sensor] + turn @ self._center_mm)
+        return self._push.on_bodies(about_m, (force_n, torque_n_m, at_m), (world, self._body[sensor], self._geoms.body[geom]))
+
+    def _rest(self, world: int) -> None:
+        for sensor in self._sensors_of(world):
+            self._batch.rest(sensor)
+        self._readings_kpa, self._wrench = self._readings_kpa.copy(), self._wrench.copy()
+        self._readings_kpa[world], self._wrench[world] = 0.0, 0.0
+
+    def _sensors_of(self, world: int) -> range:
+        return range(world * len(self._site), (world + 1) * len(self._site))
+
+    def _numbers(self, world: int | None) -> list[int]:
+        if world is None:
+            return list(range(self._worlds.n_worlds))
+        if not 0 <= world < self._worlds.n_worlds:
+            raise ValueError(f"`world` is {world}, there are {self._worlds.n_worlds}")
+        return [int(world)]
 
 
-def _number(model: mujoco.MjModel, kind: str, name: str) -> int:
-    objects = {"site": mujoco.mjtObj.mjOBJ_SITE, "geom": mujoco.mjtObj.mjOBJ_GEOM}
-    number: int = mujoco.mj_name2id(model, objects[kind], name)
-    if number < 0:
-        count = {"site": model.nsite, "geom": model.ngeom}[kind]
-        names = (mujoco.mj_id2name(model, objects[kind], other) for other in range(count))
-        known = ", ".join(other for other in names if other) or "none"
-        raise ValueError(f"the model has no {kind} `{name}`; it has {known}")
-    return number
+def _belonging(sensor: Sensor | None, gel: FastGel | None) -> tuple[Sensor, FastGel]:
+    """Sensor and gel, of which one tells the other where they are built in."""
+    name = "phystac" if sensor is None and gel is None else sensor.name if sensor is not None else gel.sensor if gel is not None else ""
+    if (sensor is None or gel is None) and name not in _BUILT_IN:
+        known, missing = ("sensor", "gel") if gel is None else ("gel", "sensor")
+        raise ValueError(f"`{known}` is of `{name}`, which is not built in: give its `{missing}` too")
+    return _BUILT_IN[name][0]() if sensor is None else sensor, _BUILT_IN[name][1]() if gel is None else gel

@@ -1,5 +1,7 @@
 //! What can be typed.
 
+#[cfg(test)]
+mod conflicts;
 mod dataset;
 
 use std::path::PathBuf;
@@ -7,6 +9,7 @@ use std::path::PathBuf;
 pub(crate) use dataset::Dataset;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use twintac_run::mesh::LengthUnit;
 
 /// Barometric touch sensors and their digital twin.
 ///
@@ -127,6 +130,9 @@ pub(crate) struct FastImperfection {
     /// How to read CSV recordings (TOML) [default: the file that --sensor names].
     #[arg(long, value_name = "FILE", requires = "recordings")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the sensor, where that is another name.
+    #[arg(long, value_name = "NAME", requires = "recordings")]
+    pub(crate) recorded_as: Option<String>,
     /// Sensor description (TOML) [default: the model's].
     #[arg(long, value_name = "FILE", required_unless_present = "model")]
     pub(crate) sensor: Option<PathBuf>,
@@ -176,7 +182,7 @@ pub(crate) struct Reproduce {
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
-    #[arg(long, requires = "paper")]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) quick: bool,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE", required_unless_present = "paper")]
@@ -191,7 +197,7 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the figures of --paper as JSON.
-    #[arg(long, requires = "paper")]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) start: Start,
@@ -231,15 +237,18 @@ pub(crate) struct Mesh {
     /// Read a Gmsh file instead and print its quality.
     #[arg(long, value_name = "FILE")]
     pub(crate) check: Option<PathBuf>,
+    /// Unit of the lengths in that file: mm, cm, m or inch.
+    #[arg(long, value_name = "UNIT", default_value = "mm", requires = "check")]
+    pub(crate) unit: LengthUnit,
     /// Folder to write gel.msh, gel.vtu, gel.stl and quality.json to.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with = "check")]
     pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Simulate {
     /// Folder of a run: simulate the places of its presses, and fit what is unknown about its bench.
-    #[arg(long, value_name = "DIR", conflicts_with = "sensor")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["sensor", "protocol", "out", "path", "settings", "vtk", "seed"])]
     pub(crate) run: Option<PathBuf>,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE")]
@@ -251,13 +260,13 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "DIR", requires = "protocol")]
     pub(crate) out: Option<PathBuf>,
     /// Path of one indenter (TOML): prints force and pressures along it.
-    #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with = "protocol")]
+    #[arg(long, value_name = "FILE", requires = "sensor", conflicts_with_all = ["protocol", "out", "vtk", "seed"])]
     pub(crate) path: Option<PathBuf>,
     /// Print what the computing time of a path's frames is spent on.
-    #[arg(long, requires = "path")]
+    #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) profile: bool,
     /// Print the results of a path as JSON.
-    #[arg(long, requires = "path")]
+    #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) json: bool,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE", requires = "sensor")]
@@ -288,7 +297,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) y_mm: f64,
     /// Which curves to fit (TOML): [[curves]] with file, indenter, x_mm, y_mm; [[recordings]] with file, import, presses, signals, taxels.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["csv", "indenter", "x_mm", "y_mm"])]
     pub(crate) curves: Option<PathBuf>,
     /// Free parameters: constants of the material by their names in files (shear_modulus_kpa, terms[0].alpha, prony[0].weight,
     /// bulk_modulus_kpa), poissons_ratio, friction, depth_offset_mm, force_scale, force_offset_n.
@@ -354,10 +363,10 @@ pub(crate) struct Record {
     #[arg(long)]
     pub(crate) dry_run: bool,
     /// Faults of the emulated bench (TOML), in tables [[faults]].
-    #[arg(long, value_name = "FILE", requires = "lab")]
+    #[arg(long, value_name = "FILE", requires = "lab", conflicts_with_all = ["scale", "altitude_m"])]
     pub(crate) faults: Option<PathBuf>,
     /// Compute what the emulated bench would record, without devices and without waiting.
-    #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json"])]
+    #[arg(long, requires = "lab", conflicts_with_all = ["bench", "dry_run", "faults", "json", "scale", "altitude_m"])]
     pub(crate) at_once: bool,
     /// Print the result as one line of JSON.
     #[arg(long)]
@@ -422,6 +431,9 @@ pub(crate) struct Evaluate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the model's sensor, where that is another name.
+    #[arg(long, value_name = "NAME", requires = "model")]
+    pub(crate) recorded_as: Option<String>,
     /// Print the figures as JSON.
     #[arg(long)]
     pub(crate) json: bool,
@@ -443,6 +455,9 @@ pub(crate) struct Adapt {
     /// How to read CSV recordings (TOML) [default: the file that --sensor names].
     #[arg(long, value_name = "FILE", conflicts_with = "run")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the new sensor, where that is another name.
+    #[arg(long, value_name = "NAME", conflicts_with = "run")]
+    pub(crate) recorded_as: Option<String>,
     /// How many presses to adapt with.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "curve")]
     pub(crate) presses: u64,
@@ -453,13 +468,13 @@ pub(crate) struct Adapt {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// With --run: errors over these numbers of presses.
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', requires = "run", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', requires = "run", conflicts_with_all = ["recordings", "sensor", "import"], value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) curve: Vec<u64>,
     /// Folder of an evaluated run of the new sensor: its teaching presses adapt, its held-out presses judge, beside its own twin.
     #[arg(long, value_name = "DIR", requires = "curve", conflicts_with = "recordings")]
     pub(crate) run: Option<PathBuf>,
     /// With --curve: how many times presses are chosen, with seeds from 1 on.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), requires = "curve")]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..), requires = "curve", conflicts_with_all = ["recordings", "presses", "seed"])]
     pub(crate) seeds: u64,
     /// Print everything as JSON.
     #[arg(long)]
@@ -506,7 +521,7 @@ pub(crate) struct Predict {
     #[arg(long, value_name = "FILE")]
     pub(crate) indenter: Option<PathBuf>,
     /// Seed of the protocol's random places.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, conflicts_with = "path")]
     pub(crate) seed: u64,
     /// Draw depth, force and readings over time into this PNG or SVG file.
     #[arg(long, value_name = "FILE", value_parser = picture)]
@@ -529,6 +544,9 @@ pub(crate) struct Locate {
     /// How to read CSV recordings (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) import: Option<PathBuf>,
+    /// What the recordings call the model's sensor, where that is another name.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) recorded_as: Option<String>,
     /// Names of the sensor's indenters that may touch it [default: all].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) indenter: Vec<String>,
@@ -582,10 +600,10 @@ pub(crate) struct Stream {
     #[arg(long, value_enum)]
     pub(crate) format: Option<RowFormat>,
     /// End after so many rows.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format", conflicts_with = "out")]
     pub(crate) frames: Option<u64>,
     /// End after so long, s.
-    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format")]
+    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format", conflicts_with = "out")]
     pub(crate) seconds: Option<f64>,
     /// Folder of the dashboard's recordings (MCAP).
     #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]

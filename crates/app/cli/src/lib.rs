@@ -13,6 +13,7 @@ use std::io::Write;
 
 use anyhow::{Context, Result};
 use clap::Parser;
+use twintac_text::visible;
 
 use crate::arguments::Arguments;
 pub use crate::program::Program;
@@ -31,7 +32,7 @@ impl Program {
         match run(arguments, self) {
             Ok(()) => 0,
             Err(error) => {
-                let _ = writeln!(std::io::stderr(), "error: {error:#}");
+                let _ = writeln!(std::io::stderr(), "error: {}", visible(&format!("{error:#}")));
                 if error.is::<command::Stopped>() { 3 } else { 2 }
             }
         }

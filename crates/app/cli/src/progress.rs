@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use twintac_run::{Outcome, Progress};
+use twintac_text::visible;
 
 /// One bar at a time, and lines above it.
 #[derive(Debug, Default)]
@@ -31,7 +32,7 @@ impl Progress for Bars {
     fn step(&self, state: &str) {
         self.with(|bar| {
             if !state.is_empty() {
-                bar.set_message(state.to_owned());
+                bar.set_message(visible(state).into_owned());
             }
             bar.inc(1);
         });
@@ -74,5 +75,5 @@ fn bar(work: &str, n_steps: usize) -> ProgressBar {
 
 /// A line on standard error, wherever that goes.
 pub(crate) fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", visible(line));
 }

@@ -512,3 +512,44 @@ fn a_bench_without_devices() {
     refused(&output, &["[devices]", "--lab"]);
     assert!(!out.exists(), "nothing is begun");
 }
+
+#[test]
+fn settings_that_cannot_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let [settings, out] = ["settings.toml", "run"].map(|name| folder.path().join(name));
+    let sensor = root().join("sensors/phystac.toml");
+    for (told, words) in [
+        ("[split]\nseed = 3\n", ["settings.toml:2: `split.seed`", "--seed"]),
+        (
+            "[bench]\nn_places = 0\n",
+            ["settings.toml:2: `bench.n_places` is 0", "give 1 to"],
+        ),
+        (
+            "[pair.warp]\nwindow_s = -3\n",
+            ["`pair.warp.window_s` is -3", "give 0, or"],
+        ),
+        (
+            "[train]\ncorrection_hidden = [1000000000]\n",
+            ["`train.correction_hidden[0]` is 1e9", "give 1 to 1024"],
+        ),
+    ] {
+        fs::write(&settings, told).unwrap();
+        let run = [
+            "import",
+            "--sensor",
+            text(&sensor),
+            "--recordings",
+            "none.csv",
+            "--out",
+            text(&out),
+            "--settings",
+            text(&settings),
+        ];
+        refused(&twintac(&run), &words);
+        assert!(!out.exists());
+    }
+    fs::write(&settings, "[train]\nepochs = 3\n").unwrap();
+    let dataset = ["dataset", "--out", text(&out), "--settings", text(&settings)];
+    refused(&twintac(&dataset), &["settings.toml:1: `train`", "[simulate]"]);
+    assert!(!out.exists());
+}

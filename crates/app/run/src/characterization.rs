@@ -80,7 +80,7 @@ impl Recorded {
     /// A file that cannot be written.
     pub fn write(&self, found: &Characterization, sensor: &Sensor, folder: &Path) -> Result<(), RunError> {
         write_pages(folder, found, &self.recording, sensor)?;
-        write_json(&folder.join("characterization.json"), found)
+        Ok(write_json(&folder.join("characterization.json"), found)?)
     }
 }
 
@@ -154,7 +154,10 @@ impl Log {
                 Body::Tactile(frame) if begun_ns.is_none() => {
                     for (course, taxel) in unloaded.iter_mut().zip(&frame.taxels) {
                         let reading = taxel.temperature_c.zip(taxel.pressure_pa);
-                        let good = reading.filter(|_| taxel.state == TaxelState::Good);
+                        let is_good = |(c, pa): &(f64, f64)| {
+                            taxel.state == TaxelState::Good && c.is_finite() && pa.is_finite()
+                        };
+                        let good = reading.filter(is_good);
                         course.readings.extend(good.map(|(c, pa)| [c, pa / 1000.0]));
                     }
                 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use digitac::{Bench, Contact, Errors, Fold, HeldOut, Judgement, Places, SplitSettings, Variant, judge};
+use digitac::{Bench, Errors, Fold, HeldOut, Judgement, Places, Variant, judge};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthTable, DepthTableSource};
@@ -14,8 +14,12 @@ use crate::error::At;
 use crate::files::{write_file, write_json};
 use crate::metrics::names;
 use crate::progress::Work;
-use crate::settings::ports_mm;
-use crate::{Run, RunError, RunSettings};
+use crate::settings::ResolvedSettings;
+use crate::stages::simulation::{Simulation, contacts};
+use crate::{Run, RunError};
+
+/// The folder of what was judged.
+const FOLDER: &str = "cross_validation";
 
 /// What to judge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,14 +71,14 @@ impl Without {
         }
     }
 
-    fn apply(self, settings: &mut RunSettings) {
+    fn apply(self, settings: &mut ResolvedSettings) {
         match self {
             Self::PortLaw => {
                 settings.bench.port_law = false;
                 settings.train.port_law = false;
             }
             Self::History => settings.bench.history = false,
-            Self::SmoothFactor => settings.bench.ports_mm.clear(),
+            Self::SmoothFactor => settings.bench.smooth_factor = false,
             Self::Ports => {
                 settings.bench.port_shift_limit_mm = 0.0;
                 settings.bench.port_radius_limit_mm = 0.0;
@@ -97,14 +101,15 @@ pub struct Spread {
 }
 
 impl Spread {
-    pub(crate) fn of(values: &[f64]) -> Self {
+    /// `None` of nothing.
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let n = values.len() as f64;
-        let mean_percent = values.iter().sum::<f64>() / n.max(1.0);
+        let mean_percent = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v - mean_percent).powi(2)).sum();
-        Self {
+        (n > 0.0).then(|| Self {
             mean_percent,
             deviation_percent: (squares / (n - 1.0).max(1.0)).sqrt(),
-        }
+        })
     }
 }
 
@@ -139,8 +144,8 @@ pub struct CrossValidated {
     pub held_out: HeldOut,
     /// What the twin was made without.
     pub without: Option<Without>,
-    /// The variant that validation presses chose, seed by seed.
-    pub twin: Spread,
+    /// The variant that validation presses chose, seed by seed; `None` if some seed has no frame in contact.
+    pub twin: Option<Spread>,
     /// Each variant.
     pub variants: BTreeMap<Variant, Spread>,
     /// A power of depth times a function of distance, fitted to the same presses.
@@ -149,7 +154,7 @@ pub struct CrossValidated {
     #[serde(default)]
     pub certainty: CertaintySpread,
     /// Part of the frames that lie deeper than the simulation went, %; they are scored all the same.
-    pub frames_not_simulated_percent: f64,
+    pub frames_not_simulated_percent: Option<f64>,
     /// Everything, seed by seed.
     pub seeds: Vec<OfSeed>,
 }
@@ -171,7 +176,7 @@ pub struct CrossValidation {
 struct Row {
     held_out: HeldOut,
     without: Option<Without>,
-    settings: RunSettings,
+    settings: ResolvedSettings,
     folds: Vec<(u64, Fold)>,
 }
 
@@ -184,12 +189,12 @@ impl Run {
     /// The run is not simulated yet; too few files, places or indenters for what is to be held out.
     pub fn cross_validate(&self, plan: &CrossValidationPlan) -> Result<CrossValidation, RunError> {
         let recording = self.recording()?;
-        let simulation = self.simulation(&recording)?;
-        let settings = self.resolved(&recording, &simulation.places);
+        let simulation = Simulation::read(&self.simulation()?)?;
+        let settings = self.setup().resolved(&recording)?;
         let tables = self.tables_of_radii(&settings, &simulation.places, simulation.tables)?;
-        let rows = rows(plan, &settings, &recording, &self.left_out())?;
-        let ports_mm = ports_mm(&self.sensor.sensor);
-        let contacts = self.contacts(&simulation.places)?;
+        let rows = rows(plan, &settings, &recording)?;
+        let block_mm = settings.split.block_mm_of(&recording)?;
+        let contacts = contacts(&simulation.places, self.sensor(), self.settings())?;
 
         let jobs: Vec<(&Row, &(u64, Fold))> = rows
             .iter()
@@ -197,19 +202,17 @@ impl Run {
             .collect();
         let work = Work::start(self.progress(), "judging", jobs.len());
         let judge_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<Judgement, RunError> {
-            let mut train = row.settings.train.clone();
-            train.seed = *seed;
             let bench = Bench {
                 recording: &recording,
                 places: &simulation.places,
                 tables: &tables,
                 contacts: &contacts,
-                intervals_block_mm: (plan.intervals && row.without.is_none())
-                    .then_some(settings.split.block_mm),
+                intervals_block_mm: (plan.intervals && row.without.is_none()).then_some(block_mm),
                 bench: &row.settings.bench,
                 pair: &row.settings.pair,
-                train: &train,
-                ports_mm: &ports_mm,
+                train: &row.settings.train,
+                seed: *seed,
+                taxels: &row.settings.taxels,
             };
             let found = judge(&bench, fold).at(|| format!("held out by {}, seed {seed}", row.held_out))?;
             work.step("");
@@ -222,38 +225,33 @@ impl Run {
             .collect::<Result<_, _>>()?;
         let mut judgements = judgements.into_iter();
         let found = CrossValidation {
-            sensor: self.record.sensor.clone(),
+            sensor: self.record().sensor.clone(),
             provenance: recording.provenance,
             taxels_left_out: names(self.left_out(), &recording.taxels),
             rows: rows.iter().map(|row| row.gather(&mut judgements)).collect(),
         };
-        let folder = self.stage("cross_validation");
+        let folder = self.folder().join(FOLDER);
         write_json(&folder.join("result.json"), &found)?;
         write_file(&folder.join("errors.png"), &png(&found.plot().scene(), 2.0)?)?;
         Ok(found)
     }
 
-    /// Where and with what the places are touched; `[n_places]`.
-    pub(crate) fn contacts(&self, places: &Places) -> Result<Vec<Contact>, RunError> {
-        Ok(Contact::of_places(places, &self.gel())?)
-    }
-
     /// Tables of all places for each radius that the tip may have, or those that are there.
     fn tables_of_radii(
         &self,
-        settings: &RunSettings,
+        settings: &ResolvedSettings,
         places: &Places,
         there: Vec<DepthTable>,
     ) -> Result<Vec<Vec<DepthTable>>, RunError> {
-        let radii_mm = &settings.bench.tip_radii_mm;
+        let radii_mm = settings.bench.tip_radii_mm.as_deref().unwrap_or_default();
         if radii_mm.len() < 2 {
             return Ok(vec![there]);
         }
-        let gel = self.gel();
         let _work = Work::start(self.progress(), "simulating", 0);
-        let folder = self.stage("cross_validation").join("depth_tables");
-        let fast = self.fast()?;
-        let store = DepthTableStore::new(&gel, folder, self.progress()).with_fast(fast.as_ref());
+        let folder = self.folder().join(FOLDER).join("depth_tables");
+        let store = DepthTableStore::of(self.gel(), self.progress())?
+            .kept_in(&folder, &self.caller().program)
+            .with_fast(self.fast().map(|fast| &**fast));
         let mut requests = Vec::new();
         for radius_mm in radii_mm {
             requests.extend(places.requests.iter().cloned().map(|request| {
@@ -275,23 +273,19 @@ impl Run {
 
 fn rows(
     plan: &CrossValidationPlan,
-    settings: &RunSettings,
+    settings: &ResolvedSettings,
     recording: &Recording,
-    left_out: &BTreeSet<usize>,
 ) -> Result<Vec<Row>, RunError> {
     let row = |held_out: HeldOut, without: Option<Without>| -> Result<Row, RunError> {
         let mut settings = settings.clone();
         if let Some(without) = without {
             without.apply(&mut settings);
-            settings.train.variants = vec![Variant::PressureMemory];
+            settings.train.variants = Some(vec![Variant::PressureMemory]);
         }
         let mut folds = Vec::new();
         for seed in 1..=plan.seeds {
-            let split = SplitSettings {
-                seed,
-                ..settings.split.clone()
-            };
-            let of_seed = Fold::all(recording, held_out, &split, left_out)?;
+            let left_out = &settings.taxels.left_out;
+            let of_seed = Fold::all(recording, held_out, (&settings.split, seed), left_out)?;
             folds.extend(of_seed.into_iter().map(|fold| (seed, fold)));
         }
         Ok(Row {
@@ -323,7 +317,7 @@ impl Row {
         let spread = |errors: &dyn Fn(&Judgement) -> Option<Errors>| {
             let of_seed = |of_seed: &OfSeed| headline(of_seed.judgements.iter().filter_map(errors));
             let values: Option<Vec<f64>> = seeds.iter().map(of_seed).collect();
-            values.map(|values| Spread::of(&values))
+            values.and_then(|values| Spread::of(&values))
         };
         let all = || seeds.iter().flat_map(|of_seed| &of_seed.judgements);
         let variants: BTreeSet<Variant> = all().flat_map(|j| j.variants.keys().copied()).collect();
@@ -332,14 +326,14 @@ impl Row {
         CrossValidated {
             held_out: self.held_out,
             without: self.without,
-            twin: spread(&|j| Some(j.twin)).unwrap_or(Spread::of(&[])),
+            twin: spread(&|j| Some(j.twin)),
             variants: variants
                 .into_iter()
                 .filter_map(|variant| Some((variant, spread(&|j| j.variants.get(&variant).copied())?)))
                 .collect(),
             kernel: spread(&|j| j.kernel),
             certainty: certainty(&seeds),
-            frames_not_simulated_percent: 100.0 * n_beyond as f64 / (n_frames as f64).max(1.0),
+            frames_not_simulated_percent: (n_frames > 0).then(|| 100.0 * n_beyond as f64 / n_frames as f64),
             seeds,
         }
     }
@@ -353,13 +347,13 @@ fn certainty(seeds: &[OfSeed]) -> CertaintySpread {
             (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
         };
         let values: Vec<f64> = seeds.iter().filter_map(of_seed).collect();
-        (!values.is_empty()).then(|| Spread::of(&values))
+        Spread::of(&values)
     };
     CertaintySpread {
-        covered: spread(&|j| Some(j.certainty?.covered_percent)),
-        covered_in_contact: spread(&|j| Some(j.certainty?.covered_in_contact_percent)),
-        width_in_contact: spread(&|j| Some(j.certainty?.mean_width_in_contact_percent)),
-        flagged: spread(&|j| Some(j.certainty?.flagged_percent)),
+        covered: spread(&|j| j.certainty?.covered_percent),
+        covered_in_contact: spread(&|j| j.certainty?.covered_in_contact_percent),
+        width_in_contact: spread(&|j| j.certainty?.mean_width_in_contact_percent),
+        flagged: spread(&|j| j.certainty?.flagged_percent),
         told_apart: spread(&|j| Some(j.told_apart?.area_percent)),
     }
 }
@@ -369,8 +363,10 @@ fn headline(errors: impl Iterator<Item = Errors>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0);
     for errors in errors {
         let mean = errors.nearest_in_contact;
-        sum += mean.percent * mean.count as f64;
-        count += mean.count;
+        if let Some(percent) = mean.percent {
+            sum += percent * mean.count as f64;
+            count += mean.count;
+        }
     }
     (count > 0).then(|| sum / count as f64)
 }
@@ -387,7 +383,7 @@ impl CrossValidation {
         };
         let mut bars = Vec::new();
         for row in &self.rows {
-            bars.push(bar(row.name(), row.twin, Ink::Twin));
+            bars.extend(row.twin.map(|twin| bar(row.name(), twin, Ink::Twin)));
             if let (Some(kernel), None) = (row.kernel, row.without) {
                 bars.push(bar("fitted curve".to_owned(), kernel, Ink::Muted));
             }

@@ -1,39 +1,72 @@
 //! Simulated presses, each computed once and kept as a file.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::Path;
 
 use glam::DVec2;
 use rayon::prelude::*;
+use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableRequest, DepthTableSource, Lattice, SourceError};
 use twintac_shape::{Pose, Underside};
 use twintac_simulate::{Gel, PressPlace};
+use twintac_store::{Digest, Keyed, Recipe, Store};
 
-use crate::Progress;
 use crate::fast::tables::FastTables;
-use crate::files::{read_json, sha256, write_json};
 use crate::progress::go_on;
+use crate::{Progress, RunError};
 
 /// Spacing of a lattice over the gel's height, for places along a line and over a plane, which has so many more of them.
 const LATTICE_SPACINGS: [f64; 2] = [1.0 / 4.0, 1.0 / 3.0];
 
-/// Sweeps of one gel, kept in a folder: what is there is not computed again.
+/// Tables over depth of one gel.
 pub(crate) struct DepthTableStore<'a> {
-    gel: &'a Gel,
-    folder: PathBuf,
+    gel: Keyed<Gel>,
     progress: &'a dyn Progress,
+    /// Where tables are kept.
+    store: Option<Store>,
     /// What makes tables instead of the gel.
     fast: Option<&'a FastTables>,
 }
 
+/// A table is made from a gel, with all that it consists of, and a place, with the shape that presses.
+#[derive(Serialize)]
+struct TableAt<'a> {
+    gel: &'a Keyed<Gel>,
+    place: &'a PressPlace,
+}
+
+impl Recipe for TableAt<'_> {
+    type Value = DepthTable;
+    type Error = RunError;
+
+    fn label(&self) -> String {
+        let PressPlace {
+            indenter, x_mm, y_mm, ..
+        } = self.place;
+        format!("{indenter}_x{x_mm:+.2}_y{y_mm:+.2}")
+    }
+
+    fn make(&self) -> Result<DepthTable, RunError> {
+        Ok(self.gel.depth_table(self.place)?)
+    }
+}
+
 impl<'a> DepthTableStore<'a> {
-    /// Keeps the gel's tables in `folder`, which holds tables of no other gel.
-    pub(crate) fn new(gel: &'a Gel, folder: PathBuf, progress: &'a dyn Progress) -> Self {
-        Self {
-            gel,
-            folder,
+    /// Tables of a gel, which are not kept.
+    pub(crate) fn of(gel: Gel, progress: &'a dyn Progress) -> Result<Self, RunError> {
+        Ok(Self {
+            gel: Keyed::new(gel)?,
             progress,
+            store: None,
             fast: None,
+        })
+    }
+
+    /// The same, kept in a folder, which may hold those of other gels as well. `program` tells one build of the program from another.
+    pub(crate) fn kept_in(self, folder: &Path, program: &str) -> Self {
+        Self {
+            store: Some(Store::new(folder, program)),
+            ..self
         }
     }
 
@@ -50,31 +83,22 @@ impl<'a> DepthTableStore<'a> {
             .with_max_len(1)
             .map(|place| {
                 go_on(self.progress)?;
-                let path = self.path(place)?;
-                let table = match read_json(&path) {
-                    Ok(table) => table,
-                    Err(_) => {
-                        let table = self.gel.depth_table(place)?;
-                        write_json(&path, &table)?;
-                        table
+                let recipe = TableAt {
+                    gel: &self.gel,
+                    place,
+                };
+                let table = match &self.store {
+                    Some(store) => {
+                        let kept = store.get(&recipe)?;
+                        kept.made_again.iter().for_each(|why| self.progress.note(why));
+                        kept.value
                     }
+                    None => recipe.make()?,
                 };
                 self.progress.step("");
                 Ok(table)
             })
             .collect()
-    }
-
-    fn path(&self, place: &PressPlace) -> Result<PathBuf, SourceError> {
-        let hash = sha256(&serde_json::to_vec(place)?);
-        let name = format!(
-            "{}_x{:+.2}_y{:+.2}_{}.json",
-            place.indenter,
-            place.x_mm,
-            place.y_mm,
-            &hash[..12]
-        );
-        Ok(self.folder.join(name))
     }
 }
 
@@ -84,7 +108,7 @@ impl DepthTableSource for DepthTableStore<'_> {
     }
 
     fn underside(&self, request: &DepthTableRequest) -> Result<Underside, SourceError> {
-        DepthTableSource::underside(self.gel, request)
+        DepthTableSource::underside(&*self.gel, request)
     }
 
     fn depth_tables(&self, requests: &[DepthTableRequest]) -> Result<Vec<DepthTable>, SourceError> {
@@ -93,7 +117,7 @@ impl DepthTableSource for DepthTableStore<'_> {
             .map(|request| self.gel.requested(request))
             .collect::<Result<Vec<_>, _>>()?;
         if let Some(fast) = self.fast {
-            return places.iter().map(|place| fast.table(self.gel, place)).collect();
+            return places.iter().map(|place| fast.table(&self.gel, place)).collect();
         }
         let mut groups: BTreeMap<Vec<u8>, Vec<usize>> = BTreeMap::new();
         for (index, place) in places.iter().enumerate() {
@@ -120,7 +144,7 @@ impl DepthTableSource for DepthTableStore<'_> {
         let mut of_place = Vec::with_capacity(alone.len());
         for &index in &alone {
             let next = to_simulate.len();
-            let found = *index_of.entry(self.path(&places[index])?).or_insert(next);
+            let found = *index_of.entry(Digest::of_value(&places[index])?).or_insert(next);
             if found == next {
                 to_simulate.push(places[index].clone());
             }

@@ -4,6 +4,8 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use twintac_store::StoreError;
+
 /// What is wrong, where, and what to do. The text of an error leaves its [`source`](Error::source) out: print the whole chain.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -16,16 +18,6 @@ pub enum RunError {
         /// What happened there.
         source: Box<Self>,
     },
-    /// A file or folder could not be used.
-    #[error("{action} {}", path.display())]
-    File {
-        /// What was tried: `reading`, `writing`.
-        action: &'static str,
-        /// The file or folder.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
     /// A device could not be reached.
     #[error("{action}")]
     Network {
@@ -34,22 +26,9 @@ pub enum RunError {
         /// What the operating system says.
         source: io::Error,
     },
-    /// A file that a run had written is not what was written.
-    #[error("{} is damaged", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: serde_json::Error,
-    },
-    /// Something could not be written as JSON.
-    #[error("writing {what}")]
-    Json {
-        /// A file, or the name of settings.
-        what: String,
-        /// Why.
-        source: serde_json::Error,
-    },
+    /// A file could not be read or written, a folder is in use, or a stage is not as it would be made now.
+    #[error(transparent)]
+    Store(#[from] StoreError),
     /// A table could not be read.
     #[error("reading {}", path.display())]
     Csv {
@@ -72,20 +51,15 @@ pub enum RunError {
         /// What was expected in it.
         source: Box<Self>,
     },
-    /// A stage whose results are needed has not run.
-    #[error("{} is not a finished stage: run the command that makes it first", folder.display())]
-    Unfinished {
-        /// Its folder.
-        folder: PathBuf,
-        /// What was expected in it.
-        source: Box<Self>,
-    },
     /// [`Progress::is_stopped`](crate::Progress::is_stopped) said so.
     #[error("stopped before it was done; the same again goes on from there")]
     Stopped,
     /// What was given cannot be used: what is wrong, and what to do.
     #[error("{0}")]
     Input(String),
+    /// A setting cannot be what it is.
+    #[error("setting {0}")]
+    Setting(#[from] twintac_config::Problem),
     /// A file that people write is wrong.
     #[error(transparent)]
     Config(#[from] twintac_config::ConfigError),
@@ -151,7 +125,7 @@ pub enum RunError {
 impl RunError {
     pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Self::File { action, path, source }
+        move |source| Self::Store(StoreError::File { action, path, source })
     }
 }
 

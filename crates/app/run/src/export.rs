@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use twintac_log::{Ending, LogError, export_frames, recover};
 use twintac_recording::LeRobotSummary;
+use twintac_text::{fenced, markdown};
 
 use crate::characterization::Recorded;
 use crate::files::read_text;
@@ -19,18 +20,18 @@ pub struct Exported {
     pub table: PathBuf,
     /// Rows of the table.
     pub frames: u64,
-    /// Marked gaps between them.
+    /// Gaps in them, marked by the recorder or left by damage.
     pub gaps: u64,
     /// Time of the last frame, s.
     pub last_s: f64,
-    /// Whether the log was whole.
+    /// Whether the log was whole and as it was written.
     pub is_whole: bool,
-    /// What became of a log that was cut, in words.
+    /// What is wrong with a log that was cut or damaged, and what became of it, in words.
     #[serde(skip)]
     pub recovered: Option<String>,
 }
 
-/// Writes a log's frames as a Parquet table into `folder`, or beside the log. A log that was cut is made whole, in a file beside it.
+/// Writes a log's frames as a Parquet table into `folder`, or beside the log. A log that was cut or damaged is made whole, in a file beside it.
 ///
 /// # Errors
 /// A file that is no log; a file that cannot be written.
@@ -44,15 +45,21 @@ pub fn export(log: &Path, folder: Option<&Path>) -> Result<Exported, RunError> {
         None => name,
     };
     let exported = export_frames(log, &table)?;
-    let is_whole = exported.ending == Ending::Whole;
+    let problem = match exported.ending {
+        Ending::Whole => None,
+        Ending::Damaged => Some("is damaged: its bytes have changed since it was written"),
+        Ending::Cut => Some("was cut"),
+    };
     Ok(Exported {
         log: log.to_owned(),
         table,
         frames: exported.frames,
         gaps: exported.gaps,
         last_s: exported.last_s,
-        is_whole,
-        recovered: if is_whole { None } else { Some(make_whole(log)?) },
+        is_whole: problem.is_none(),
+        recovered: problem
+            .map(|problem| Ok::<_, RunError>(format!("{problem}; {}", make_whole(log)?)))
+            .transpose()?,
     })
 }
 
@@ -68,7 +75,7 @@ fn whole_name(log: &Path) -> PathBuf {
 fn make_whole(log: &Path) -> Result<String, RunError> {
     match recover(log) {
         Ok(recovered) => Ok(format!(
-            "all that was flushed stands in {}",
+            "all that can be read stands in {}",
             recovered.path.display()
         )),
         Err(LogError::Exists { file }) => Ok(format!("{file} is there already")),
@@ -90,13 +97,14 @@ pub fn export_lerobot(
     let mut how_made = String::from("Written by `twintac export --lerobot` from:\n\n");
     for file in files {
         let name = file.file_name().unwrap_or_default();
-        how_made.push_str(&format!("- `{}`\n", name.display()));
+        how_made.push_str(&format!("- {}\n", markdown(&name.to_string_lossy())));
     }
     let beside = files.first().map(|first| first.with_file_name("dataset.toml"));
     if let Some(dataset) = beside.filter(|beside| beside.exists()) {
         let text = read_text(&dataset)?;
+        let text = fenced("toml", &text);
         how_made.push_str(&format!(
-            "\nThe presses were simulated by `twintac dataset`:\n\n```toml\n{text}```\n"
+            "\nThe presses were simulated by `twintac dataset`:\n\n{text}"
         ));
     }
     Ok(recording.write_lerobot(folder, &how_made)?)

@@ -10,7 +10,9 @@
 //! let run = Run::start(Path::new("runs/mine"), sensor, "three files", 1, settings, Caller::default())?;
 //! run.import(Path::new("imports/strip4.toml"), &["press-1.csv".into()])?;
 //! let metrics = run.finish()?; // minutes: simulate, align, train, evaluate, report
-//! println!("{:.1} %, see {}", metrics.twin.overall.nearest_in_contact_percent, run.report_path().display());
+//! if let Some(percent) = metrics.twin.overall.nearest_in_contact_percent {
+//!     println!("{percent:.1} %, see {}", run.report_path().display());
+//! }
 //! # Ok(())
 //! # }
 //! ```
@@ -42,7 +44,6 @@
 mod adaptation;
 pub mod bench;
 pub mod built_in;
-mod cache;
 pub mod calibration;
 mod caller;
 pub mod characterization;
@@ -84,10 +85,11 @@ pub use files::sha256_of_file;
 pub use locate::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, LocatorTracker};
 pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};
 pub use predict::{Predicted, Predictor};
-pub use progress::{Outcome, Progress, Silent};
+pub use progress::{Progress, Silent};
 pub use protocol::Planned;
 pub use run::{Run, RunRecord};
-pub use settings::RunSettings;
+pub use settings::{RunSettings, simulate_settings};
 pub use stages::recordings::{import_files, read_recordings};
 pub use twintac_sensor::SensorFile;
+pub use twintac_store::{Outcome, StoreError};
 pub use unseen::{UnseenEvaluation, evaluate_elsewhere};

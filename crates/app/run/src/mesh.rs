@@ -7,6 +7,7 @@ use twintac_mesh::{
     vtk,
 };
 use twintac_sensor::Sensor;
+pub use twintac_shape::LengthUnit;
 
 use crate::RunError;
 use crate::error::At;
@@ -73,17 +74,17 @@ impl MeshedGel {
             vtk::write(&self.mesh, &[], &[])?.as_bytes(),
         )?;
         write_file(&folder.join("gel.stl"), &stl::write(&self.mesh))?;
-        write_json(&folder.join("quality.json"), &self.quality)
+        Ok(write_json(&folder.join("quality.json"), &self.quality)?)
     }
 }
 
-/// How good the mesh in a Gmsh file is.
+/// How good the mesh in a Gmsh file is, whose lengths have this unit.
 ///
 /// # Errors
-/// A file that cannot be read, or that is no mesh of tetrahedra.
-pub fn check_mesh(path: &Path) -> Result<Quality, RunError> {
+/// A file that cannot be read, that is no mesh of tetrahedra, or whose size the unit does not explain.
+pub fn check_mesh(path: &Path, unit: LengthUnit) -> Result<Quality, RunError> {
     let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
-    let mesh = gmsh::read(&bytes).at(|| path.display().to_string())?;
+    let mesh = gmsh::read(&bytes, unit.in_mm()).at(|| path.display().to_string())?;
     Ok(Quality::of(&mesh, None))
 }
 

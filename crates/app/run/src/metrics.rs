@@ -6,15 +6,15 @@ use digitac::{CertaintyScore, Errors, Evaluation, Repeatability, Score};
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
-/// Errors in % of the largest reading of the file that they belong to.
+/// Errors in % of the largest reading of the file that they belong to. A mean over nothing is `None`: null in files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// Mean absolute error of the nearest taxel while in contact.
-    pub nearest_in_contact_percent: f64,
+    pub nearest_in_contact_percent: Option<f64>,
     /// Mean absolute error of all taxels in all frames.
-    pub all_percent: f64,
+    pub all_percent: Option<f64>,
     /// Mean absolute error of the presses' largest readings.
-    pub peak_percent: f64,
+    pub peak_percent: Option<f64>,
     /// Frames behind the headline.
     pub frames_in_contact: usize,
 }

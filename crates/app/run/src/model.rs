@@ -4,8 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use digitac::Model;
+use twintac_config::Checked;
 use twintac_simulate::{Gel, SimulateSettings};
+use twintac_store::StoreError;
 
+use crate::error::At;
 use crate::{RunError, SensorFile};
 
 /// The gel of a model's sensor, simulated as it was for training.
@@ -17,9 +20,22 @@ pub(crate) fn gel_of(model: &Model, folder: &Path) -> Result<Gel, RunError> {
 /// The gel of another sensor, simulated in the same way.
 pub(crate) fn gel_like(model: &Model, folder: &Path, sensor: &SensorFile) -> Result<Gel, RunError> {
     let settings: SimulateSettings =
-        serde_json::from_value(model.record.simulation.clone()).map_err(|source| RunError::Damaged {
+        serde_json::from_value(model.record.simulation.clone()).map_err(|source| StoreError::Damaged {
             path: folder.join("twin.json"),
             source,
         })?;
+    let path = folder.join("twin.json");
+    settings
+        .checked()
+        .at(|| format!("{}, simulation", path.display()))?;
+    let taxels = sensor.sensor.taxels.iter().map(|taxel| &taxel.name);
+    if !taxels.eq(&model.record.taxels) {
+        return Err(RunError::Input(format!(
+            "the twin in {} reads the taxels {}, which are not those of the sensor `{}`",
+            folder.display(),
+            model.record.taxels.join(", "),
+            sensor.sensor.name
+        )));
+    }
     Ok(Gel::new(Arc::clone(&sensor.sensor), settings))
 }

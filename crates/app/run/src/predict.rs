@@ -62,7 +62,7 @@ impl Predictor {
         let mut gel = gel_of(&model, model_folder)?;
         let added = indenter.map(IndenterFile::read).transpose()?;
         if let Some(added) = &added {
-            let sensor = Arc::new(added.added_to(gel.sensor()));
+            let sensor = Arc::new(added.added_to(gel.sensor())?);
             gel = gel.with_sensor(sensor);
         }
         Ok(Self {
@@ -226,12 +226,8 @@ impl Predictor {
         if !planned.loads.is_empty() {
             progress.note("the protocol's weights are left out: presses alone are predicted");
         }
-        let folder = tempfile::tempdir().map_err(RunError::file(
-            "making",
-            Path::new("a temporary folder for simulations"),
-        ))?;
         let work = Work::start(progress, "simulating", 0);
-        let store = DepthTableStore::new(&self.gel, folder.path().to_owned(), progress);
+        let store = DepthTableStore::of(self.gel.clone(), progress)?;
         let is_added = |plan: &PressPlan| self.added.as_ref() == Some(&plan.indenter);
         let (added, known): (Vec<_>, Vec<_>) = planned.presses.iter().cloned().partition(is_added);
         let predict = |plans: &[PressPlan]| {

@@ -2,16 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use crate::RunError;
+use twintac_store::Outcome;
 
-/// Whether a stage ran or was already there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// Its inputs had changed, or it had never run.
-    Ran,
-    /// It was there.
-    Kept,
-}
+use crate::RunError;
 
 /// Hears how work goes that takes from seconds to minutes. Calls come from any thread, those of one piece of work in between its
 /// [`started`](Self::started) and [`finished`](Self::finished). There is one piece of work at a time. A method that is not written does

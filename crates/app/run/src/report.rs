@@ -2,20 +2,13 @@
 
 use twintac_report::{Making, StageTime, TrainedVariant, TwinReport};
 
-use crate::cache::read_record;
-use crate::files::{read_json, write_file};
-use crate::stages::training::VariantRecord;
-use crate::{Run, RunError};
+use twintac_store::{Finished, StoreError, read_json, write_file};
 
-/// Stages in the order in which they run.
-const STAGES: [&str; 6] = [
-    "recordings",
-    "mesh",
-    "simulation",
-    "pairs",
-    "training",
-    "evaluation",
-];
+use crate::stages::evaluation::HeldOut;
+use crate::stages::pairs::read_pairs;
+use crate::stages::simulation::Simulation;
+use crate::stages::training::VariantRecord;
+use crate::{Metrics, Run, RunError};
 
 impl Run {
     /// Writes `report.html`, and `metrics.json` beside it.
@@ -23,13 +16,22 @@ impl Run {
     /// # Errors
     /// The run is not evaluated yet; a file that cannot be written.
     pub fn report(&self) -> Result<(), RunError> {
-        let (held_out, metrics) = (self.held_out()?, self.metrics()?);
-        let recording = self.recording()?;
-        let simulation = self.simulation(&recording)?;
-        let presses = self.pairs()?;
-        let variants: Vec<VariantRecord> = read_json(&self.stage("training").join("variants.json"))?;
+        let stages = [
+            ("recordings", self.recordings()?),
+            ("simulation", self.simulation()?),
+            ("pairs", self.pairs()?),
+            ("training", self.training()?),
+            ("evaluation", self.evaluation()?),
+        ];
+        let [_, (_, simulation), (_, pairs), (_, training), (_, evaluation)] = &stages;
+        let held_out: HeldOut = read_json(&evaluation.file("evaluation.json"))?;
+        let figures = evaluation.file("metrics.json");
+        let metrics: Metrics = read_json(&figures)?;
+        let simulation = Simulation::read(simulation)?;
+        let presses = read_pairs(pairs)?;
+        let variants: Vec<VariantRecord> = read_json(&training.file("variants.json"))?;
         let report = TwinReport {
-            sensor: &self.sensor.sensor,
+            sensor: &self.sensor().sensor,
             provenance: metrics.provenance,
             evaluation: &held_out.evaluation,
             certainty: metrics.certainty.as_ref(),
@@ -40,32 +42,29 @@ impl Run {
             variants: variants.iter().map(trained).collect(),
             bench: &simulation.bench,
             tables: &simulation.tables,
-            making: self.making()?,
+            making: self.making(&stages)?,
         };
         twintac_report::page(&report).write(&self.report_path())?;
-        let figures = self.stage("evaluation").join("metrics.json");
         let figures = std::fs::read(&figures).map_err(RunError::file("reading", &figures))?;
-        write_file(&self.folder.join("metrics.json"), &figures)
+        Ok(write_file(&self.folder().join("metrics.json"), &figures)?)
     }
 
-    fn making(&self) -> Result<Making, RunError> {
+    fn making(&self, stages: &[(&str, Finished)]) -> Result<Making, RunError> {
         let settings =
-            serde_json::to_string_pretty(&self.record.settings).map_err(|source| RunError::Json {
+            serde_json::to_string_pretty(&self.record().settings).map_err(|source| StoreError::Json {
                 what: "the settings".to_owned(),
                 source,
             })?;
-        let time = |name: &&str| {
-            Some(StageTime {
-                name: (*name).to_owned(),
-                wall_s: read_record(&self.stage(name)).ok()?.wall_time_s,
-            })
+        let time = |(name, stage): &(&str, Finished)| StageTime {
+            name: (*name).to_owned(),
+            wall_s: stage.wall_time_s(),
         };
         Ok(Making {
-            command: self.caller.command.clone(),
-            source: self.record.source.clone(),
-            seed: self.record.seed,
+            command: self.caller().command.clone(),
+            source: self.record().source.clone(),
+            seed: self.record().seed,
             settings,
-            stages: STAGES.iter().filter_map(time).collect(),
+            stages: stages.iter().map(time).collect(),
         })
     }
 }

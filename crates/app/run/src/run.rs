@@ -5,17 +5,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use twintac_recording::Recording;
-use twintac_simulate::Gel;
+use twintac_config::Checked;
 
-use crate::cache::{self, Inputs};
+use twintac_simulate::Gel;
+use twintac_store::{Finished, Keyed, Owner, Stage, Stages, read_json, write_file, write_json};
+
 use crate::doubtful::left_out;
 use crate::error::At;
 use crate::fast::FAST_GEL;
 use crate::fast::tables::FastTables;
-use crate::files::{read_json, write_file, write_json};
 use crate::progress::go_on;
 use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
+
+/// The sensor's description in a run's folder.
+const SENSOR: &str = "sensor.toml";
 
 /// What a run is made from: `run.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -35,21 +38,30 @@ pub struct RunRecord {
 /// [`train`](Self::train), [`evaluate`](Self::evaluate), [`report`](Self::report).
 ///
 /// A stage that is asked for again with the same inputs by the same [`Caller::program`] is not run again. A stage that was killed goes on
-/// with what it had finished.
+/// with what it had finished. A stage reads earlier ones only if they are as they would be made now: otherwise it is refused, and the error says what
+/// differs.
+///
+/// As long as a run is open, no other process can open it.
 #[derive(Clone, Debug)]
 pub struct Run {
-    pub(crate) folder: PathBuf,
-    pub(crate) record: RunRecord,
-    pub(crate) sensor: SensorFile,
-    pub(crate) caller: Caller,
+    folder: PathBuf,
+    record: RunRecord,
+    /// Those of the record, without the path of the fast gel, which the folder has a copy of.
+    settings: RunSettings,
+    /// The same with the default of what comes after the simulation.
+    simulation_settings: RunSettings,
+    sensor: Arc<Keyed<SensorFile>>,
+    fast: Option<Arc<Keyed<FastTables>>>,
+    caller: Caller,
+    owner: Owner,
 }
 
 impl Run {
     /// Starts a run, or takes up the one that the folder holds with new settings: stages that they do not touch are kept. `source` says
-    /// in words where the presses come from.
+    /// in words where the presses come from. The surfaces of the sensor are copied into the folder, and the fast gel of the settings.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// A setting that makes no sense; a folder that cannot be written, or in which another process works; a fast gel of another sensor.
     pub fn start(
         folder: &Path,
         sensor: impl Into<SensorFile>,
@@ -58,48 +70,69 @@ impl Run {
         settings: RunSettings,
         caller: Caller,
     ) -> Result<Self, RunError> {
-        std::fs::create_dir_all(folder).map_err(RunError::file("creating", folder))?;
-        let sensor = sensor.into();
+        settings.checked()?;
+        let owner = Owner::of(folder)?;
+        let path = folder.join(SENSOR);
+        let sensor = sensor.into().kept_as(&path)?;
+        let fast = match &settings.fast_gel {
+            Some(from) => {
+                let (fast, bytes) = FastTables::read(from, &sensor.sensor)?;
+                write_file(&folder.join(FAST_GEL), &bytes)?;
+                Some(Arc::new(fast))
+            }
+            None => None,
+        };
+        for (name, bytes) in sensor.surfaces() {
+            write_file(&folder.join(name), bytes)?;
+        }
+        write_file(&path, sensor.text.as_bytes())?;
         let record = RunRecord {
             sensor: sensor.sensor.name.clone(),
             source: source.to_owned(),
             seed,
             settings,
         };
-        for (name, path) in sensor.surfaces() {
-            let bytes = std::fs::read(&path).map_err(RunError::file("reading", &path))?;
-            write_file(&folder.join(name), &bytes)?;
-        }
-        if let Some(path) = &record.settings.fast_gel {
-            FastTables::read(path, &sensor.sensor)?;
-            let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
-            write_file(&folder.join(FAST_GEL), &bytes)?;
-        }
-        write_file(&folder.join("sensor.toml"), sensor.text.as_bytes())?;
         write_json(&folder.join("run.json"), &record)?;
         Ok(Self {
             folder: folder.to_owned(),
+            settings: without_path(&record.settings),
+            simulation_settings: of_simulation(&record.settings),
             record,
-            sensor,
+            sensor: Arc::new(keyed(sensor)),
+            fast,
             caller,
+            owner,
         })
     }
 
     /// Opens a run that was started.
     ///
     /// # Errors
-    /// [`RunError::NotARun`]; a sensor description that cannot be read.
+    /// [`RunError::NotARun`]; a folder in which another process works; a sensor description or a fast gel that cannot be read.
     pub fn open(folder: &Path, caller: Caller) -> Result<Self, RunError> {
         let record: RunRecord = read_json(&folder.join("run.json")).map_err(|source| RunError::NotARun {
             folder: folder.to_owned(),
-            source: Box::new(source),
+            source: Box::new(source.into()),
         })?;
-        let sensor = SensorFile::read(&folder.join("sensor.toml"))?;
+        let path = folder.join("run.json");
+        record.settings.checked().at(|| path.display().to_string())?;
+        let owner = Owner::of(folder)?;
+        let sensor = SensorFile::read(&folder.join(SENSOR))?;
+        let fast = match &record.settings.fast_gel {
+            Some(_) => Some(Arc::new(
+                FastTables::read(&folder.join(FAST_GEL), &sensor.sensor)?.0,
+            )),
+            None => None,
+        };
         Ok(Self {
             folder: folder.to_owned(),
+            settings: without_path(&record.settings),
+            simulation_settings: of_simulation(&record.settings),
             record,
-            sensor,
+            sensor: Arc::new(keyed(sensor)),
+            fast,
             caller,
+            owner,
         })
     }
 
@@ -142,6 +175,21 @@ impl Run {
         &self.sensor
     }
 
+    /// Settings as an input of stages.
+    pub(crate) fn settings(&self) -> &RunSettings {
+        &self.settings
+    }
+
+    /// Settings as an input of the simulation.
+    pub(crate) fn simulation_settings(&self) -> &RunSettings {
+        &self.simulation_settings
+    }
+
+    /// The sensor as an input of stages.
+    pub(crate) fn keyed_sensor(&self) -> &Keyed<SensorFile> {
+        &self.sensor
+    }
+
     /// The folder of the twin of all presses: what [`digitac::Model::load`] reads.
     #[must_use]
     pub fn model_folder(&self) -> PathBuf {
@@ -160,33 +208,18 @@ impl Run {
         self.folder.join("logs")
     }
 
-    /// The presses, as recorded.
-    ///
-    /// # Errors
-    /// There are none yet, or they cannot be read.
-    pub fn recording(&self) -> Result<Recording, RunError> {
-        let path = self.stage("recordings").join("presses.parquet");
-        Ok(Recording::read_parquet(&path)?)
-    }
-
-    /// The folder of a stage.
-    pub(crate) fn stage(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
-    }
-
     /// The gel as the twin simulates it.
     pub(crate) fn gel(&self) -> Gel {
-        Gel::new(
-            Arc::clone(&self.sensor.sensor),
-            self.record.settings.simulate.clone(),
-        )
+        gel_of(&self.sensor, &self.record.settings)
     }
 
     /// The fast gel whose tables the run uses, if it does.
-    pub(crate) fn fast(&self) -> Result<Option<FastTables>, RunError> {
-        let is_asked_for = self.record.settings.fast_gel.is_some();
-        let read = || FastTables::read(&self.folder.join(FAST_GEL), &self.sensor.sensor);
-        is_asked_for.then(read).transpose()
+    pub(crate) fn fast(&self) -> Option<&Keyed<FastTables>> {
+        self.fast.as_deref()
+    }
+
+    pub(crate) fn caller(&self) -> &Caller {
+        &self.caller
     }
 
     pub(crate) fn progress(&self) -> &dyn Progress {
@@ -198,21 +231,50 @@ impl Run {
         left_out(&self.sensor.sensor)
     }
 
-    /// What every stage depends on.
-    pub(crate) fn inputs(&self) -> Inputs {
-        Inputs::new(&self.caller.program)
+    pub(crate) fn stages(&self) -> Stages<'_> {
+        Stages {
+            root: &self.folder,
+            program: &self.caller.program,
+        }
     }
 
     /// Runs a stage unless it is there, and says so.
-    pub(crate) fn run_stage(
-        &self,
-        name: &str,
-        inputs: Inputs,
-        work: impl FnOnce(&Path) -> Result<(), RunError>,
-    ) -> Result<(), RunError> {
+    pub(crate) fn run_stage<S>(&self, stage: &S) -> Result<Finished, RunError>
+    where
+        S: Stage<Follower = dyn Progress, Error = RunError>,
+    {
         go_on(self.progress())?;
-        let outcome = cache::run(&self.stage(name), inputs, work).at(|| format!("stage `{name}`"))?;
-        self.progress().stage(name, outcome);
-        Ok(())
+        let _turn = self.owner.turn();
+        let made = self.stages().run(stage, &*self.caller.progress);
+        let (outcome, finished) = made.at(|| format!("stage `{}`", S::NAME))?;
+        self.progress().stage(S::NAME, outcome);
+        Ok(finished)
     }
+}
+
+/// The text of a description tells it from every other once its surfaces are called after their contents.
+fn keyed(sensor: SensorFile) -> Keyed<SensorFile> {
+    let text = sensor.text.clone();
+    Keyed::of_bytes(sensor, text.as_bytes())
+}
+
+fn without_path(settings: &RunSettings) -> RunSettings {
+    RunSettings {
+        fast_gel: None,
+        ..settings.clone()
+    }
+}
+
+fn of_simulation(settings: &RunSettings) -> RunSettings {
+    let RunSettings { pair, train, .. } = RunSettings::default();
+    RunSettings {
+        pair,
+        train,
+        ..without_path(settings)
+    }
+}
+
+/// A sensor's gel as settings have it simulated.
+pub(crate) fn gel_of(sensor: &SensorFile, settings: &RunSettings) -> Gel {
+    Gel::new(Arc::clone(&sensor.sensor), settings.simulate.clone())
 }

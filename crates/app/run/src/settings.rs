@@ -1,22 +1,31 @@
-//! Settings of every stage of a run.
+//! Settings of every stage of a run: what people write, and what becomes of it for one sensor and its presses.
 
 use std::path::{Path, PathBuf};
 
-use crate::RunError;
-use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, TrainSettings, Variant};
+use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, Taxels, TrainSettings, Variant};
 use serde::{Deserialize, Serialize};
-use twintac_config::Document;
-use twintac_recording::{Control, Recording};
+use twintac_config::{Checked, ConfigError, Problem, Ranges};
+use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::SimulateSettings;
 
-/// From this many places on, presses are told apart for the split by squares of the gel, not by place: neighbours on a dense grid
-/// know too much of each other.
-const DENSE_FROM: usize = 150;
+use crate::RunError;
+use crate::doubtful::left_out;
 
-/// Side of those squares, mm.
-const DENSE_BLOCK_MM: f64 = 3.0;
+/// What is no setting though it sounds like one, and what decides it.
+const DECIDED: [(&str, &str); 4] = [
+    ("split.seed", "the run's seed decides it: `--seed`"),
+    ("train.seed", "the run's seed decides it: `--seed`"),
+    (
+        "bench.left_out",
+        "the sensor's description decides it: which taxels are `doubtful`",
+    ),
+    (
+        "bench.ports_mm",
+        "the sensor's description decides it: `position_mm` of its taxels; `smooth_factor = false` does without",
+    ),
+];
 
 /// Settings of every stage of a run; each has a default. A TOML file with those that differ has a table for each field.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -37,6 +46,63 @@ pub struct RunSettings {
     pub pair: PairSettings,
     /// How twins are trained.
     pub train: TrainSettings,
+}
+
+impl Checked for RunSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            simulate,
+            fast_gel: _,
+            places,
+            bench,
+            split,
+            pair,
+            train,
+        } = self;
+        ranges.inside("simulate", simulate);
+        ranges.inside("places", places);
+        ranges.inside("bench", bench);
+        ranges.inside("split", split);
+        ranges.inside("pair", pair);
+        ranges.inside("train", train);
+    }
+}
+
+/// A file of settings of the simulation alone, for commands that only simulate.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct SimulateFile {
+    simulate: SimulateSettings,
+}
+
+impl Checked for SimulateFile {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self { simulate } = self;
+        ranges.inside("simulate", simulate);
+    }
+}
+
+/// Settings of the simulation but for those of the file's table `[simulate]`, if there is a file.
+///
+/// # Errors
+/// A file that cannot be read or has another table, a field that there is not, a value that makes no sense.
+pub fn simulate_settings(base: SimulateSettings, path: Option<&Path>) -> Result<SimulateSettings, RunError> {
+    let Some(path) = path else {
+        return Ok(base);
+    };
+    let read = twintac_config::read_over(path, &SimulateFile { simulate: base });
+    let file = read.map_err(|error| {
+        let tables = ["fast_gel", "places", "bench", "split", "pair", "train"];
+        if tables.contains(&&error.field[..]) {
+            return ConfigError {
+                problem: "is not used by this command, which simulates and does nothing else".to_owned(),
+                hint: "keep the table [simulate] alone".to_owned(),
+                ..error
+            };
+        }
+        error
+    })?;
+    Ok(file.checked()?.simulate)
 }
 
 impl RunSettings {
@@ -65,7 +131,8 @@ impl RunSettings {
         let Some(path) = path else {
             return Ok(self);
         };
-        checked(twintac_config::read_over(path, &self)?)
+        let document = twintac_config::read_over(path, &self).map_err(decided)?;
+        Ok(document.checked()?)
     }
 
     /// These settings but for those of a TOML text, which `file` names in errors.
@@ -73,51 +140,102 @@ impl RunSettings {
     /// # Errors
     /// A field that there is not, a value that makes no sense.
     pub fn but_parsed(self, file: &str, text: &str) -> Result<Self, RunError> {
-        checked(twintac_config::parse_over(file, text, &self)?)
+        let document = twintac_config::parse_over(file, text, &self).map_err(decided)?;
+        Ok(document.checked()?)
     }
 
-    /// The settings with all that depends on the seed, the sensor and the presses filled in.
-    pub(crate) fn resolve(&self, sensor: &Sensor, recording: &Recording, n_places: usize, seed: u64) -> Self {
-        let mut resolved = self.clone();
-        resolved.split.seed = seed;
-        resolved.train.seed = seed;
-        resolved.bench.left_out = crate::doubtful::left_out(sensor);
-        resolved.bench.ports_mm = ports_mm(sensor);
-        if !has_unknown_tip(sensor, recording) {
-            resolved.bench.tip_radii_mm.clear();
+    /// The settings with all that depends on the sensor, its presses and the seed filled in.
+    pub(crate) fn resolve(
+        &self,
+        sensor: &Sensor,
+        recording: &Recording,
+        seed: u64,
+        is_fast: bool,
+    ) -> Result<ResolvedSettings, Problem> {
+        self.checked()?;
+        let Self {
+            simulate: _, // as it is
+            fast_gel: _, // it has its own input
+            places,
+            mut bench,
+            split,
+            pair,
+            mut train,
+        } = self.clone();
+        match (&bench.tip_radii_mm, has_unknown_tip(sensor, recording)) {
+            (None, true) => bench.tip_radii_mm = Some(BenchSettings::UNKNOWN_TIP_RADII_MM.to_vec()),
+            (Some(radii_mm), false) if !radii_mm.is_empty() => {
+                return Err(Problem::new(
+                    "bench.tip_radii_mm",
+                    "is of no use: it is fitted to presses with one ball whose radius the sensor's description only infers",
+                    "leave it out, or say in the description that the radius is `inferred`",
+                ));
+            }
+            _ => {}
         }
-        if self.fast_gel.is_some() {
-            // It has no stress features.
-            resolved
-                .train
-                .variants
-                .retain(|variant| *variant != Variant::Paper);
+        if is_fast {
+            train.variants = Some(without_paper(train.variants)?);
         }
-        if n_places >= DENSE_FROM {
-            resolved.split.block_mm = DENSE_BLOCK_MM;
-        }
-        resolved
+        Ok(ResolvedSettings {
+            places,
+            bench,
+            split,
+            pair,
+            train,
+            seed,
+            taxels: taxels(sensor),
+        })
     }
 }
 
-/// The settings, if their simulation can be.
-fn checked(document: Document<RunSettings>) -> Result<RunSettings, RunError> {
-    let simulate = &document.value.simulate;
-    for (field, value) in [
-        ("edges_per_height", simulate.edges_per_height),
-        ("edges_per_contact_radius", simulate.edges_per_contact_radius),
-        ("contact_edge_mm", simulate.contact_edge_mm.unwrap_or(1.0)),
-        ("edges_per_rounding", simulate.edges_per_rounding),
-        ("depth_step_mm", simulate.depth_step_mm),
-    ] {
-        if value <= 0.0 || !value.is_finite() {
-            let field = format!("simulate.{field}");
-            return Err(document
-                .error(&field, format!("is {value}"), "give a number above zero")
-                .into());
-        }
+/// What stages compute from: settings for one sensor, its presses and a seed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ResolvedSettings {
+    pub(crate) places: PlaceSettings,
+    pub(crate) bench: BenchSettings,
+    pub(crate) split: SplitSettings,
+    pub(crate) pair: PairSettings,
+    pub(crate) train: TrainSettings,
+    /// Of all that chance decides.
+    pub(crate) seed: u64,
+    /// What the sensor's description says of its taxels.
+    pub(crate) taxels: Taxels,
+}
+
+/// What can be trained on a fast gel, which has no stress features.
+fn without_paper(variants: Option<Vec<Variant>>) -> Result<Vec<Variant>, Problem> {
+    match variants {
+        Some(variants) if variants.contains(&Variant::Paper) => Err(Problem::new(
+            "train.variants",
+            "names the paper's network, which reads stresses, and a fast gel does not know them",
+            "leave `paper` or `fast_gel` out",
+        )),
+        Some(variants) => Ok(variants),
+        None => Ok(Variant::ALL
+            .into_iter()
+            .filter(|variant| *variant != Variant::Paper)
+            .collect()),
     }
-    Ok(document.value)
+}
+
+/// Says what decides what somebody took for a setting.
+fn decided(error: ConfigError) -> ConfigError {
+    match DECIDED.iter().find(|(field, _)| *field == error.field) {
+        Some((_, hint)) => ConfigError {
+            problem: "is an unknown field".to_owned(),
+            hint: (*hint).to_owned(),
+            ..error
+        },
+        None => error,
+    }
+}
+
+/// What a sensor's description says of its taxels.
+pub(crate) fn taxels(sensor: &Sensor) -> Taxels {
+    Taxels {
+        ports_mm: ports_mm(sensor),
+        left_out: left_out(sensor),
+    }
 }
 
 /// Places of the ports in the gel's plane, mm.
@@ -143,10 +261,186 @@ fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
     })
 }
 
-/// Whether the presses are static: one frame each, under a prescribed force.
-pub(crate) fn is_static(recording: &Recording) -> bool {
-    recording
-        .presses
-        .iter()
-        .all(|press| press.control == Control::Force && press.time_s.len() == 1)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every number of every table, also of those fields that are left out by default.
+    const ALL: &str = "
+[simulate]
+contact_edge_mm = 0.5
+[bench]
+tip_radii_mm = [2.0, 3.6, 6.5]
+[split]
+block_mm = 0.1
+teaching_places = 8
+";
+
+    /// Zero means something here: it switches off what the field is about.
+    const ZERO_IS_NONE: [&str; 16] = [
+        "bench.contact_offset_limit_mm",
+        "bench.n_blocks",
+        "bench.port_radius_limit_mm",
+        "bench.port_shift_limit_mm",
+        "bench.port_shift_pull",
+        "bench.smooth_factor_pull",
+        "pair.warp.believed_below",
+        "pair.warp.smoothing_s",
+        "pair.warp.step_cost",
+        "pair.warp.window_s",
+        "simulate.solver.friction",
+        "simulate.solver.obstacle_friction",
+        "train.correction_limit",
+        "train.correction_noise",
+        "train.paper_noise",
+        "train.weight_decay",
+    ];
+
+    fn parse(text: &str) -> Result<RunSettings, RunError> {
+        RunSettings::default().but_parsed("a.toml", text)
+    }
+
+    fn refused(text: &str) -> ConfigError {
+        match parse(text) {
+            Err(RunError::Config(error)) => error,
+            other => panic!("{text}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn every_number_has_a_range() {
+        let all = toml::to_string(&parse(ALL).unwrap()).unwrap();
+        let mut accepted = std::collections::BTreeSet::new();
+        let mut n_numbers = 0;
+        for wrong in [-1.0, 1e300, 1e-300, f64::NAN, f64::INFINITY, 0.0] {
+            for (field, text) in twintac_config::with_each_number(&all, wrong) {
+                n_numbers += 1;
+                match parse(&text) {
+                    Ok(_) => {
+                        assert_eq!(wrong, 0.0, "{field}");
+                        accepted.insert(field);
+                    }
+                    Err(RunError::Config(error)) => {
+                        assert_eq!(error.field, field, "{wrong}: {error}");
+                        assert!(error.line > 0 && error.to_string().starts_with("a.toml:"));
+                    }
+                    Err(other) => panic!("{field} = {wrong}: {other}"),
+                }
+            }
+        }
+        assert!(n_numbers >= 6 * 50, "{n_numbers}");
+        assert_eq!(accepted, ZERO_IS_NONE.into_iter().map(str::to_owned).collect());
+    }
+
+    #[test]
+    fn defaults_are_in_their_ranges() {
+        assert_eq!(RunSettings::default().checked(), Ok(()));
+        assert_eq!(RunSettings::fine().checked(), Ok(()));
+    }
+
+    #[test]
+    fn what_something_else_decides_is_no_setting_and_the_error_says_what_does() {
+        for (text, field, hint) in [
+            ("[split]\nseed = 3\n", "split.seed", "--seed"),
+            ("[train]\nepochs = 5\nseed = 3\n", "train.seed", "--seed"),
+            ("[bench]\nleft_out = [1]\n", "bench.left_out", "doubtful"),
+            (
+                "[bench]\nports_mm = [[0.0, 1.0]]\n",
+                "bench.ports_mm",
+                "position_mm",
+            ),
+        ] {
+            let error = refused(text);
+            assert_eq!((&error.field[..], error.line), (field, text.lines().count()));
+            assert!(
+                error.to_string().contains("unknown field") && error.hint.contains(hint),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_nobody_means_is_refused_with_line_field_value_and_range() {
+        for (text, expected) in [
+            (
+                "[bench]\nn_places = 0\n",
+                "a.toml:2: `bench.n_places` is 0; give 1 to 10000",
+            ),
+            (
+                "[simulate]\nmax_nodes = 0\n",
+                "a.toml:2: `simulate.max_nodes` is 0; give 100 to 1000000",
+            ),
+            (
+                "[pair.warp]\nwindow_s = -3\n",
+                "a.toml:2: `pair.warp.window_s` is -3; give 0, or 0.001 to 10",
+            ),
+            (
+                "[bench]\ntip_radii_mm = [0.001, 900]\n",
+                "a.toml:2: `bench.tip_radii_mm[0]` is 0.001; give 0.1 to 100",
+            ),
+            (
+                "[bench]\nport_shift_limit_mm = -5\n",
+                "a.toml:2: `bench.port_shift_limit_mm` is -5; give 0, or 0.001 to 5",
+            ),
+            (
+                "[train]\ncorrection_hidden = [1000000000, 1000000000]\n",
+                "a.toml:2: `train.correction_hidden[0]` is 1e9; give 1 to 1024",
+            ),
+            (
+                "[places]\nmargin_mm = 1e6\n",
+                "a.toml:2: `places.margin_mm` is 1000000; give 0.01 to 5",
+            ),
+            (
+                "[simulate]\ndepth_step_mm = 1e-9\n",
+                "a.toml:2: `simulate.depth_step_mm` is 1e-9; give 0.01 to 5",
+            ),
+            (
+                "[train]\nvariants = []\n",
+                "a.toml:2: `train.variants` is []; name one variant or more, each once",
+            ),
+        ] {
+            assert_eq!(refused(text).to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn a_command_that_only_simulates_takes_no_other_table() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        std::fs::write(&path, "[simulate]\nmax_nodes = 900\n").unwrap();
+        let read = || simulate_settings(SimulateSettings::fine(), Some(&path));
+        assert_eq!(read().unwrap().max_nodes, 900);
+        assert_eq!(
+            read().unwrap().edges_per_height,
+            SimulateSettings::fine().edges_per_height
+        );
+        for text in [
+            "[train]\nepochs = 3\n",
+            "fast_gel = \"a\"\n",
+            "[simulate]\n[bench]\n",
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let error = read().unwrap_err().to_string();
+            assert!(error.contains("is not used by this command"), "{error}");
+        }
+        std::fs::write(&path, "[simulate]\nmax_nodes = 0\n").unwrap();
+        assert!(
+            read()
+                .unwrap_err()
+                .to_string()
+                .contains("`simulate.max_nodes` is 0")
+        );
+    }
+
+    #[test]
+    fn what_a_fast_gel_cannot_teach_is_left_out_or_refused() {
+        let all = without_paper(None).unwrap();
+        assert_eq!(all.len(), Variant::ALL.len() - 1);
+        assert_eq!(
+            without_paper(Some(vec![Variant::Pressure])),
+            Ok(vec![Variant::Pressure])
+        );
+        let error = without_paper(Some(vec![Variant::Pressure, Variant::Paper])).unwrap_err();
+        assert_eq!(error.field, "train.variants");
+    }
 }

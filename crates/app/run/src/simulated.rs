@@ -104,7 +104,7 @@ fn write_frame(path: &Path, fields: &Fields<'_>) -> Result<(), RunError> {
             values: Values::Scalar(&fields.von_mises_kpa),
         },
     ];
-    write_file(path, vtk::write(&mesh, &fields, &[])?.as_bytes())
+    Ok(write_file(path, vtk::write(&mesh, &fields, &[])?.as_bytes())?)
 }
 
 /// Force and pressures along a path.

@@ -10,7 +10,7 @@ use digitac::{
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::{Press, Provenance, Recording};
-use twintac_simulate::Gel;
+use twintac_sensor::Sensor;
 
 use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
@@ -53,7 +53,8 @@ pub struct UnseenEvaluation {
 /// and scores the rest.
 ///
 /// # Errors
-/// A model that cannot be read, or that reads other taxels; presses that taught the model; a place that cannot be pressed.
+/// A model that cannot be read, recordings of another sensor than its own; presses that taught the
+/// model; a place that cannot be pressed.
 pub fn evaluate_elsewhere(
     model_folder: &Path,
     recording: &Recording,
@@ -61,15 +62,12 @@ pub fn evaluate_elsewhere(
 ) -> Result<UnseenEvaluation, RunError> {
     let model = Model::load(model_folder)?;
     let record = &model.record;
-    refuse_other_taxels(recording, record)?;
-    refuse_known(recording, record)?;
     let gel = gel_of(&model, model_folder)?;
+    refuse_other_sensor(recording, gel.sensor())?;
+    refuse_known(recording, record)?;
     let left_out = left_out(gel.sensor());
-    let folder = tempfile::tempdir().map_err(RunError::file(
-        "making",
-        Path::new("a temporary folder for simulations"),
-    ))?;
-    let (places, tables) = simulate(&gel, recording, &record.bench, folder.path(), progress)?;
+    let store = DepthTableStore::of(gel.clone(), progress)?;
+    let (places, tables) = simulate(&store, recording, &record.bench, progress)?;
     let pressed = Pressed {
         recording,
         places: &places,
@@ -103,14 +101,30 @@ pub fn evaluate_elsewhere(
     })
 }
 
-/// A model reads the taxels that it was trained with.
-pub(crate) fn refuse_other_taxels(recording: &Recording, record: &ModelRecord) -> Result<(), RunError> {
-    if recording.taxels == record.taxels {
+/// A model is of one sensor, by name and by taxels: sensors whose taxels have the same names may
+/// have other gels. Recordings without a press say nothing.
+pub(crate) fn refuse_other_sensor(recording: &Recording, sensor: &Sensor) -> Result<(), RunError> {
+    if recording.presses.is_empty() {
+        return Err(RunError::Input(format!(
+            "the recordings of `{}` have no press: give some that have",
+            recording.sensor
+        )));
+    }
+    if recording.sensor != sensor.name {
+        return Err(RunError::Input(format!(
+            "the recordings are of the sensor `{}`, not of `{}`; if they call the same sensor otherwise, say so with --recorded-as {}",
+            recording.sensor, sensor.name, recording.sensor
+        )));
+    }
+    let taxels = sensor.taxels.iter().map(|taxel| &taxel.name);
+    if recording.taxels.iter().eq(taxels.clone()) {
         return Ok(());
     }
     Err(RunError::Input(format!(
-        "the model reads taxels {:?}, the recordings have {:?}",
-        record.taxels, recording.taxels
+        "the sensor `{}` has taxels {:?}, the recordings have {:?}",
+        sensor.name,
+        taxels.collect::<Vec<_>>(),
+        recording.taxels
     )))
 }
 
@@ -133,17 +147,15 @@ pub(crate) fn refuse_known(recording: &Recording, record: &ModelRecord) -> Resul
     )))
 }
 
-/// A table over depth for each place that a recording presses; tables are kept in a folder.
+/// A table over depth for each place that a recording presses.
 pub(crate) fn simulate(
-    gel: &Gel,
+    store: &DepthTableStore<'_>,
     recording: &Recording,
     bench: &BenchEstimate,
-    folder: &Path,
     progress: &dyn Progress,
 ) -> Result<(Places, Vec<DepthTable>), RunError> {
     let _work = Work::start(progress, "simulating", 0);
-    let store = DepthTableStore::new(gel, folder.to_owned(), progress);
-    let places = Places::of(recording, &store, &digitac::PlaceSettings::default())?.at_bench(bench);
+    let places = Places::of(recording, store, &digitac::PlaceSettings::default())?.at_bench(bench);
     let tables = store.depth_tables(&places.requests)?;
     Ok((places, tables))
 }

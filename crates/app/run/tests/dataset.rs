@@ -263,6 +263,30 @@ fn what_does_not_fit_is_said() {
         sensor: Some(strip),
         ..fast(1)
     });
-    assert!(text.contains("ports are elsewhere"), "{text}");
+    assert!(text.contains("number of ports: 8, the sensor's 4"), "{text}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn the_fast_gel_of_another_gel_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |from: &str, to: &str| {
+        let text = twintac_run::SensorFile::phystac().unwrap().text.clone();
+        assert!(text.contains(from));
+        let sensor = folder.path().join("mine.toml");
+        fs::write(&sensor, text.replace(from, to)).unwrap();
+        let plan = DatasetPlan {
+            sensor: Some(sensor),
+            ..fast(2)
+        };
+        Dataset::open(&plan).err().map(|error| error.to_string())
+    };
+    let stiff = of("shear_modulus_kpa = 15.2", "shear_modulus_kpa = 64.5").unwrap();
+    assert!(
+        stiff.contains("45.4 kPa") && stiff.contains("192.9 kPa"),
+        "{stiff}"
+    );
+    let low = of("size_mm = [34.0, 18.0, 8.5]", "size_mm = [34.0, 18.0, 4.0]").unwrap();
+    assert!(low.contains("8.5 mm high") && low.contains("4 mm high"), "{low}");
+    assert_eq!(of("name = \"phystac\"", "name = \"mine\""), None);
 }

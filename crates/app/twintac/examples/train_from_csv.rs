@@ -23,13 +23,14 @@ pub fn train(folder: &Path) -> Result<Metrics, Error> {
     run.import(&data.join("import.toml"), &[data.join("presses.csv")])?;
     let metrics = run.finish()?;
 
-    println!(
-        "{} ({} data): the twin errs by {:.1} % on {} presses that it never saw, see {}",
-        metrics.sensor,
-        metrics.provenance,
-        metrics.twin.overall.nearest_in_contact_percent,
-        metrics.held_out_presses,
-        run.report_path().display()
-    );
+    if let Some(percent) = metrics.twin.overall.nearest_in_contact_percent {
+        println!(
+            "{} ({} data): the twin errs by {percent:.1} % on {} presses that it never saw, see {}",
+            metrics.sensor,
+            metrics.provenance,
+            metrics.held_out_presses,
+            run.report_path().display()
+        );
+    }
     Ok(metrics)
 }

@@ -48,6 +48,10 @@ pub enum Error {
     #[cfg(feature = "fast")]
     #[error(transparent)]
     Fast(#[from] twintac_fast::FastFileError),
+    /// A fast twin is not that of a sensor.
+    #[cfg(feature = "fast")]
+    #[error(transparent)]
+    FastMismatch(#[from] twintac_fast::FastGelMismatch),
     /// A sensor cannot be read.
     #[cfg(feature = "live")]
     #[error(transparent)]
@@ -91,7 +95,14 @@ impl Error {
             #[cfg(feature = "fast")]
             Self::Inverse(twintac_inverse::InverseError::Shape(error)) => of_shape(error),
             #[cfg(feature = "fast")]
-            Self::Inverse(twintac_inverse::InverseError::Setting { field, .. }) => of_field(field),
+            Self::Inverse(
+                twintac_inverse::InverseError::Setting(problem)
+                | twintac_inverse::InverseError::Frame(problem),
+            ) => of_field(&problem.field),
+            #[cfg(feature = "tasks")]
+            Self::Task(twintac_tasks::TaskError::Count { .. }) => of_field("n_environments"),
+            #[cfg(feature = "map")]
+            Self::Map(twintac_map::MapError::Input { .. }) => of_field("readings_kpa"),
             #[cfg(feature = "map")]
             Self::Picture(
                 twintac_plot::PlotError::Format { path } | twintac_plot::PlotError::Write { path, .. },
@@ -120,6 +131,7 @@ fn of_shape(error: &twintac_shape::ShapeError) -> ErrorPlace {
 fn of_simulation(error: &twintac_simulate::SimulateError) -> ErrorPlace {
     match error {
         twintac_simulate::SimulateError::NoIndenter { .. } => of_field("indenter"),
+        twintac_simulate::SimulateError::ForceLimit { .. } => of_field("force_n"),
         _ => ErrorPlace::default(),
     }
 }
@@ -128,6 +140,7 @@ fn of_simulation(error: &twintac_simulate::SimulateError) -> ErrorPlace {
 fn of_twin(error: &digitac::DigitacError) -> ErrorPlace {
     match error {
         digitac::DigitacError::File { path, .. } | digitac::DigitacError::Model { path, .. } => of_file(path),
+        digitac::DigitacError::Setting(problem) => of_field(&problem.field),
         _ => ErrorPlace::default(),
     }
 }
@@ -172,16 +185,18 @@ fn of_recording(error: &twintac_recording::RecordingError) -> ErrorPlace {
 
 #[cfg(feature = "run")]
 fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
-    use twintac_run::RunError as Wrong;
+    use twintac_run::{RunError as Wrong, StoreError};
     let path = match error {
         Wrong::In { source, .. } => return of_run(source),
         Wrong::Config(error) => return of_description(error),
+        Wrong::Setting(problem) => return of_field(&problem.field),
         Wrong::Recording(error) => return of_recording(error),
         Wrong::Shape(error) => return of_shape(error),
         Wrong::Simulate(error) => return of_simulation(error),
         Wrong::Twin(error) => return of_twin(error),
-        Wrong::File { path, .. } | Wrong::Damaged { path, .. } | Wrong::Csv { path, .. } => path,
-        Wrong::NotARun { folder, .. } | Wrong::Unfinished { folder, .. } => folder,
+        Wrong::Store(StoreError::File { path, .. } | StoreError::Damaged { path, .. })
+        | Wrong::Csv { path, .. } => path,
+        Wrong::Store(StoreError::InUse { folder, .. }) | Wrong::NotARun { folder, .. } => folder,
         _ => return ErrorPlace::default(),
     };
     of_file(path.display())

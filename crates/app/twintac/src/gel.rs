@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use twintac_protocol::PressPath;
 use twintac_simulate::{Followed, GelState, Keyframe, PressPlace, SimulateSettings};
 
@@ -122,7 +123,7 @@ impl Gel {
 }
 
 /// A simulated press, from first touch to full depth.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pressed {
     frames: Vec<PressFrame>,
     deepest: PressFrame,

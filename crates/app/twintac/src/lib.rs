@@ -42,7 +42,7 @@
 //! | [`Twin`], [`Prediction`] | a trained twin, and what it would read along a press | `twin` |
 //! | [`TwinAtPlace`], [`TwinState`] | a twin that is stepped frame by frame: at one place, or with port pressures, for thousands of sensors | `twin` |
 //! | [`FastGel`], [`FastBatch`], [`Friction`] | the gel without finite elements: microseconds a reading, thousands of sensors in one call; friction of what slides | `fast` |
-//! | [`SensorBatch`], [`Imperfection`], [`Coupling`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
+//! | [`SensorBatch`], [`Imperfection`], [`CoupledBatch`] | the same with a twin's gains and memory, with what no two sensors have alike, and with friction of bodies that move freely | `sensors` |
 //! | [`Tasks`], [`Kind`] | many environments of a task for reinforcement learning | `tasks` |
 //! | [`Inverse`], [`Tracker`], [`Contact`] | from readings back to what touches: place, depth, force, which of the known shapes | `fast` |
 //! | [`Locator`], [`LocatorTracker`] | the same by a trained twin, whose memory is taken off the readings | `run` |
@@ -89,7 +89,9 @@
 //!
 //! let run = Run::demo(Path::new("runs/demo"), 1, Caller::default())?;
 //! let metrics = run.finish()?;
-//! println!("errs by {:.1} % on presses that it never saw", metrics.twin.overall.nearest_in_contact_percent);
+//! if let Some(percent) = metrics.twin.overall.nearest_in_contact_percent {
+//!     println!("errs by {percent:.1} % on presses that it never saw");
+//! }
 //! let twin = Twin::load(run.model_folder())?;
 //! let predicted = twin.predict(&Press::with("sphere-25").depth_mm(1.2).hold_s(1.0))?;
 //! println!("{:?} kPa at first touch", predicted.readings_kpa[0]);
@@ -140,7 +142,7 @@
 //! let ball = KnownShape { name: "ball".into(), shape: Shape::Sphere { radius_mm: 5.0 } };
 //! let inverse = Inverse::of_fast_gel(&FastGel::phystac()?, &[ball], &Default::default(), InverseSettings::default())?;
 //! let mut tracker = inverse.start();
-//! if let Some(contact) = tracker.update(0.01, &[0.1, 0.9, 1.0, 0.1, 0.8, 8.7, 0.9, 0.2]) {
+//! if let Some(contact) = tracker.update(0.01, &[0.1, 0.9, 1.0, 0.1, 0.8, 8.7, 0.9, 0.2])? {
 //!     println!("{:.1} mm, {:.2} mm deep, {:.2} N", contact.place_mm, contact.depth_mm, contact.force_n);
 //! }
 //! # }
@@ -193,7 +195,9 @@ pub use twin::Twin;
 pub use digitac::{Prediction, PressCertainty, TwinAtPlace, TwinState};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
-pub use twintac_fast::{Body, FastBatch, FastFileError, FastGel, FastReader, Friction, Touch};
+pub use twintac_fast::{
+    Body, FastBatch, FastFileError, FastGel, FastGelMismatch, FastReader, Friction, Touch,
+};
 #[cfg(feature = "fast")]
 pub use twintac_inverse::{
     Contact, FastModel, FloorMap, Inverse, InverseError, InverseSettings, KnownShape, ReadingTable,
@@ -213,8 +217,11 @@ pub use twintac_run::{
 };
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
-pub use twintac_sensors::{Coupling, Imperfection, SensorBatch};
-pub use twintac_shape::{Part, Pose, Shape, Surfaces, TriangleSurface};
+pub use twintac_sensors::{
+    CoupledBatch, Coupling, HeldTouch, Imperfection, SensorBatch, SensorState, TouchId, TouchedTwice,
+    most_sensors,
+};
+pub use twintac_shape::{LengthUnit, Part, Pose, Shape, SurfaceFile, Surfaces, TriangleSurface};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "tasks")]
 pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};

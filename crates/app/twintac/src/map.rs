@@ -11,19 +11,32 @@ use crate::{Error, Sensor};
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressureMap {
     map: twintac_map::PressureMap,
+    /// Of the taxels that have a reading.
     taxels_mm: Vec<[f64; 2]>,
+    missing: Vec<String>,
     title: String,
 }
 
 impl PressureMap {
-    /// The map through readings of a sensor above its unloaded baseline, kPa; `[n_taxels]`. It has 96 columns and 64 rows.
+    /// The map through readings of a sensor above its unloaded baseline, kPa; `[n_taxels]`. It has 96 columns and 64 rows. A taxel without a reading, NaN, is left out: the map
+    /// is that of the other taxels, and NaN everywhere if there is none.
     ///
     /// # Errors
-    /// Another number of readings than the sensor has taxels.
+    /// Another number of readings than the sensor has taxels; a reading that is infinite.
     pub fn of(sensor: &Sensor, readings_kpa: &[f64]) -> Result<Self, Error> {
         let described = &*sensor.file().sensor;
         let place = |taxel: &twintac_sensor::Taxel| [taxel.position_mm.x, taxel.position_mm.y];
         let taxels_mm: Vec<[f64; 2]> = described.taxels.iter().map(place).collect();
+        let (answering, missing): (Vec<_>, Vec<_>) = described
+            .taxels
+            .iter()
+            .zip(readings_kpa)
+            .partition(|(_, reading)| !reading.is_nan());
+        let missing: Vec<String> = missing.into_iter().map(|(taxel, _)| taxel.name.clone()).collect();
+        let without = match missing.as_slice() {
+            [] => String::new(),
+            names => format!(", without {}", names.join(", ")),
+        };
         let (low, high) = described.gel.solid.bounds_mm(&described.surfaces);
         let gel = Rectangle {
             min_mm: [low.x, low.y],
@@ -33,8 +46,9 @@ impl PressureMap {
         let settings = MapSettings::default();
         Ok(Self {
             map: pressure_map(&taxels_mm, readings_kpa, &baseline_kpa, gel, &settings)?,
-            taxels_mm,
-            title: sensor.name().to_owned(),
+            taxels_mm: answering.into_iter().map(|(taxel, _)| place(taxel)).collect(),
+            title: format!("Pressure on {}{without}", sensor.name()),
+            missing,
         })
     }
 
@@ -44,13 +58,19 @@ impl PressureMap {
         &self.map.pressure_kpa
     }
 
+    /// Names of the taxels that had no reading: the map was made without them.
+    #[must_use]
+    pub fn missing(&self) -> &[String] {
+        &self.missing
+    }
+
     /// Columns and rows.
     #[must_use]
     pub fn grid(&self) -> [usize; 2] {
         self.map.grid
     }
 
-    /// Draws the map, with the taxels marked, into a file: `.svg` or `.png`.
+    /// Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
     ///
     /// # Errors
     /// A name with another ending; a file that cannot be written.
@@ -58,7 +78,7 @@ impl PressureMap {
         Ok(self.scene().write(path.as_ref())?)
     }
 
-    /// The map as a picture, with the taxels marked: the text of an SVG file.
+    /// The map as a picture, with the taxels that have a reading marked: the text of an SVG file.
     #[must_use]
     pub fn svg(&self) -> String {
         twintac_plot::svg(&self.scene())
@@ -73,7 +93,7 @@ impl PressureMap {
             values: self.map.pressure_kpa.clone(),
         };
         let maps = HeatMaps {
-            title: format!("Pressure on {}", self.title),
+            title: self.title.clone(),
             maps: vec![map],
             unit: "kPa".to_owned(),
             marks_mm: self.taxels_mm.clone(),

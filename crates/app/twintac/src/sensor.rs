@@ -1,5 +1,6 @@
 //! A sensor as it is described.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use twintac_sensor::SensorFile;
@@ -37,6 +38,22 @@ impl Sensor {
         Ok(SensorFile::read(path.as_ref())?.into())
     }
 
+    /// A description (TOML), as if it stood in the file `path`, with the surfaces that it names: the corners of their triangles, mm.
+    ///
+    /// # Errors
+    /// A description that is wrong, with the line and the field; a surface that is missing, or not closed.
+    pub fn with_surfaces(
+        path: &Path,
+        text: &str,
+        surfaces: &BTreeMap<String, Vec<[[f64; 3]; 3]>>,
+    ) -> Result<Self, Error> {
+        let load = |name: &str| match surfaces.get(name) {
+            Some(triangles) => Ok(stl(triangles)),
+            None => Err(std::io::ErrorKind::NotFound.into()),
+        };
+        Ok(SensorFile::parse_with(path, text, &load)?.into())
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -58,6 +75,18 @@ impl Sensor {
     pub fn file(&self) -> &SensorFile {
         &self.file
     }
+}
+
+/// A surface as an STL file, to the last bit.
+fn stl(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
+    let mut text = "solid surface\n".to_owned();
+    for corners in triangles {
+        let vertices = corners
+            .map(|[x, y, z]| format!("vertex {x:?} {y:?} {z:?}\n"))
+            .concat();
+        text += &format!("facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n");
+    }
+    (text + "endsolid surface\n").into_bytes()
 }
 
 impl From<SensorFile> for Sensor {

@@ -93,19 +93,28 @@ impl Twin {
         Ok(digitac::at_place(twin, bench, &self.gel, &press.plan)?)
     }
 
-    /// So many sensors with this twin's gains and memory, over a fast gel of the same sensor, to be stepped with what touches them. See
-    /// [`SensorBatch::new`] for the panics.
+    /// So many sensors with this twin's gains and memory, over a fast gel of the same sensor, to be
+    /// stepped with what touches them.
+    ///
+    /// # Errors
+    /// The fast gel of another gel, or of ports elsewhere.
     #[cfg(feature = "sensors")]
-    #[must_use]
     pub fn sensors(
         &self,
         gel: &FastGel,
         imperfection: Imperfection,
         [n_sensors, n_threads]: [usize; 2],
         seed: u64,
-    ) -> SensorBatch {
+    ) -> Result<SensorBatch, Error> {
+        gel.check(&self.sensor.file().sensor)?;
         let twin = Some(&self.model.twin);
-        SensorBatch::new(gel, twin, imperfection, [n_sensors, n_threads], seed)
+        Ok(SensorBatch::new(
+            gel,
+            twin,
+            imperfection,
+            [n_sensors, n_threads],
+            seed,
+        ))
     }
 
     /// Twins of so many sensors, to be stepped together with pressures at their ports, for programs that solve the gel themselves: one sensor,

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 
 /// Writes under a temporary name first: files are there in full or not at all.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    twintac_files::write_whole(path, bytes).with_context(|| format!("writing {}", path.display()))
+    twintac_store::write_whole(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
 /// The most memory that this process held, MiB.

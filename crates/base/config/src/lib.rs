@@ -11,13 +11,18 @@
 //! assert_eq!(error.to_string(), "gel.toml:2: `height_mm` is -1 mm; give a height above zero");
 //! ```
 
+mod checked;
 mod place;
+mod tried;
 
 use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::de::DeTable;
+
+pub use checked::{Checked, Number, Problem, Ranges};
+pub use tried::with_each_number;
 
 /// A parsed file together with its text, so that later findings can name the line.
 #[derive(Clone, Debug)]

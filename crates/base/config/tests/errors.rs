@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // also in the helpers of tests
 
 use serde::Deserialize;
-use twintac_config::{ConfigError, parse, read};
+use twintac_config::{Checked, ConfigError, Ranges, parse, read};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -168,5 +168,80 @@ fn a_file_that_cannot_be_read() {
     assert!(
         found.to_string().starts_with("no/such.toml: cannot be read: "),
         "{found}"
+    );
+}
+
+#[derive(Deserialize)]
+struct Fit {
+    limits_mm: Vec<f64>,
+    tip: Size,
+}
+
+#[derive(Deserialize)]
+struct Size {
+    n_places: usize,
+    shift_mm: f64,
+}
+
+impl Checked for Fit {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self { limits_mm, tip } = self;
+        ranges.numbers("limits_mm", limits_mm, 3, 0.1..=1e9);
+        ranges.rising("limits_mm", limits_mm);
+        ranges.inside("tip", tip);
+    }
+}
+
+impl Checked for Size {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self { n_places, shift_mm } = self;
+        ranges.number("n_places", *n_places, 1.0..=20.0);
+        ranges.zero_or("shift_mm", *shift_mm, 0.01..=5.0);
+    }
+}
+
+#[test]
+fn a_number_beyond_its_range_is_named_with_its_line_and_what_it_may_be() {
+    let good = "limits_mm = [1.0, 2.0]\n[tip]\nn_places = 5\nshift_mm = 0.0\n";
+    let checked = |text: &str| parse::<Fit>("a.toml", text).unwrap().checked();
+    assert!(checked(good).is_ok());
+    for (right, wrong, expected) in [
+        (
+            "1.0, 2.0",
+            "1.0, 1e300",
+            "a.toml:1: `limits_mm[1]` is 1e300; give 0.1 to 1e9",
+        ),
+        (
+            "1.0, 2.0",
+            "2.0, 1.0",
+            "a.toml:1: `limits_mm` is [2.0, 1.0]; give numbers that rise",
+        ),
+        (
+            "1.0, 2.0",
+            "1, 2, 3, 4",
+            "a.toml:1: `limits_mm` has 4 numbers; give 3 at most",
+        ),
+        ("= 5", "= 0", "a.toml:3: `tip.n_places` is 0; give 1 to 20"),
+        (
+            "= 0.0",
+            "= -5",
+            "a.toml:4: `tip.shift_mm` is -5; give 0, or 0.01 to 5",
+        ),
+        (
+            "= 0.0",
+            "= 1e-300",
+            "a.toml:4: `tip.shift_mm` is 1e-300; give 0, or 0.01 to 5",
+        ),
+    ] {
+        let error = checked(&good.replace(right, wrong)).err().unwrap();
+        assert_eq!(error.to_string(), expected);
+    }
+    let size = Size {
+        n_places: 3,
+        shift_mm: f64::NAN,
+    };
+    assert_eq!(
+        size.checked().unwrap_err().to_string(),
+        "`shift_mm` is NaN; give 0, or 0.01 to 5"
     );
 }

@@ -35,7 +35,7 @@ pub enum PlotError {
 impl PlotError {
     /// Writes bytes to a file, whole or not at all.
     pub(crate) fn write_whole(path: &std::path::Path, bytes: &[u8]) -> Result<(), Self> {
-        twintac_files::write_whole(path, bytes).map_err(|source| PlotError::Write {
+        twintac_store::write_whole(path, bytes).map_err(|source| PlotError::Write {
             path: path.to_owned(),
             source,
         })

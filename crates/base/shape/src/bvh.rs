@@ -34,14 +34,25 @@ impl Node {
 }
 
 impl Bvh {
-    /// A tree over the (minimum, maximum) corners of at least one triangle's box.
-    pub(crate) fn new(boxes: &[(DVec3, DVec3)]) -> Self {
+    /// A tree over some triangles, at least one, by the (minimum, maximum) corners of all triangles' boxes.
+    pub(crate) fn new(boxes: &[(DVec3, DVec3)], triangles: Vec<usize>) -> Self {
+        let n_triangles = triangles.len();
         let mut tree = Self {
             nodes: Vec::new(),
-            order: (0..boxes.len()).collect(),
+            order: triangles,
         };
-        tree.grow(boxes, 0, boxes.len());
+        tree.grow(boxes, 0, n_triangles);
         tree
+    }
+
+    /// The numbers of its triangles.
+    pub(crate) fn triangles(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// Distance from a point to the box around everything, mm; 0 inside.
+    pub(crate) fn box_distance_mm(&self, point: DVec3) -> f64 {
+        self.nodes[0].square_distance(point).sqrt()
     }
 
     fn grow(&mut self, boxes: &[(DVec3, DVec3)], start: usize, end: usize) -> usize {
@@ -108,12 +119,33 @@ impl Bvh {
         }
     }
 
+    /// Visits the triangles whose boxes a ray may meet; no component of its direction may be zero.
+    pub(crate) fn along(&self, from: DVec3, direction: DVec3, visit: &mut dyn FnMut(usize)) {
+        self.visit(visit, &|node| {
+            let (to_low, to_high) = ((node.low - from) / direction, (node.high - from) / direction);
+            let (enters, leaves) = (
+                to_low.min(to_high).max_element(),
+                to_low.max(to_high).min_element(),
+            );
+            // A little more, for what rounding takes of flat boxes.
+            let slack = 1e-9 * (enters.abs() + leaves.abs());
+            leaves >= -slack && enters <= leaves + slack
+        });
+    }
+
     /// Visits the triangles whose boxes stand over or below a place of the xy plane.
     pub(crate) fn over(&self, at: DVec2, visit: &mut dyn FnMut(usize)) {
+        self.visit(visit, &|node| {
+            !(at.cmplt(node.low.truncate()).any() || at.cmpgt(node.high.truncate()).any())
+        });
+    }
+
+    /// Visits the triangles of all leaves whose boxes, and those around them, are met.
+    fn visit(&self, visit: &mut dyn FnMut(usize), is_met: &dyn Fn(&Node) -> bool) {
         let mut pending = vec![0];
         while let Some(index) = pending.pop() {
             let node = &self.nodes[index];
-            if at.cmplt(node.low.truncate()).any() || at.cmpgt(node.high.truncate()).any() {
+            if !is_met(node) {
                 continue;
             }
             match node.content {

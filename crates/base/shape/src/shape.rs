@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::prism::{Placement, Prism};
 use crate::profile::Profile;
+use crate::shape_error::{above_zero, between};
 use crate::union::Union;
-use crate::{Distance, Pose, SignedDistance, Surfaces, TriangleSurface};
+use crate::{Distance, Pose, ShapeError, SignedDistance, SurfaceFile, Surfaces, TriangleSurface};
 
 /// A rigid indenter. `edge_radius_mm` rounds every convex edge without moving any face: the sharp shape is
 /// made smaller by the radius and then grown by it in all directions. Prismatic shapes have their profile in
@@ -80,12 +81,8 @@ pub enum Shape {
         /// Rounding of the ridge and edges, mm.
         edge_radius_mm: f64,
     },
-    /// A closed triangle surface in an STL file, path relative to the file that names it; its lowest point is
-    /// moved to the origin's z.
-    Stl {
-        /// Path of the STL file.
-        path: String,
-    },
+    /// A closed triangle surface in an STL file; its lowest point is moved to the origin's z.
+    Stl(SurfaceFile),
     /// Several shapes held together, which may overlap. Their poses are in the frame of the whole, whose origin need not be its lowest point.
     Union {
         /// The shapes, at least one.
@@ -104,54 +101,17 @@ pub struct Part {
     pub whole_from_part: Pose,
 }
 
-/// A shape that can't be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{field}` is {found}, expected {expected}")]
-pub struct ShapeError {
-    /// The offending field.
-    pub field: String,
-    /// What was found.
-    pub found: String,
-    /// What was expected.
-    pub expected: String,
-}
+/// Smallest half width of a shape, mm: what is thinner lies between the nodes of any mesh of a gel.
+const THINNEST_MM: f64 = 0.05;
+/// Longest length of a shape, mm: that of a floor or a table.
+const LONGEST_MM: f64 = 1e6;
 
-impl ShapeError {
-    pub(crate) fn new(field: &str, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self {
-            field: field.to_owned(),
-            found: found.into(),
-            expected: expected.into(),
-        }
-    }
-
-    /// The same error of a shape that stands in this field of another.
-    fn within(self, field: &str) -> Self {
-        Self {
-            field: format!("{field}.{}", self.field),
-            ..self
-        }
-    }
-}
-
-/// A length that has to be there.
-pub(crate) fn above_zero(field: &str, found: f64) -> Result<(), ShapeError> {
-    if found > 0.0 && found.is_finite() {
-        return Ok(());
-    }
-    Err(ShapeError::new(field, found.to_string(), "a number above 0"))
-}
-
-/// A number within limits, which are allowed.
-pub(crate) fn between(field: &str, found: f64, least: f64, most: f64) -> Result<(), ShapeError> {
-    if (least..=most).contains(&found) {
-        return Ok(());
-    }
-    Err(ShapeError::new(
-        field,
-        found.to_string(),
-        format!("{least} to {most}"),
-    ))
+/// A length of a shape, of which so many are a half width.
+fn length(field: &str, found: f64, half_widths: f64) -> Result<(), ShapeError> {
+    between(field, found, half_widths * THINNEST_MM, LONGEST_MM).map_err(|error| ShapeError {
+        expected: format!("{} (lengths are in mm)", error.expected),
+        ..error
+    })
 }
 
 /// A rounding that leaves something of each of these half widths.
@@ -174,14 +134,14 @@ impl Shape {
     /// The first field whose value is out of range.
     pub fn validate(&self) -> Result<(), ShapeError> {
         match *self {
-            Self::Sphere { radius_mm } => above_zero("radius_mm", radius_mm),
+            Self::Sphere { radius_mm } => length("radius_mm", radius_mm, 1.0),
             Self::Cylinder {
                 radius_mm,
                 height_mm,
                 edge_radius_mm,
             } => {
-                above_zero("radius_mm", radius_mm)?;
-                above_zero("height_mm", height_mm)?;
+                length("radius_mm", radius_mm, 1.0)?;
+                length("height_mm", height_mm, 2.0)?;
                 rounding(edge_radius_mm, &[radius_mm, 0.5 * height_mm])
             }
             Self::Box {
@@ -189,7 +149,7 @@ impl Shape {
                 edge_radius_mm,
             } => {
                 for (axis, size) in size_mm.iter().enumerate() {
-                    above_zero(&format!("size_mm[{axis}]"), *size)?;
+                    length(&format!("size_mm[{axis}]"), *size, 2.0)?;
                 }
                 rounding(edge_radius_mm, &size_mm.map(|size| 0.5 * size))
             }
@@ -199,9 +159,10 @@ impl Shape {
                 height_mm,
                 edge_radius_mm,
             } => {
-                above_zero("width_mm", width_mm)?;
-                above_zero("height_mm", height_mm)?;
-                if length_mm <= width_mm || !length_mm.is_finite() {
+                length("width_mm", width_mm, 2.0)?;
+                length("height_mm", height_mm, 2.0)?;
+                length("length_mm", length_mm, 2.0)?;
+                if length_mm <= width_mm {
                     let expected = format!("more than the width of {width_mm}");
                     return Err(ShapeError::new("length_mm", length_mm.to_string(), expected));
                 }
@@ -214,8 +175,9 @@ impl Shape {
                 edge_radius_mm,
             } => {
                 above_zero("inner_radius_mm", inner_radius_mm)?;
-                above_zero("height_mm", height_mm)?;
-                if outer_radius_mm <= inner_radius_mm || !outer_radius_mm.is_finite() {
+                length("outer_radius_mm", outer_radius_mm, 1.0)?;
+                length("height_mm", height_mm, 2.0)?;
+                if outer_radius_mm <= inner_radius_mm {
                     let expected = format!("more than the inner radius of {inner_radius_mm}");
                     return Err(ShapeError::new(
                         "outer_radius_mm",
@@ -233,8 +195,8 @@ impl Shape {
                 height_mm,
                 edge_radius_mm,
             } => {
-                above_zero("side_mm", side_mm)?;
-                above_zero("height_mm", height_mm)?;
+                length("side_mm", side_mm, 2.0)?;
+                length("height_mm", height_mm, 2.0)?;
                 rounding(edge_radius_mm, &[side_mm / INRADIUS_TO_SIDE, 0.5 * height_mm])
             }
             Self::Wedge {
@@ -250,14 +212,11 @@ impl Shape {
                         "more than 0 and less than π",
                     ));
                 }
-                above_zero("length_mm", length_mm)?;
-                above_zero("height_mm", height_mm)?;
+                length("length_mm", length_mm, 2.0)?;
+                length("height_mm", height_mm, 2.0)?;
                 rounding(edge_radius_mm, &[0.5 * length_mm, 0.5 * height_mm])
             }
-            Self::Stl { ref path } if path.is_empty() => {
-                Err(ShapeError::new("path", "empty", "the path of an STL file"))
-            }
-            Self::Stl { .. } => Ok(()),
+            Self::Stl(ref file) => file.validate(),
             Self::Union { ref parts } if parts.is_empty() => {
                 Err(ShapeError::new("parts", "empty", "one shape or more"))
             }
@@ -271,28 +230,28 @@ impl Shape {
         }
     }
 
-    /// Paths of the triangle surfaces that the shape is made of, each with its field.
+    /// The triangle surfaces that the shape is made of, each with the field of its path.
     #[must_use]
-    pub fn surface_paths(&self) -> Vec<(String, &str)> {
+    pub fn surface_files(&self) -> Vec<(String, &SurfaceFile)> {
         match self {
-            Self::Stl { path } => vec![("path".to_owned(), path)],
+            Self::Stl(file) => vec![("path".to_owned(), file)],
             Self::Union { parts } => {
-                let mut paths = Vec::new();
+                let mut files = Vec::new();
                 for (index, part) in parts.iter().enumerate() {
-                    let of_part = part.shape.surface_paths().into_iter();
-                    paths
-                        .extend(of_part.map(|(field, path)| (format!("parts[{index}].shape.{field}"), path)));
+                    let of_part = part.shape.surface_files().into_iter();
+                    files
+                        .extend(of_part.map(|(field, file)| (format!("parts[{index}].shape.{field}"), file)));
                 }
-                paths
+                files
             }
             _ => Vec::new(),
         }
     }
 
-    /// Gives other names to the triangle surfaces that the shape is made of.
+    /// Gives other paths to the triangle surfaces that the shape is made of.
     pub fn rename_surfaces(&mut self, rename: &dyn Fn(&str) -> String) {
         match self {
-            Self::Stl { path } => *path = rename(path),
+            Self::Stl(file) => file.path = rename(&file.path),
             Self::Union { parts } => parts
                 .iter_mut()
                 .for_each(|part| part.shape.rename_surfaces(rename)),
@@ -390,11 +349,11 @@ impl Shape {
                     placement: Placement::Lying,
                 })
             }
-            Self::Stl { ref path } => {
-                let surface = surfaces.get(path).ok_or_else(|| {
+            Self::Stl(ref file) => {
+                let surface = surfaces.get(&*file.name()).ok_or_else(|| {
                     ShapeError::new(
                         "path",
-                        format!("`{path}`, which is not loaded"),
+                        format!("`{}`, which is not loaded", file.name()),
                         "an STL file of this description",
                     )
                 })?;

@@ -1,15 +1,34 @@
-//! Triangles out of STL files, binary and ASCII.
+//! Triangles out of STL files as programs write them, binary and text.
 
 use glam::DVec3;
 
+use crate::stl_text;
 use crate::surface_error::SurfaceError;
 
 /// Bytes before the triangles of a binary file: a comment of 80 and their number.
 const HEADER_BYTES: usize = 84;
 /// Bytes of a triangle of a binary file: normal, three corners, two spare bytes.
 const TRIANGLE_BYTES: usize = 50;
+/// What files of other formats begin with.
+const OTHER_FORMATS: [(&[u8], &str); 12] = [
+    (b"\x1f\x8b", "a gzip file"),
+    (b"PK\x03\x04", "a ZIP or 3MF file"),
+    (b"\xff\xfe", "a text in UTF-16"),
+    (b"\xfe\xff", "a text in UTF-16"),
+    (b"ply", "a PLY file"),
+    (b"OFF", "an OFF file"),
+    (b"ISO-10303-21", "a STEP file"),
+    (b"glTF", "a glTF file"),
+    (b"$MeshFormat", "a Gmsh file"),
+    (b"<", "an XML file"),
+    (b"mtllib", "an OBJ file"),
+    (b"v ", "an OBJ file"),
+];
 
-/// Corners of all triangles, mm (STL files carry no unit). The files' normals are not used.
+/// Corners of all triangles in the unit of the file, which STL files do not tell. The files' normals are not used.
+///
+/// A file that is long enough for the number of triangles in its header is binary, whatever it begins with and whatever follows
+/// the last triangle.
 pub(crate) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
     let count = bytes
         .get(80..HEADER_BYTES)
@@ -18,15 +37,15 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
     let expected_bytes = count.map_or(HEADER_BYTES, |count| {
         HEADER_BYTES + TRIANGLE_BYTES * count as usize
     });
-    // Some programs begin binary files with "solid" too: their length tells them apart.
-    let is_text = bytes.trim_ascii_start().starts_with(b"solid");
-    let triangles = if count.is_some() && bytes.len() == expected_bytes {
-        bytes[HEADER_BYTES..]
+    let triangles = if count.is_some() && bytes.len() >= expected_bytes {
+        bytes[HEADER_BYTES..expected_bytes]
             .chunks_exact(TRIANGLE_BYTES)
             .map(binary_triangle)
             .collect()
-    } else if is_text && let Ok(text) = std::str::from_utf8(bytes) {
-        ascii(text)?
+    } else if stl_text::is_text(bytes) {
+        stl_text::read(bytes)?
+    } else if let Some(found) = other_format(bytes) {
+        return Err(SurfaceError::Format { found });
     } else {
         return Err(SurfaceError::Length {
             expected_bytes,
@@ -42,6 +61,17 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
     }
 }
 
+fn other_format(bytes: &[u8]) -> Option<&'static str> {
+    if bytes.trim_ascii().is_empty() {
+        return Some("empty");
+    }
+    // OBJ files begin with comments.
+    let mut lines = bytes.split(|&byte| byte == b'\n').take(100);
+    let first = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))?;
+    let known = OTHER_FORMATS.iter().find(|(start, _)| first.starts_with(start));
+    known.map(|&(_, name)| name)
+}
+
 fn binary_triangle(record: &[u8]) -> [DVec3; 3] {
     let number = |index: usize| {
         let start = 12 + 4 * index;
@@ -53,44 +83,4 @@ fn binary_triangle(record: &[u8]) -> [DVec3; 3] {
         ]))
     };
     [0, 3, 6].map(|first| DVec3::new(number(first), number(first + 1), number(first + 2)))
-}
-
-fn ascii(text: &str) -> Result<Vec<[DVec3; 3]>, SurfaceError> {
-    let mut triangles = Vec::new();
-    let mut corners = Vec::new();
-    let mut ended = false;
-    for (index, line) in text.lines().enumerate() {
-        let error = |problem: &str| SurfaceError::Text {
-            line: index + 1,
-            problem: problem.to_owned(),
-        };
-        let mut words = line.split_whitespace();
-        match words.next().unwrap_or_default().to_ascii_lowercase().as_str() {
-            "solid" => ended = false,
-            "endsolid" => ended = true,
-            "facet" => corners.clear(),
-            "vertex" => {
-                let numbers: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
-                let [x, y, z] = numbers[..] else {
-                    return Err(error("a vertex needs three numbers"));
-                };
-                corners.push(DVec3::new(x, y, z));
-            }
-            "endfacet" => {
-                let three = corners[..]
-                    .try_into()
-                    .map_err(|_| error("a facet needs three vertices"))?;
-                triangles.push(three);
-            }
-            "" | "outer" | "endloop" => {}
-            other => return Err(error(&format!("`{other}` has no place in an STL file"))),
-        }
-    }
-    if !ended {
-        return Err(SurfaceError::Text {
-            line: text.lines().count(),
-            problem: "ends before `endsolid`".to_owned(),
-        });
-    }
-    Ok(triangles)
 }

@@ -4,17 +4,26 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use serde::{Serialize, Serializer};
 
 use crate::bvh::Bvh;
+use crate::manifold::{Manifold, join};
+use crate::nesting::{Shell, roles};
+use crate::overlap::Places;
 use crate::surface_error::SurfaceError;
-use crate::{Distance, SignedDistance, stl};
+use crate::weld::weld;
+use crate::{Distance, ExtentError, SignedDistance, stl};
 
-/// Triangle surfaces by the path that names them.
+/// Share of its area with which a connected surface may run through itself, as scans do in their creases.
+const CREASES: f64 = 1e-3;
+
+/// Triangle surfaces by their names, see [`crate::SurfaceFile::name`].
 pub type Surfaces = BTreeMap<String, Arc<TriangleSurface>>;
 
-/// A closed surface of triangles with an inside.
+/// Closed surfaces of triangles with an inside: one body or more, which may have cavities.
 ///
-/// The sign of the distance comes from angle-weighted pseudonormals (Bærentzen and Aanæs, Signed Distance
+/// Several bodies are united, also where they overlap: outside the distance is exact, inside it is that to the nearest surface of one of
+/// them, as for [`crate::Shape::Union`]. The sign comes from angle-weighted pseudonormals (Bærentzen and Aanæs, Signed Distance
 /// Computation Using the Angle Weighted Pseudonormal, IEEE TVCG 2005), which is exact for any closed surface.
 #[derive(Clone, Debug)]
 pub struct TriangleSurface {
@@ -24,8 +33,17 @@ pub struct TriangleSurface {
     /// Of the edges from corner 0 to 1, 1 to 2 and 2 to 0.
     edge_normals: Vec<[DVec3; 3]>,
     vertex_normals: Vec<DVec3>,
-    bvh: Bvh,
+    /// The triangles of each body, those of its cavities among them.
+    bodies: Vec<Bvh>,
+    bounds_mm: (DVec3, DVec3),
     volume_mm3: f64,
+}
+
+/// A surface is written as its vertices and triangles, from which all else follows.
+impl Serialize for TriangleSurface {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (&self.vertices_mm, &self.triangles).serialize(serializer)
+    }
 }
 
 /// What part of a triangle is closest.
@@ -37,37 +55,113 @@ enum Part {
 }
 
 impl TriangleSurface {
-    /// Reads an STL file's bytes, binary or ASCII, in mm. Equal corners become one vertex; triangles that
-    /// have lost a corner by that are left out.
+    /// Reads an STL file's bytes, binary or text, in which a length of 1 is so many mm.
     ///
     /// # Errors
-    /// Truncated files, text that is no STL, and surfaces that are not closed or face inwards.
-    pub fn from_stl(bytes: &[u8]) -> Result<Self, SurfaceError> {
-        Self::from_triangles(&stl::read(bytes)?)
+    /// What is no whole STL file, sizes and places that are not plausible ([`ExtentError`]), and those of
+    /// [`TriangleSurface::from_triangles`].
+    pub fn from_stl(bytes: &[u8], mm_per_unit: f64) -> Result<Self, SurfaceError> {
+        let triangles = stl::read(bytes)?.into_iter();
+        let triangles: Vec<[DVec3; 3]> = triangles
+            .map(|corners| corners.map(|corner| mm_per_unit * corner))
+            .collect();
+        if let Some((low, high)) = bounds(triangles.iter().flatten()) {
+            ExtentError::check(low, high)?;
+        }
+        Self::from_triangles(&triangles)
     }
 
     /// A surface from the corners of its triangles, mm, counterclockwise seen from outside.
     ///
+    /// Equal corners become one vertex; at edges that would stay open those as well that differ by less than 1e-5 of the diagonal. Triangles
+    /// without area are left out, and so are those that are there twice, of a body that is listed twice or of a face that two bodies share.
+    /// Triangles that face another way than their neighbours are turned, and so are whole bodies: what lies in no other body faces outwards. What lies
+    /// in a body and faces against it is a cavity. Edges may have more than two triangles.
+    ///
     /// # Errors
-    /// Surfaces that are not closed or face inwards.
+    /// Surfaces that are not closed, have one side only, enclose nothing, or run through themselves with more than 0.1 % of their area (looked
+    /// for at places 4 % of the diagonal apart); a cavity in a cavity; corners that are not finite.
     pub fn from_triangles(corners_mm: &[[DVec3; 3]]) -> Result<Self, SurfaceError> {
-        let (vertices_mm, triangles) = weld(corners_mm);
-        if triangles.len() < 4 {
+        let is_finite = |corners: &[DVec3; 3]| corners.iter().all(|corner| corner.is_finite());
+        if let Some(triangle) = corners_mm.iter().position(|corners| !is_finite(corners)) {
+            return Err(SurfaceError::NotFinite { triangle });
+        }
+        let welded = weld(corners_mm);
+        if welded.triangles.len() < 4 {
             return Err(SurfaceError::Empty {
-                triangles: triangles.len(),
+                triangles: welded.triangles.len(),
             });
         }
-        let neighbours = neighbours(&vertices_mm, &triangles)?;
-        let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices_mm[vertex as usize]);
-        let volume_mm3 = triangles.iter().map(|triangle| {
-            // About one corner, so that a small body far from the origin keeps its digits.
-            let [a, b, c] = corners(triangle).map(|corner| corner - vertices_mm[0]);
-            a.dot(b.cross(c)) / 6.0
-        });
-        let volume_mm3 = volume_mm3.sum();
-        if volume_mm3 <= 0.0 {
-            return Err(SurfaceError::InsideOut { volume_mm3 });
+        let mut manifold = join(&welded.vertices_mm, welded.triangles)?;
+        let (vertices_mm, of_component) = part_vertices(&welded.vertices_mm, &mut manifold);
+        let boxes: Vec<(DVec3, DVec3)> = manifold
+            .triangles
+            .iter()
+            .map(|triangle| bounds_of(triangle.map(|vertex| vertices_mm[vertex as usize])))
+            .collect();
+        let shells: Vec<Shell> = members(&manifold.component, manifold.n_components)
+            .into_iter()
+            .zip(of_component)
+            .map(|(triangles, vertices)| {
+                shell(&vertices_mm, &manifold.triangles, &boxes, triangles, vertices)
+            })
+            .collect();
+        let unturned = manifold.triangles.clone();
+        let corners = |triangle: usize| unturned[triangle].map(|vertex| vertices_mm[vertex as usize]);
+        let roles = roles(&shells, &vertices_mm, &corners)?;
+        for triangle in 0..manifold.triangles.len() {
+            if roles[manifold.component[triangle]].is_turned {
+                manifold.triangles[triangle].swap(1, 2);
+                manifold.neighbours[triangle].swap(0, 2);
+            }
         }
+        let corners =
+            |triangle: usize| manifold.triangles[triangle].map(|vertex| vertices_mm[vertex as usize]);
+        for (body, (shell, role)) in shells.iter().zip(&roles).enumerate() {
+            let places = Places::on(&shell.triangles, &corners);
+            let of_material = i32::from(!role.is_cavity);
+            match places.without_material(&shell.triangles, &corners, of_material) {
+                Some((share, at_mm)) if share > CREASES => {
+                    let at_mm = at_mm.to_array();
+                    return Err(SurfaceError::SelfOverlap { body, share, at_mm });
+                }
+                _ => {}
+            }
+        }
+        let volumes_mm3 = shells.iter().zip(&roles).map(|(shell, role)| {
+            if role.is_turned {
+                -shell.volume_mm3
+            } else {
+                shell.volume_mm3
+            }
+        });
+        let volume_mm3 = volumes_mm3.sum();
+        let body_of: Vec<usize> = manifold
+            .component
+            .iter()
+            .map(|&component| roles[component].body)
+            .collect();
+        let n_bodies = 1 + body_of.iter().copied().max().expect("four triangles at least");
+        let bodies = members(&body_of, n_bodies)
+            .into_iter()
+            .map(|triangles| Bvh::new(&boxes, triangles));
+        let bodies = bodies.collect();
+        Ok(Self {
+            bounds_mm: bounds(&vertices_mm).expect("four triangles at least"),
+            bodies,
+            volume_mm3,
+            ..Self::with_normals(vertices_mm, manifold)
+        })
+    }
+
+    /// The surface with its normals, without bodies.
+    fn with_normals(vertices_mm: Vec<DVec3>, manifold: Manifold) -> Self {
+        let Manifold {
+            triangles,
+            neighbours,
+            ..
+        } = manifold;
+        let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices_mm[vertex as usize]);
         let face_normals: Vec<DVec3> = triangles
             .iter()
             .map(|triangle| {
@@ -94,20 +188,16 @@ impl TriangleSurface {
         for normal in &mut vertex_normals {
             *normal = normal.normalize_or_zero();
         }
-        let boxes = triangles.iter().map(|triangle| {
-            let [a, b, c] = corners(triangle);
-            (a.min(b).min(c), a.max(b).max(c))
-        });
-        let bvh = Bvh::new(&boxes.collect::<Vec<_>>());
-        Ok(Self {
+        Self {
             vertices_mm,
             triangles,
             face_normals,
             edge_normals,
             vertex_normals,
-            bvh,
-            volume_mm3,
-        })
+            bodies: Vec::new(),
+            bounds_mm: (DVec3::ZERO, DVec3::ZERO),
+            volume_mm3: 0.0,
+        }
     }
 
     /// The vertices, mm.
@@ -122,10 +212,28 @@ impl TriangleSurface {
         &self.triangles
     }
 
-    /// Enclosed volume, mm³.
+    /// Enclosed volume, mm³; where bodies overlap it counts more than once.
     #[must_use]
     pub fn volume_mm3(&self) -> f64 {
         self.volume_mm3
+    }
+
+    /// A place where two bodies overlap or touch, mm; `None` if they are apart from each other, or if there is one body only.
+    #[must_use]
+    pub fn bodies_meet_at_mm(&self) -> Option<DVec3> {
+        if self.bodies.len() < 2 {
+            return None;
+        }
+        let corners = |triangle: usize| self.corners(triangle);
+        self.bodies.iter().enumerate().find_map(|(index, body)| {
+            let places = Places::on(body, &corners);
+            let mut others = self
+                .bodies
+                .iter()
+                .enumerate()
+                .filter(|(other, _)| *other != index);
+            others.find_map(|(_, other)| places.in_other(other, &corners))
+        })
     }
 
     /// Height of the highest point of the surface above or below a place in the xy plane, mm; `None` beside
@@ -133,11 +241,13 @@ impl TriangleSurface {
     #[must_use]
     pub fn top_height_mm(&self, at_mm: DVec2) -> Option<f64> {
         let mut highest: Option<f64> = None;
-        self.bvh.over(at_mm, &mut |triangle| {
-            if let Some(height_mm) = height_in(self.corners(triangle), at_mm) {
-                highest = Some(highest.map_or(height_mm, |found| found.max(height_mm)));
-            }
-        });
+        for body in &self.bodies {
+            body.over(at_mm, &mut |triangle| {
+                if let Some(height_mm) = height_in(self.corners(triangle), at_mm) {
+                    highest = Some(highest.map_or(height_mm, |found| found.max(height_mm)));
+                }
+            });
+        }
         highest
     }
 
@@ -152,12 +262,11 @@ impl TriangleSurface {
             Part::Corner(corner) => self.vertex_normals[self.triangles[triangle][corner] as usize],
         }
     }
-}
 
-impl SignedDistance for TriangleSurface {
-    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+    /// Distance to the surface of one body.
+    fn distance_to(&self, body: &Bvh, point_mm: DVec3) -> Distance {
         let mut best = (f64::INFINITY, DVec3::ZERO, 0, Part::Face);
-        self.bvh.closest(point_mm, &mut |triangle| {
+        body.closest(point_mm, &mut |triangle| {
             let (closest, part) =
                 closest_point(self.corners(triangle), self.face_normals[triangle], point_mm);
             let square_mm2 = closest.distance_squared(point_mm);
@@ -189,67 +298,96 @@ impl SignedDistance for TriangleSurface {
             gradient,
         }
     }
-
-    fn bounds_mm(&self) -> (DVec3, DVec3) {
-        self.bvh.bounds_mm()
-    }
 }
 
-/// Makes equal corners one vertex, numbered in order of appearance, and leaves out triangles that lose a
-/// corner by it.
-fn weld(corners_mm: &[[DVec3; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let mut numbers = BTreeMap::new();
-    let mut vertices_mm = Vec::new();
-    let mut triangles = Vec::new();
-    for corners in corners_mm {
-        let triangle = corners.map(|corner| {
-            // Adding zero makes -0 the same as 0.
-            let key = (corner + DVec3::ZERO).to_array().map(f64::to_bits);
-            *numbers.entry(key).or_insert_with(|| {
-                vertices_mm.push(corner);
-                vertices_mm.len() as u32 - 1
-            })
-        });
-        let [a, b, c] = triangle;
-        if a != b && b != c && c != a {
-            triangles.push(triangle);
-        }
-    }
-    (vertices_mm, triangles)
-}
-
-/// The triangle across each edge of each triangle.
-fn neighbours(vertices_mm: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<[usize; 3]>, SurfaceError> {
-    let edge = |triangle: &[u32; 3], corner: usize| (triangle[corner], triangle[(corner + 1) % 3]);
-    let mut owners: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
-    for (index, triangle) in triangles.iter().enumerate() {
-        for corner in 0..3 {
-            owners.entry(edge(triangle, corner)).or_default().push(index);
-        }
-    }
-    let mut open = Vec::new();
-    let mut neighbours = vec![[0; 3]; triangles.len()];
-    for (triangle, across) in triangles.iter().zip(&mut neighbours) {
-        for (corner, neighbour) in across.iter_mut().enumerate() {
-            let (from, to) = edge(triangle, corner);
-            match (
-                owners.get(&(from, to)).map(Vec::as_slice),
-                owners.get(&(to, from)).map(Vec::as_slice),
-            ) {
-                (Some([_]), Some([other])) => *neighbour = *other,
-                _ => open.push((from, to)),
+impl SignedDistance for TriangleSurface {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        let mut nearest = self.distance_to(&self.bodies[0], point_mm);
+        for body in &self.bodies[1..] {
+            let away_mm = body.box_distance_mm(point_mm);
+            if away_mm == 0.0 || away_mm < nearest.distance_mm {
+                let found = self.distance_to(body, point_mm);
+                if found.distance_mm < nearest.distance_mm {
+                    nearest = found;
+                }
             }
         }
+        nearest
     }
-    match open.first() {
-        Some(&(from, to)) => {
-            let middle = 0.5 * (vertices_mm[from as usize] + vertices_mm[to as usize]);
-            Err(SurfaceError::NotClosed {
-                edges: open.len(),
-                at_mm: middle.to_array(),
-            })
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        self.bounds_mm
+    }
+}
+
+/// Box around some points; `None` around nothing.
+fn bounds<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<(DVec3, DVec3)> {
+    let boxes = points.into_iter().map(|point| (*point, *point));
+    boxes.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
+}
+
+fn bounds_of([a, b, c]: [DVec3; 3]) -> (DVec3, DVec3) {
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+/// The triangles of each group, by the group of each triangle.
+fn members(group_of: &[usize], n_groups: usize) -> Vec<Vec<usize>> {
+    let mut members = vec![Vec::new(); n_groups];
+    for (triangle, &group) in group_of.iter().enumerate() {
+        members[group].push(triangle);
+    }
+    members
+}
+
+/// Gives each connected surface vertices of its own, one surface after the other: also those at which surfaces touch.
+fn part_vertices(
+    vertices_mm: &[DVec3],
+    manifold: &mut Manifold,
+) -> (Vec<DVec3>, Vec<std::ops::Range<usize>>) {
+    let mut parted_mm = Vec::new();
+    let mut ranges = Vec::new();
+    let mut numbers = vec![u32::MAX; vertices_mm.len()];
+    for triangles in members(&manifold.component, manifold.n_components) {
+        let first = parted_mm.len();
+        let mut used = Vec::new();
+        for triangle in triangles {
+            for vertex in &mut manifold.triangles[triangle] {
+                let number = &mut numbers[*vertex as usize];
+                if *number == u32::MAX {
+                    *number = parted_mm.len() as u32;
+                    parted_mm.push(vertices_mm[*vertex as usize]);
+                    used.push(*vertex);
+                }
+                *vertex = *number;
+            }
         }
-        None => Ok(neighbours),
+        used.into_iter()
+            .for_each(|vertex| numbers[vertex as usize] = u32::MAX);
+        ranges.push(first..parted_mm.len());
+    }
+    (parted_mm, ranges)
+}
+
+fn shell(
+    vertices_mm: &[DVec3],
+    triangles: &[[u32; 3]],
+    boxes: &[(DVec3, DVec3)],
+    members: Vec<usize>,
+    vertices: std::ops::Range<usize>,
+) -> Shell {
+    let (mut volume_mm3, mut area_mm2) = (0.0, 0.0);
+    for &triangle in &members {
+        // About one corner, so that a small body far from the origin keeps its digits.
+        let about = vertices_mm[vertices.start];
+        let [a, b, c] = triangles[triangle].map(|vertex| vertices_mm[vertex as usize] - about);
+        volume_mm3 += a.dot(b.cross(c)) / 6.0;
+        area_mm2 += 0.5 * (b - a).cross(c - a).length();
+    }
+    Shell {
+        triangles: Bvh::new(boxes, members),
+        vertices,
+        volume_mm3,
+        area_mm2,
     }
 }
 

@@ -47,10 +47,7 @@ impl SignedDistance for Union {
             }
         };
         let mut parts = self.parts.iter();
-        let first = parts.next().map(of_part).unwrap_or(Distance {
-            distance_mm: f64::INFINITY,
-            gradient: DVec3::Z,
-        });
+        let first = parts.next().map(of_part).expect("a union has a part");
         parts.map(of_part).fold(first, |nearest, found| {
             if found.distance_mm < nearest.distance_mm {
                 found

@@ -4,7 +4,7 @@
 
 use glam::{DQuat, DVec2, DVec3};
 use proptest::prelude::*;
-use twintac_shape::{Part, Pose, Shape, SignedDistance, Surfaces};
+use twintac_shape::{Part, Pose, Shape, SignedDistance, SurfaceFile, Surfaces};
 
 fn field(shape: &Shape) -> Box<dyn SignedDistance> {
     shape.signed_distance_field(&Surfaces::new()).unwrap()
@@ -313,7 +313,7 @@ fn impossible_shapes_name_the_field() {
         edge_radius_mm: 0.0,
     };
     assert_eq!(field(x), "length_mm");
-    assert_eq!(field(Shape::Stl { path: String::new() }), "path");
+    assert_eq!(field(Shape::Stl(SurfaceFile::new(""))), "path");
     assert_eq!(field(Shape::Union { parts: Vec::new() }), "parts");
     assert_eq!(
         field(whole(&[
@@ -322,12 +322,10 @@ fn impossible_shapes_name_the_field() {
         ])),
         "parts[1].shape.radius_mm"
     );
-    let missing = Shape::Stl {
-        path: "tip.stl".into(),
-    }
-    .signed_distance_field(&Surfaces::new())
-    .err()
-    .unwrap();
+    let missing = Shape::Stl(SurfaceFile::new("tip.stl"))
+        .signed_distance_field(&Surfaces::new())
+        .err()
+        .unwrap();
     assert!(
         missing.to_string().contains("`tip.stl`, which is not loaded"),
         "{missing}"

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use twintac_shape::{Dome, Solid, Surfaces};
+use twintac_shape::{Dome, Solid, SurfaceFile, Surfaces};
 
 fn solids() -> Vec<Solid> {
     let block = |edge_radius_mm: f64| Solid::Block {
@@ -30,7 +30,7 @@ fn near() -> impl Strategy<Value = DVec3> {
 }
 
 fn distance(solid: &Solid, p: DVec3) -> twintac_shape::Distance {
-    solid.signed_distance(p, &Surfaces::new()).unwrap()
+    solid.signed_distance(p, &Surfaces::new())
 }
 
 proptest! {
@@ -145,9 +145,7 @@ fn impossible_gels_name_the_field() {
     assert_eq!(dome(&|dome| dome.drop_y_mm = [-0.1, 0.0]), "drop_y_mm[0]");
     assert_eq!(dome(&|dome| dome.drop_x_mm = [0.0, 4.5]), "drop_x_mm[1]");
     assert!(solids().iter().all(|solid| solid.validate().is_ok()));
-    let missing = Solid::Stl {
-        path: "gel.stl".into(),
-    };
-    assert_eq!(missing.volume_mm3(&Surfaces::new()), 0.0);
-    assert!(missing.signed_distance(DVec3::ZERO, &Surfaces::new()).is_none());
+    assert_eq!(field(Solid::Stl(SurfaceFile::new(""))), "path");
+    // In metres.
+    assert_eq!(field(block([0.034, 0.018, 0.0085], 0.0)), "size_mm[0]");
 }

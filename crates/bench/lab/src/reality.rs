@@ -1,7 +1,7 @@
 //! How the emulated bench differs from its drawings.
 
 use serde::{Deserialize, Serialize};
-use twintac_config::{ConfigError, Document};
+use twintac_config::{Checked, ConfigError, Ranges};
 
 /// The imperfections of one emulated bench. Everything that is drawn at random comes from `seed`, by name, once per bench or press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -161,87 +161,136 @@ fn one() -> f64 {
 impl Reality {
     /// Reads a reality from the text of a TOML file; errors name file, line and field.
     pub fn parse(file: &str, text: &str) -> Result<Self, ConfigError> {
-        let document = twintac_config::parse::<Self>(file, text)?;
-        document.value.check(&document)?;
-        Ok(document.value)
+        twintac_config::parse::<Self>(file, text)?.checked()
     }
+}
 
-    fn check(&self, document: &Document<Self>) -> Result<(), ConfigError> {
-        let (gel, readout, robot, climate) = (&self.gel, &self.readout, &self.robot, &self.climate);
-        let positive = [
-            ("gel.edges_per_height", gel.edges_per_height),
-            ("gel.edges_per_contact_radius", gel.edges_per_contact_radius),
-            ("gel.yeoh_kpa[0]", gel.yeoh_kpa[0]),
-            ("gel.bulk_modulus_kpa", gel.bulk_modulus_kpa),
-            ("gel.depth_step_mm", gel.depth_step_mm),
-            ("gel.height_ratio", gel.height_ratio),
-            ("readout.gain_mean", readout.gain_mean),
-            ("climate.warming_time_s", climate.warming_time_s),
-        ];
-        for (field, value) in positive {
-            if value <= 0.0 || !value.is_finite() {
-                return Err(document.error(field, format!("is {value}"), "give a number above zero"));
-            }
+impl Checked for Reality {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            summary: _,
+            seed: _,
+            gel,
+            readout,
+            robot,
+            mounting,
+            climate,
+        } = self;
+        ranges.inside("gel", gel);
+        ranges.inside("readout", readout);
+        ranges.inside("robot", robot);
+        ranges.inside("mounting", mounting);
+        ranges.inside("climate", climate);
+    }
+}
+
+impl Checked for GelReality {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            edges_per_height,
+            edges_per_contact_radius,
+            yeoh_kpa: [c10, c20, c30],
+            bulk_modulus_kpa,
+            relaxation,
+            height_ratio,
+            friction,
+            depth_step_mm,
+        } = self;
+        ranges.number("edges_per_height", *edges_per_height, 1.0..=20.0);
+        ranges.number("edges_per_contact_radius", *edges_per_contact_radius, 0.5..=20.0);
+        ranges.number("yeoh_kpa[0]", *c10, 0.01..=1e5);
+        ranges.number("yeoh_kpa[1]", *c20, -1e5..=1e5);
+        ranges.number("yeoh_kpa[2]", *c30, -1e5..=1e5);
+        ranges.number("bulk_modulus_kpa", *bulk_modulus_kpa, 1.0..=1e7);
+        ranges.number("height_ratio", *height_ratio, 0.1..=10.0);
+        ranges.zero_or("friction", *friction, 1e-6..=10.0);
+        ranges.number("depth_step_mm", *depth_step_mm, 0.005..=5.0);
+        for (index, Relaxation { weight, time_s }) in relaxation.iter().enumerate() {
+            ranges.number(&format!("relaxation[{index}].weight"), *weight, 1e-6..=1.0);
+            ranges.number(&format!("relaxation[{index}].time_s"), *time_s, 1e-4..=1e6);
         }
-        let not_negative = [
-            ("gel.friction", gel.friction),
-            ("readout.gain_deviation", readout.gain_deviation),
-            ("readout.bubble_mm3", readout.bubble_mm3),
-            ("readout.bubble_deviation_mm3", readout.bubble_deviation_mm3),
-            ("readout.offset_deviation_kpa", readout.offset_deviation_kpa),
-            ("readout.position_deviation_mm", readout.position_deviation_mm),
-            ("readout.noise_kpa", readout.noise_kpa),
-            ("readout.drift_kpa_per_sqrt_s", readout.drift_kpa_per_sqrt_s),
-            (
-                "readout.offset_deviation_kpa_per_k",
-                readout.offset_deviation_kpa_per_k,
-            ),
-            ("readout.lag_s", readout.lag_s),
-            ("readout.lag_per_taxel_s", readout.lag_per_taxel_s),
-            ("readout.jitter_s", readout.jitter_s),
-            ("robot.place_deviation_mm", robot.place_deviation_mm),
-            ("robot.depth_deviation_mm", robot.depth_deviation_mm),
-            ("robot.force_noise_n", robot.force_noise_n),
-            ("robot.force_lag_s", robot.force_lag_s),
-        ];
-        for (field, value) in not_negative {
-            if value < 0.0 || !value.is_finite() {
-                return Err(document.error(field, format!("is {value}"), "give zero or more"));
-            }
-        }
-        for (axis, tilt_rad) in self.mounting.tilt_rad.iter().enumerate() {
-            if !(-LARGEST_TILT_RAD..=LARGEST_TILT_RAD).contains(tilt_rad) {
-                let hint = format!("keep it between -{LARGEST_TILT_RAD} and {LARGEST_TILT_RAD} rad");
-                let field = format!("mounting.tilt_rad[{axis}]");
-                return Err(document.error(&field, format!("is {tilt_rad}"), &hint));
-            }
-        }
+        let relaxing: f64 = relaxation.iter().map(|term| term.weight).sum();
+        let problem = || format!("relaxes {relaxing} of the stiffness");
+        let hint = || "keep the weights' sum below 1";
+        ranges.that("relaxation", relaxing < 1.0, problem, hint);
+    }
+}
+
+impl Checked for ReadoutReality {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            gain_mean,
+            gain_deviation,
+            bubble_mm3,
+            bubble_deviation_mm3,
+            offset_deviation_kpa,
+            position_deviation_mm,
+            noise_kpa,
+            drift_kpa_per_sqrt_s,
+            offset_kpa_per_k,
+            offset_deviation_kpa_per_k,
+            lag_s,
+            lag_per_taxel_s,
+            jitter_s,
+        } = *self;
+        ranges.number("gain_mean", gain_mean, 1e-3..=1e3);
+        ranges.number("gain_deviation", gain_deviation, 0.0..=1.0);
+        ranges.number("bubble_mm3", bubble_mm3, 0.0..=1e3);
+        ranges.number("bubble_deviation_mm3", bubble_deviation_mm3, 0.0..=1e3);
+        ranges.number("offset_deviation_kpa", offset_deviation_kpa, 0.0..=1e3);
+        ranges.number("position_deviation_mm", position_deviation_mm, 0.0..=5.0);
+        ranges.number("noise_kpa", noise_kpa, 0.0..=1e3);
+        ranges.number("drift_kpa_per_sqrt_s", drift_kpa_per_sqrt_s, 0.0..=1e3);
+        ranges.number("offset_kpa_per_k", offset_kpa_per_k, -1e3..=1e3);
+        ranges.number(
+            "offset_deviation_kpa_per_k",
+            offset_deviation_kpa_per_k,
+            0.0..=1e3,
+        );
+        ranges.number("lag_s", lag_s, 0.0..=1.0);
+        ranges.number("lag_per_taxel_s", lag_per_taxel_s, 0.0..=1.0);
+        ranges.number("jitter_s", jitter_s, 0.0..=0.1);
+    }
+}
+
+impl Checked for RobotReality {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            place_deviation_mm,
+            depth_offset_mm,
+            depth_deviation_mm,
+            force_noise_n,
+            force_lag_s,
+        } = *self;
+        ranges.number("place_deviation_mm", place_deviation_mm, 0.0..=5.0);
+        ranges.number("depth_offset_mm", depth_offset_mm, -5.0..=5.0);
+        ranges.number("depth_deviation_mm", depth_deviation_mm, 0.0..=5.0);
+        ranges.number("force_noise_n", force_noise_n, 0.0..=100.0);
+        ranges.number("force_lag_s", force_lag_s, 0.0..=10.0);
+    }
+}
+
+impl Checked for MountingReality {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self { tilt_rad } = self;
+        ranges.numbers("tilt_rad", tilt_rad, 2, -LARGEST_TILT_RAD..=LARGEST_TILT_RAD);
+    }
+}
+
+impl Checked for ClimateReality {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            start_c,
+            warming_k,
+            warming_time_s,
+        } = *self;
+        ranges.number("warming_time_s", warming_time_s, 1e-3..=1e6);
         // What the barometers' registers can say.
-        for (field, temperature_c) in [
-            ("climate.start_c", climate.start_c),
-            ("climate.warming_k", climate.start_c + climate.warming_k),
-        ] {
-            if !(-128.0..128.0).contains(&temperature_c) {
-                let problem = format!("makes the sensor {temperature_c} °C");
-                return Err(document.error(field, problem, "keep it between -128 and 128 °C"));
-            }
+        for (field, temperature_c) in [("start_c", start_c), ("warming_k", start_c + warming_k)] {
+            let problem = || format!("makes the sensor {temperature_c:?} °C");
+            let hint = || "keep it between -128 and 128 °C";
+            ranges.that(field, (-128.0..128.0).contains(&temperature_c), problem, hint);
         }
-        for (index, term) in gel.relaxation.iter().enumerate() {
-            if term.time_s <= 0.0 || term.weight <= 0.0 {
-                let field = format!("gel.relaxation[{index}]");
-                return Err(document.error(
-                    &field,
-                    "has no positive weight and time",
-                    "give both above zero",
-                ));
-            }
-        }
-        let relaxing: f64 = gel.relaxation.iter().map(|term| term.weight).sum();
-        if relaxing >= 1.0 {
-            let problem = format!("relaxes {relaxing} of the stiffness");
-            return Err(document.error("gel.relaxation", problem, "keep the weights' sum below 1"));
-        }
-        Ok(())
     }
 }
 
@@ -351,5 +400,34 @@ mod tests {
             text.lines().nth(error.line - 1).unwrap().starts_with("noise_kpa"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn every_number_has_a_range() {
+        // Zero switches the others off.
+        let signed = [
+            "gel.yeoh_kpa[1]",
+            "gel.yeoh_kpa[2]",
+            "readout.offset_kpa_per_k",
+            "robot.depth_offset_mm",
+            "climate.start_c",
+            "climate.warming_k",
+        ];
+        let mut n_numbers = 0;
+        for wrong in [-1.0, 1e300, 1e-300, 0.0, f64::NAN] {
+            for (field, text) in twintac_config::with_each_number(HARDER, wrong) {
+                n_numbers += 1;
+                match Reality::parse("harder.toml", &text) {
+                    Ok(_) if field == "seed" => assert_eq!(wrong, 0.0),
+                    Ok(_) if wrong < 0.0 => assert!(signed.contains(&&field[..]), "{field} = {wrong}"),
+                    Ok(_) => assert!(wrong < 1.0, "{field} = {wrong}"),
+                    Err(error) => {
+                        let sum = field == "climate.start_c" && error.field == "climate.warming_k";
+                        assert!(error.field == field || sum, "{field} = {wrong}: {error}");
+                    }
+                }
+            }
+        }
+        assert!(n_numbers >= 5 * 38, "{n_numbers}");
     }
 }

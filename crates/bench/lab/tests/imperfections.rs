@@ -11,7 +11,7 @@ use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::Press;
 use twintac_rig::TcpPose;
 use twintac_sensor::Sensor;
-use twintac_shape::{Pose, Solid};
+use twintac_shape::{Pose, Solid, SurfaceFile};
 
 const HEIGHT_MM: f64 = 6.0;
 const RADIUS_MM: f64 = 8.0;
@@ -297,9 +297,7 @@ fn a_weight_on_a_rough_gel_comes_off_on_another_way() {
 #[test]
 fn a_gel_from_a_file_keeps_its_height() {
     let mut from_file = (*sensor()).clone();
-    from_file.gel.solid = Solid::Stl {
-        path: "gel.stl".into(),
-    };
+    from_file.gel.solid = Solid::Stl(SurfaceFile::new("gel.stl"));
     let mut reality = perfect();
     reality.gel.height_ratio = 1.2;
     let Err(error) = Lab::new(Arc::new(from_file), reality) else {

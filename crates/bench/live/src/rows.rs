@@ -49,13 +49,11 @@ impl<W: Write> RowWriter<W> {
     /// What `out` says.
     pub fn new(mut out: W, format: Format, about: &About) -> io::Result<Self> {
         if format == Format::Csv {
-            write!(out, "seq,bench_s,provenance")?;
+            let mut head = ["seq", "bench_s", "provenance"].map(str::to_owned).to_vec();
             for unit in ["above_tare_kpa", "counts", "temperature_c", "fault"] {
-                for taxel in &about.taxels {
-                    write!(out, ",{taxel}_{unit}")?;
-                }
+                head.extend(about.taxels.iter().map(|taxel| format!("{taxel}_{unit}")));
             }
-            writeln!(out)?;
+            write_csv(&mut out, head)?;
             out.flush()?;
         }
         Ok(Self {
@@ -105,21 +103,25 @@ fn to_a_millipascal(pressure_kpa: f64) -> f64 {
 
 impl Row<'_> {
     fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
-        write!(out, "{},{:.6},{}", self.seq, self.bench_s, self.provenance)?;
-        for taxel in &self.taxels {
-            write!(out, ",{}", text(taxel.above_tare_kpa))?;
-        }
-        for taxel in &self.taxels {
-            write!(out, ",{}", text(taxel.counts))?;
-        }
-        for taxel in &self.taxels {
-            write!(out, ",{}", text(taxel.temperature_c))?;
-        }
-        for taxel in &self.taxels {
-            write!(out, ",{}", taxel.fault.unwrap_or_default())?;
-        }
-        writeln!(out)
+        let taxels = || self.taxels.iter();
+        let mut cells = vec![
+            self.seq.to_string(),
+            format!("{:.6}", self.bench_s),
+            self.provenance.to_string(),
+        ];
+        cells.extend(taxels().map(|taxel| text(taxel.above_tare_kpa)));
+        cells.extend(taxels().map(|taxel| text(taxel.counts)));
+        cells.extend(taxels().map(|taxel| text(taxel.temperature_c)));
+        cells.extend(taxels().map(|taxel| text(taxel.fault)));
+        write_csv(out, cells)
     }
+}
+
+/// Writes one line, whole or not at all as far as `out` can.
+fn write_csv(out: &mut impl Write, cells: Vec<String>) -> io::Result<()> {
+    let mut line = csv::Writer::from_writer(Vec::new());
+    line.write_record(cells)?;
+    out.write_all(&line.into_inner().map_err(csv::IntoInnerError::into_error)?)
 }
 
 fn text(value: Option<impl ToString>) -> String {

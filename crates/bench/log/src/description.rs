@@ -15,6 +15,8 @@ const VERSION: u32 = 1;
 /// Most taxels of a sensor: each has two channels of the file, which are numbered with 16 bits.
 const MOST_TAXELS: usize = 10_000;
 const UNIT_TOLERANCE: f64 = 1e-6;
+/// Key of the checksum of the other entries: they say when and where all that follows was.
+const CHECKSUM: &str = "checksum";
 
 /// What a log is about. It stands in the file before the first message, so that a log that was cut has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,6 +102,7 @@ impl Description {
             .map(|(field, value)| (field, value.to_string()))
             .collect();
         map.insert("log_version".to_owned(), VERSION.to_string());
+        map.insert(CHECKSUM.to_owned(), checksum(&map).to_string());
         Ok(map)
     }
 
@@ -108,6 +111,13 @@ impl Description {
         let version = map.get("log_version").map_or("none", String::as_str);
         if version != VERSION.to_string() {
             return Err(format!("its log version is {version}, expected {VERSION}"));
+        }
+        // Older logs have none.
+        if map
+            .get(CHECKSUM)
+            .is_some_and(|written| *written != checksum(map).to_string())
+        {
+            return Err("its description is damaged: its checksum does not match".to_owned());
         }
         let mut fields = serde_json::Map::new();
         for (field, text) in map {
@@ -119,4 +129,16 @@ impl Description {
         description.check().map_err(|e| e.to_string())?;
         Ok(description)
     }
+}
+
+/// CRC-32 of all entries but the checksum itself.
+fn checksum(map: &BTreeMap<String, String>) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    for (key, value) in map.iter().filter(|(key, _)| *key != CHECKSUM) {
+        for text in [key, value] {
+            hasher.update(text.as_bytes());
+            hasher.update(&[0]);
+        }
+    }
+    hasher.finalize()
 }

@@ -27,6 +27,7 @@
 
 mod accepts;
 mod cdr;
+mod channels;
 mod description;
 mod error;
 mod event;

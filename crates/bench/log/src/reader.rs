@@ -1,40 +1,47 @@
 //! An MCAP file in, messages out.
 
-use std::collections::BTreeMap;
+use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
+use crate::channels::{Channels, DAMAGED};
 use crate::mcap::{Found, Scanner};
-use crate::ros::{decode, stream_of};
+use crate::ros::decode;
 use crate::writer::DESCRIPTION;
 use crate::{Body, Description, Event, LogError, Message, Stream};
 
-/// How a log ends.
+/// How a log ends, and whether it is as it was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// It was finished.
+    /// It was finished, and all its checksums match.
     Whole,
+    /// It was finished, but has changed since: messages that are missing are marked as gaps. Without a gap, what has changed stands outside of
+    /// the messages: what the log says of the sensor and the bench may be wrong.
+    Damaged,
     /// It was cut, or its end is damaged: this is what was flushed before.
     Cut,
 }
 
 /// Reads a log from its start, whole or cut: an iterator over its messages, in the order in which they were written.
 ///
-/// Messages that were damaged on the disk become an [`Event::Gap`] in all streams. Channels of others are passed over. Memory
-/// does not grow with the file.
+/// Messages that were damaged on the disk, or are missing by their numbers, become an [`Event::Gap`]. Channels of others are passed over.
+/// Memory does not grow with the file.
 #[derive(Debug)]
 pub struct LogReader<R> {
     scanner: Scanner<R>,
     file: String,
     description: Description,
     /// What is read back, by number of the channel.
-    streams: BTreeMap<u16, Stream>,
+    channels: Channels,
     /// Latest time so far, on the bench's clock, ns.
     latest_ns: u64,
+    /// Whether something is missing before the next message.
     is_damaged: bool,
-    /// The message behind a gap.
-    held: Option<Message>,
+    /// Whether something was missing.
+    was_damaged: bool,
+    /// Gaps, and the message behind them.
+    held: VecDeque<Message>,
     ending: Option<Ending>,
 }
 
@@ -66,11 +73,11 @@ impl<R: Read> LogReader<R> {
         let mut scanner = Scanner::open(source)
             .map_err(read)?
             .ok_or_else(|| not_a_log("it does not start as an MCAP file".to_owned()))?;
-        let mut streams = BTreeMap::new();
+        let mut channels = Channels::default();
         let map = loop {
             match scanner.next().map_err(read)? {
                 Found::Metadata { name, map } if name == DESCRIPTION => break map,
-                Found::Channel { id, topic, schema } => note(&mut streams, id, &topic, &schema),
+                Found::Channel { id, topic, schema } => channels.note(id, &topic, &schema),
                 Found::Metadata { .. } => {}
                 Found::Cut => {
                     return Err(not_a_log("it ends before its description".to_owned()));
@@ -82,10 +89,11 @@ impl<R: Read> LogReader<R> {
             description: Description::from_map(&map).map_err(not_a_log)?,
             scanner,
             file: file.to_owned(),
-            streams,
+            channels,
             latest_ns: 0,
             is_damaged: false,
-            held: None,
+            was_damaged: false,
+            held: VecDeque::new(),
             ending: None,
         })
     }
@@ -117,18 +125,23 @@ impl<R: Read> LogReader<R> {
             match found {
                 Found::Message {
                     channel,
+                    sequence,
                     time_ns,
                     data,
                 } => {
-                    let Some(stream) = self.streams.get(&channel) else {
+                    let Some((stream, is_after_loss)) = self.channels.count(channel, sequence) else {
                         continue;
                     };
-                    match message(*stream, time_ns, data, &self.description) {
-                        Some(message) => return Ok(Some(message)),
+                    self.is_damaged |= is_after_loss;
+                    match message(stream, time_ns, data, &self.description) {
+                        Some(message) => {
+                            self.channels.note_time(channel, message.bench_ns);
+                            return Ok(Some(message));
+                        }
                         None => self.is_damaged = true,
                     }
                 }
-                Found::Channel { id, topic, schema } => note(&mut self.streams, id, &topic, &schema),
+                Found::Channel { id, topic, schema } => self.channels.note(id, &topic, &schema),
                 Found::Metadata { .. } => {}
                 Found::Damage => self.is_damaged = true,
                 Found::Compressed(how) => {
@@ -137,15 +150,36 @@ impl<R: Read> LogReader<R> {
                         problem: format!("it is compressed with `{how}`; `mcap decompress` undoes that"),
                     });
                 }
-                Found::End => self.ending = Some(Ending::Whole),
+                Found::End => self.end(),
                 Found::Cut => self.ending = Some(Ending::Cut),
             }
         }
         Ok(None)
     }
 
+    /// Compares what was read with what the file says of itself.
+    fn end(&mut self) {
+        if let Some(statistics) = self.scanner.statistics() {
+            let to_ns = statistics.last_ns.saturating_sub(self.description.start_unix_ns);
+            for gap in self.channels.gaps_at_end(statistics, to_ns) {
+                self.hold(gap);
+            }
+        }
+        let is_whole =
+            !self.scanner.is_altered() && !self.is_damaged && !self.was_damaged && self.held.is_empty();
+        self.ending = Some(if is_whole { Ending::Whole } else { Ending::Damaged });
+    }
+
+    fn hold(&mut self, gap: Event) {
+        let Event::Gap { from_ns, .. } = gap else { return };
+        self.held.push_back(Message {
+            bench_ns: from_ns,
+            body: Body::Event(gap),
+        });
+    }
+
     fn next_or_gap(&mut self) -> Result<Option<Message>, LogError> {
-        if let Some(held) = self.held.take() {
+        if let Some(held) = self.held.pop_front() {
             return Ok(Some(held));
         }
         let next = self.next_whole()?;
@@ -153,21 +187,23 @@ impl<R: Read> LogReader<R> {
         self.latest_ns = next
             .as_ref()
             .map_or(from_ns, |message| message.bench_ns.max(from_ns));
-        if !std::mem::take(&mut self.is_damaged) {
-            return Ok(next);
+        let is_damaged = std::mem::take(&mut self.is_damaged);
+        self.was_damaged |= is_damaged;
+        // At the end the summary may have told better.
+        if is_damaged && self.held.is_empty() {
+            self.hold(Event::Gap {
+                stream: None,
+                cause: DAMAGED.to_owned(),
+                from_ns,
+                to_ns: self.latest_ns,
+                lost: None,
+            });
+            if let Some(next) = &next {
+                self.channels.excuse(next.stream());
+            }
         }
-        self.held = next;
-        let gap = Event::Gap {
-            stream: None,
-            cause: "the file is damaged".to_owned(),
-            from_ns,
-            to_ns: self.latest_ns,
-            lost: None,
-        };
-        Ok(Some(Message {
-            bench_ns: from_ns,
-            body: Body::Event(gap),
-        }))
+        self.held.extend(next);
+        Ok(self.held.pop_front())
     }
 }
 
@@ -181,12 +217,6 @@ impl<R: Read> Iterator for LogReader<R> {
             self.ending = Some(Ending::Cut);
         }
         next.transpose()
-    }
-}
-
-fn note(streams: &mut BTreeMap<u16, Stream>, id: u16, topic: &str, schema: &str) {
-    if let Some(stream) = stream_of(topic, schema) {
-        streams.insert(id, stream);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::{Body, Ending, Event, LogError, LogReader, Stream, TaxelReading};
 pub struct Exported {
     /// Frames in the table.
     pub frames: u64,
-    /// Of these, frames with a gap before them that the log marks.
+    /// Gaps in them: that the log marks, or that damage has left.
     pub gaps: u64,
     /// Time of the last frame on the bench's clock, s; 0 without frames.
     pub last_s: f64,
@@ -44,7 +44,7 @@ pub fn export_frames(log: &Path, table: &Path) -> Result<Exported, LogError> {
     }
     Ok(Exported {
         frames: table.finish()?,
-        gaps,
+        gaps: gaps + u64::from(is_gap), // one behind the last frame
         last_s,
         ending: reader.ending().unwrap_or(Ending::Cut),
     })
@@ -52,9 +52,9 @@ pub fn export_frames(log: &Path, table: &Path) -> Result<Exported, LogError> {
 
 fn cell(taxel: &TaxelReading) -> TaxelCell {
     TaxelCell {
-        absolute_kpa: taxel.pressure_pa.map(|pa| 1e-3 * pa),
+        absolute_kpa: taxel.pressure_pa.filter(|pa| pa.is_finite()).map(|pa| 1e-3 * pa),
         counts: taxel.counts,
-        temperature_c: taxel.temperature_c,
+        temperature_c: taxel.temperature_c.filter(|c| c.is_finite()),
         fault: taxel.state.fault(),
     }
 }

@@ -84,7 +84,7 @@ fn a_damaged_byte_costs_one_chunk_and_leaves_a_gap() {
     damaged[place] ^= 1;
     let mut reader = reader(&damaged);
     let back: Vec<Message> = reader.by_ref().map(Result::unwrap).collect();
-    assert_eq!(reader.ending(), Some(Ending::Whole));
+    assert_eq!(reader.ending(), Some(Ending::Damaged));
     let gap = back
         .iter()
         .position(|message| matches!(message.body, Body::Event(Event::Gap { .. })))
@@ -302,4 +302,133 @@ fn lengths_that_are_lies_cost_no_memory() {
             );
         }
     }
+}
+
+/// Messages that a damaged log may lose: those in a gap that is marked, or behind the end of a log that says it was cut.
+fn is_said(lost: &Message, back: &[Message], ending: Ending) -> bool {
+    let is_in_gap = |message: &Message| {
+        let Body::Event(Event::Gap {
+            stream,
+            from_ns,
+            to_ns,
+            ..
+        }) = &message.body
+        else {
+            return false;
+        };
+        stream.is_none_or(|stream| stream == lost.stream()) && (*from_ns..=*to_ns).contains(&lost.bench_ns)
+    };
+    back.iter().any(is_in_gap)
+        || ending == Ending::Cut && back.iter().all(|message| message.bench_ns <= lost.bench_ns)
+}
+
+#[test]
+fn every_flipped_bit_is_said_and_what_it_loses_has_its_gap() {
+    let messages = bench(2, 1, [8, 8, 4]);
+    let whole = log(&description(1), &messages);
+    let mut endings = [0; 4];
+    let mut most_lost = 0;
+    for bit in 0..8 * whole.len() {
+        let mut bytes = whole.clone();
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        let Ok(mut reader) = LogReader::new(&bytes[..], "flipped") else {
+            endings[0] += 1;
+            continue;
+        };
+        let back: Vec<Message> = reader.by_ref().map(Result::unwrap).collect();
+        let ending = reader.ending().unwrap();
+        assert_ne!(ending, Ending::Whole, "bit {bit} of byte {}", bit / 8);
+        endings[1 + usize::from(ending == Ending::Cut)] += 1;
+        let lost: Vec<&Message> = messages
+            .iter()
+            .filter(|message| !back.contains(message))
+            .collect();
+        for message in &lost {
+            assert!(
+                is_said(message, &back, ending),
+                "bit {bit}: {message:?} is lost without a word: {back:?}"
+            );
+        }
+        if ending == Ending::Damaged {
+            most_lost = most_lost.max(lost.len());
+        }
+        let strange = |message: &&Message| {
+            !messages.contains(message) && !matches!(message.body, Body::Event(Event::Gap { .. }))
+        };
+        assert_eq!(back.iter().find(strange), None, "bit {bit}");
+        // Presses cannot be read where all poses are gone, and that is said too.
+        let read = presses(reader_of(&bytes), "flipped", &Default::default());
+        assert!(
+            read.is_err() || read.is_ok_and(|read| !read.remarks.is_empty()),
+            "bit {bit}"
+        );
+    }
+    let [refused, damaged, cut, _] = endings;
+    assert!(
+        damaged > 10 * cut,
+        "{refused} refused, {damaged} damaged, {cut} cut"
+    );
+    assert!(most_lost < messages.len(), "{most_lost} of {}", messages.len());
+}
+
+fn reader_of(bytes: &[u8]) -> LogReader<&[u8]> {
+    LogReader::new(bytes, "flipped").unwrap()
+}
+
+#[test]
+fn a_chunk_that_is_taken_for_something_else_leaves_a_gap() {
+    let messages = bench(4, 2, [10, 20, 5]);
+    let whole = log(&description(2), &messages);
+    let chunks = chunks(&whole);
+    for (number, place) in chunks.iter().enumerate() {
+        for (what, at, flip) in [
+            ("kind", 0, 0x40),
+            ("kind", 0, 1),
+            ("length", 2, 0x10),
+            ("length", 4, 1),
+        ] {
+            let mut bytes = whole.clone();
+            bytes[place + at] ^= flip;
+            let mut reader = reader(&bytes);
+            let back: Vec<Message> = reader.by_ref().map(Result::unwrap).collect();
+            let place = format!("{what} of chunk {number} of {}", chunks.len());
+            assert_eq!(reader.ending(), Some(Ending::Damaged), "{place}");
+            let lost = messages.iter().filter(|message| !back.contains(message));
+            let lost: Vec<&Message> = lost.collect();
+            assert!(
+                lost.iter()
+                    .all(|message| is_said(message, &back, Ending::Damaged)),
+                "{place}"
+            );
+            assert!(
+                lost.len() * (chunks.len() - 2) < messages.len(),
+                "{place}: one chunk, {}",
+                lost.len()
+            );
+        }
+    }
+    // The table of frames counts the gap, also of the last chunk.
+    let folder = tempfile::tempdir().unwrap();
+    let (path, table) = (
+        folder.path().join("damaged.mcap"),
+        folder.path().join("frames.parquet"),
+    );
+    let mut bytes = whole.clone();
+    bytes[chunks[chunks.len() - 1]] ^= 0x40;
+    std::fs::write(&path, bytes).unwrap();
+    let exported = twintac_log::export_frames(&path, &table).unwrap();
+    assert_eq!((exported.ending, exported.gaps), (Ending::Damaged, 1));
+    assert!(exported.frames < 40);
+}
+
+/// Where chunks begin.
+fn chunks(bytes: &[u8]) -> Vec<usize> {
+    let (mut at, mut chunks) = (8, Vec::new());
+    while at + 9 < bytes.len() {
+        if bytes[at] == 6 {
+            chunks.push(at);
+        }
+        at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+    }
+    chunks
 }

@@ -239,9 +239,14 @@ fn faults_are_invalid_for_as_long_as_they_last() {
     let back = read(&messages);
     let press = only(&back);
     assert_eq!(press.valid[50], [false, false]);
-    assert_eq!((press.taxels_raw[50][0], press.taxels_kpa[50][0]), (0.0, 0.0));
+    assert!(press.taxels_raw[50][0].is_nan() && press.taxels_kpa[50][0].is_nan());
     assert!(press.taxels_raw[50][1] > 1e6, "a saturated taxel's counts stay");
+    assert!(press.taxels_kpa[50][1].is_nan(), "but no pressure comes of them");
     assert_eq!(invalid_ms(press), [2500]);
+    assert_eq!(
+        back.remarks,
+        ["press `p`: taxel `S0` gave nothing in 1 of 101 frames"]
+    );
 }
 
 #[test]
@@ -263,7 +268,10 @@ fn a_log_that_was_cut_has_its_press_as_far_as_it_goes() {
     assert!(press.time_s.len() > 10);
     assert_eq!(
         back.remarks,
-        ["press `p` was not ended: it goes on to the log's end"]
+        [
+            "press `p` was not ended: it goes on to the log's end",
+            "the log was cut: it has what was flushed before"
+        ]
     );
 }
 

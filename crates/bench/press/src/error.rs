@@ -22,7 +22,7 @@ pub enum PressError {
         /// What is wrong with it, read after its name.
         problem: String,
         /// What to do about it.
-        hint: &'static str,
+        hint: String,
     },
     /// The settings do not say where the devices of a real bench are.
     #[error(

@@ -59,7 +59,11 @@ impl PressSettings {
                     "force_silence_s" => "give at most 0.1 s",
                     _ => "give at most 0.5 s",
                 };
-                return Err(PressError::Setting { field, problem, hint });
+                return Err(PressError::Setting {
+                    field,
+                    problem,
+                    hint: hint.to_owned(),
+                });
             }
         }
         Ok(())

@@ -7,6 +7,17 @@ use twintac_rig::{Limits, Retreat, Setup};
 
 use crate::Placement;
 
+/// Largest heights and speeds above the gel: no bench of an arm has more.
+const MOST_MM: f64 = 1000.0;
+const MOST_RAD_PER_S: f64 = 10.0;
+/// Farthest from the robot's base, mm.
+const FARTHEST_MM: f64 = 10_000.0;
+const MOST_N: f64 = 1000.0;
+/// Longest of the times that something is waited for.
+const MOST_S: f64 = 60.0;
+/// A second: barometers convert in milliseconds.
+const MOST_CONVERSION_US: f64 = 1e6;
+
 /// How presses are carried out on a bench.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -87,47 +98,52 @@ impl PressSettings {
     }
 
     /// The first field that makes no sense: its name, what is wrong, and what to do.
-    pub(crate) fn problem(&self) -> Option<(&'static str, String, &'static str)> {
-        for (field, value) in [
-            ("travel_height_mm", self.travel_height_mm),
-            ("travel_speed_mm_per_s", self.travel_speed_mm_per_s),
-            ("turn_speed_rad_per_s", self.turn_speed_rad_per_s),
-            ("approach_height_mm", self.approach_height_mm),
-            ("approach_speed_mm_per_s", self.approach_speed_mm_per_s),
-            ("search_mm", self.search_mm),
-            ("touch_force_n", self.touch_force_n),
-            ("touch_window_s", self.touch_window_s),
-            ("tare_s", self.tare_s),
-            ("largest_tare_n", self.largest_tare_n),
-            ("tactile_silence_s", self.tactile_silence_s),
-            ("frame_gap_s", self.frame_gap_s),
-            ("report_gap_s", self.report_gap_s),
+    pub(crate) fn problem(&self) -> Option<(&'static str, String, String)> {
+        for (field, value, most) in [
+            ("travel_height_mm", self.travel_height_mm, MOST_MM),
+            ("travel_speed_mm_per_s", self.travel_speed_mm_per_s, MOST_MM),
+            ("turn_speed_rad_per_s", self.turn_speed_rad_per_s, MOST_RAD_PER_S),
+            ("approach_height_mm", self.approach_height_mm, MOST_MM),
+            ("approach_speed_mm_per_s", self.approach_speed_mm_per_s, MOST_MM),
+            ("search_mm", self.search_mm, MOST_MM),
+            ("touch_force_n", self.touch_force_n, MOST_N),
+            ("touch_window_s", self.touch_window_s, MOST_S),
+            ("tare_s", self.tare_s, MOST_S),
+            ("largest_tare_n", self.largest_tare_n, MOST_N),
+            ("force_silence_s", self.force_silence_s, MOST_S),
+            ("robot_silence_s", self.robot_silence_s, MOST_S),
+            ("tactile_silence_s", self.tactile_silence_s, MOST_S),
+            ("frame_gap_s", self.frame_gap_s, MOST_S),
+            ("report_gap_s", self.report_gap_s, MOST_S),
+            ("conversion_us", f64::from(self.conversion_us), MOST_CONVERSION_US),
         ] {
-            if value <= 0.0 || !value.is_finite() {
-                return Some((field, format!("is {value}"), "give a number above zero"));
+            if !(value > 0.0 && value <= most) {
+                let hint = format!("give a number above zero, {most} at most");
+                return Some((field, format!("is {value}"), hint));
             }
         }
         if !(0.004..=0.02).contains(&self.servo_period_s) {
             let problem = format!("is {}", self.servo_period_s);
-            return Some(("servo_period_s", problem, "give 0.004 to 0.02"));
+            return Some(("servo_period_s", problem, "give 0.004 to 0.02".to_owned()));
         }
         let is_unit = |length: f64| (length - 1.0).abs() <= 1e-6;
         let placement = &self.placement;
-        for (field, rotation) in [
-            ("placement.base_from_gel", placement.base_from_gel.rotation),
-            (
-                "placement.tool_from_indenter",
-                placement.tool_from_indenter.rotation,
-            ),
+        for (field, pose) in [
+            ("placement.base_from_gel", placement.base_from_gel),
+            ("placement.tool_from_indenter", placement.tool_from_indenter),
         ] {
-            if !is_unit(rotation.length()) {
+            if !(pose.position_mm.abs().max_element() <= FARTHEST_MM) || pose.position_mm.is_nan() {
+                let problem = format!("is at {} mm", pose.position_mm);
+                return Some((field, problem, format!("give places within {FARTHEST_MM} mm")));
+            }
+            if !is_unit(pose.rotation.length()) {
                 let problem = "has no unit quaternion".to_owned();
-                return Some((field, problem, "normalise its rotation"));
+                return Some((field, problem, "normalise its rotation".to_owned()));
             }
         }
         if !is_unit(placement.force_axis.length()) {
             let problem = format!("is {}", placement.force_axis);
-            return Some(("placement.force_axis", problem, "give a unit vector"));
+            return Some(("placement.force_axis", problem, "give a unit vector".to_owned()));
         }
         None
     }
@@ -169,6 +185,22 @@ mod tests {
             wrong("servo_period_s = 0.008", "servo_period_s = 0.5"),
             "servo_period_s"
         );
+        for (field, value) in [
+            ("tare_s", "1e9"),
+            ("touch_window_s", "inf"),
+            ("frame_gap_s", "nan"),
+        ] {
+            let line = text
+                .lines()
+                .find(|line| line.starts_with(&format!("{field} = ")))
+                .unwrap();
+            assert_eq!(wrong(line, &format!("{field} = {value}")), field);
+        }
+        let line = text
+            .lines()
+            .find(|line| line.starts_with("conversion_us = "))
+            .unwrap();
+        assert_eq!(wrong(line, "conversion_us = 4294967295"), "conversion_us");
         assert_eq!(
             wrong("force_axis = [0.0, 0.0, -1.0]", "force_axis = [0.0, 0.0, -2.0]"),
             "placement.force_axis"

@@ -180,5 +180,5 @@ fn nearest(lines_mm: &[f64], at_mm: f64) -> usize {
                 .abs()
                 .total_cmp(&(lines_mm[b] - at_mm).abs())
         })
-        .unwrap_or(0)
+        .expect("an axis has two lines at least")
 }

@@ -90,6 +90,33 @@ pub enum MeshError {
         /// What was found.
         found: String,
     },
+    /// A mesh in a file whose lengths are not in mm.
+    #[error("the mesh {0}")]
+    Extent(#[from] twintac_shape::ExtentError),
+    /// Bodies in a mesh file that touch and do not share nodes.
+    #[error(
+        "nodes {} and {} are both at {at_mm} mm: bodies that touch have to share nodes (in Gmsh, `Coherence;` before meshing or `Coherence Mesh;` \
+         after it)",
+        tags[0],
+        tags[1]
+    )]
+    NodesTwice {
+        /// The nodes' tags in the file.
+        tags: [u64; 2],
+        /// Where they are, mm.
+        at_mm: DVec3,
+    },
+    /// Tetrahedra in a mesh file that overlap, or bodies that touch without common nodes.
+    #[error(
+        "tetrahedra overlap or touch without common nodes at {at_mm} mm: unite the bodies and mesh them again (in Gmsh, `BooleanFragments`)"
+    )]
+    Overlap {
+        /// A place there, mm.
+        at_mm: DVec3,
+    },
+    /// The boundary of a mesh in a file has no inside.
+    #[error("the boundary of the mesh {0}")]
+    Boundary(#[source] twintac_shape::SurfaceError),
     /// A field to write that does not fit the mesh.
     #[error("the field `{name}` has {found} values, expected {expected} finite ones")]
     Field {

@@ -1,6 +1,6 @@
 //! Generating a mesh of a solid.
 
-use twintac_shape::{SignedDistance, Solid, Surfaces};
+use twintac_shape::{SignedDistance, Solid, Surfaces, TriangleSurface};
 
 use crate::footprint::Footprint;
 use crate::lattice::Lattice;
@@ -35,11 +35,14 @@ pub fn generate(
     solid.validate()?;
     let mesh = match (solid, Footprint::of(solid)) {
         (_, Some(footprint)) => grid::mesh(&footprint, &grid::lattice(&footprint, inclusions, settings)?),
-        (Solid::Stl { path }, None) => {
-            let missing = || MeshError::SurfaceMissing { path: path.clone() };
+        (Solid::Stl(file), None) => {
+            let name = file.name();
+            let missing = || MeshError::SurfaceMissing {
+                path: name.clone().into_owned(),
+            };
             stuff(
-                path,
-                surfaces.get(path).ok_or_else(missing)?.as_ref(),
+                &name,
+                surfaces.get(&*name).ok_or_else(missing)?,
                 inclusions,
                 settings,
             )?
@@ -57,7 +60,7 @@ pub fn generate(
 /// Meshes a triangle surface that stands on the board.
 fn stuff(
     path: &str,
-    surface: &dyn SignedDistance,
+    surface: &TriangleSurface,
     inclusions: &[Cuboid],
     settings: &MeshSettings,
 ) -> Result<TetMesh, MeshError> {
@@ -71,6 +74,13 @@ fn stuff(
             path: path.to_owned(),
             expected: format!("a surface that stands on z = 0, within {OFF_BOARD_MM} mm"),
             found: format!("one from {low_mm} to {high_mm}"),
+        });
+    }
+    if let Some(at_mm) = surface.bodies_meet_at_mm() {
+        return Err(MeshError::Surface {
+            path: path.to_owned(),
+            expected: "bodies apart from each other".to_owned(),
+            found: format!("two that touch or overlap at {at_mm} mm"),
         });
     }
     let low_mm = low_mm.with_z(0.0);

@@ -91,7 +91,7 @@ impl Lattice {
         let plane_at = |at_mm: f64| {
             (0..z_mm.len())
                 .min_by(|&a, &b| (z_mm[a] - at_mm).abs().total_cmp(&(z_mm[b] - at_mm).abs()))
-                .unwrap_or(0)
+                .expect("a lattice has two planes at least")
         };
         let boxes: Vec<IndexBox> = inclusions
             .iter()

@@ -42,7 +42,7 @@
 //!     weight > 0.0 && mesh.sets.bonded.contains(node)
 //! }));
 //!
-//! assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes())?, mesh);
+//! assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes(), 1.0)?, mesh);
 //! # Ok::<(), twintac_mesh::MeshError>(())
 //! ```
 //!

@@ -56,7 +56,7 @@ const EDGES: [[usize; 4]; 6] = [
 ];
 
 impl Quality {
-    /// Measures a mesh. `solid_volume_mm3` is the volume of the solid without its inclusions, see [`crate::gel_volume_mm3`].
+    /// Measures a mesh of one tetrahedron or more. `solid_volume_mm3` is the volume of the solid without its inclusions, see [`crate::gel_volume_mm3`].
     #[must_use]
     pub fn of(mesh: &TetMesh, solid_volume_mm3: Option<f64>) -> Self {
         let volume_mm3 = mesh.volume_mm3();
@@ -75,13 +75,11 @@ impl Quality {
 }
 
 impl Spread {
-    /// The spread of numbers; all zero without any.
+    /// The spread of numbers, at least one.
     fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            let rank = (share * values.len().saturating_sub(1) as f64).round() as usize;
-            values.get(rank).copied().unwrap_or(0.0)
-        };
+        let last = values.len().checked_sub(1).expect("a mesh has a tetrahedron");
+        let at = |share: f64| values[(share * last as f64).round() as usize];
         Self {
             min: at(0.0),
             percentile_5: at(0.05),

@@ -49,8 +49,9 @@ pub(crate) fn mesh(lattice: &Lattice, region: &Region) -> Result<TetMesh, MeshEr
     for nodes in &background.tets {
         let cut = |a: usize, b: usize| {
             let edge = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
-            // Every edge from inside to outside was cut above, and moving points only removes edges from that list.
-            let place = edges.binary_search(&edge).unwrap_or_default();
+            let place = edges
+                .binary_search(&edge)
+                .expect("every edge from inside to outside was cut; moving points leaves fewer of them");
             (n_points + place as u32, cuts_mm[place])
         };
         let center = |center_mm: DVec3| {

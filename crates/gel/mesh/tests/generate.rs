@@ -13,7 +13,7 @@ use twintac_mesh::{
     Cuboid, Focus, MeshError, MeshSettings, Quality, TetMesh, gel_volume_mm3, generate,
     generate_with_node_count, gmsh,
 };
-use twintac_shape::{Dome, SignedDistance, Solid, Surfaces, TriangleSurface};
+use twintac_shape::{Dome, SignedDistance, Solid, SurfaceFile, Surfaces, TriangleSurface};
 
 /// The closed surface of the part of a ball above the board, of fine facets.
 fn sunk_ball(radius_mm: f64, center_mm: DVec3) -> TriangleSurface {
@@ -173,7 +173,7 @@ fn an_imported_mesh_can_be_bonded_to_its_inclusions() {
     let mesh = mesh_of(&block([20.0, 6.0, 6.0], 0.0), &chips, &MeshSettings::default());
     let text = gmsh::write(&mesh);
     let without_data = &text[..text.find("$NodeData").unwrap()];
-    let mut imported = gmsh::read(without_data.as_bytes()).unwrap();
+    let mut imported = gmsh::read(without_data.as_bytes(), 1.0).unwrap();
     assert!(imported.sets.bonded.len() < mesh.sets.bonded.len());
     imported.bond_to(&chips, 1e-6);
     assert_eq!(imported, mesh);
@@ -370,9 +370,7 @@ fn senseless_input_is_refused() {
         refused(&block([10.0, 10.0, 5.0], 6.0), &[], plain()),
         MeshError::Solid(_)
     ));
-    let stl = Solid::Stl {
-        path: "gel.stl".to_owned(),
-    };
+    let stl = Solid::Stl(SurfaceFile::new("gel.stl"));
     assert!(matches!(
         refused(&stl, &[], plain()),
         MeshError::SurfaceMissing { .. }
@@ -547,7 +545,7 @@ proptest! {
                 let error_mm3 = (mesh.volume_mm3() - expected_mm3).abs();
                 let most_mm3 = facets_mm3(&solid, &settings) + merged_faces_mm3(&chips, &settings);
                 prop_assert!(error_mm3 < most_mm3 + 1e-9 * expected_mm3, "{} {}", error_mm3, most_mm3);
-                prop_assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes()).unwrap(), mesh);
+                prop_assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes(), 1.0).unwrap(), mesh);
             }
             // A chip of 1.5 mm may reach into the rounding of a low block.
             Err(MeshError::Inclusion { .. }) => {}
@@ -602,7 +600,7 @@ proptest! {
     fn stuffed_surfaces_are_sound(radius_mm in 4.0..8.0, sunk in -0.6..0.8, x in -1.0..1.0, chips in any_chips(), settings in any_settings()) {
         let center_mm = DVec3::new(x, 0.5 * x, sunk * radius_mm);
         let surfaces = BTreeMap::from([("ball.stl".to_owned(), Arc::new(sunk_ball(radius_mm, center_mm)))]);
-        let solid = Solid::Stl { path: "ball.stl".to_owned() };
+        let solid = Solid::Stl(SurfaceFile::new("ball.stl"));
         match generate(&solid, &surfaces, &[], &settings) {
             Ok(mesh) => {
                 assert_sound(&mesh);

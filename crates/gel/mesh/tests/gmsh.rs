@@ -137,7 +137,7 @@ fn all_files() -> Vec<(String, Vec<u8>)> {
 #[test]
 fn every_version_and_encoding_gives_the_same_mesh() {
     for (name, file) in all_files() {
-        let mesh = gmsh::read(&file).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let mesh = gmsh::read(&file, 1.0).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(mesh.nodes_mm.len(), 5, "{name}");
         assert_eq!(mesh.tets.len(), 2, "{name}");
         assert!((0..2).all(|tet| mesh.tet_volume_mm3(tet) > 0.0), "{name}");
@@ -159,21 +159,21 @@ fn every_version_and_encoding_gives_the_same_mesh() {
 
 #[test]
 fn a_written_mesh_comes_back_bit_for_bit() {
-    let mut mesh = gmsh::read(&version_4(Encoding::Text)).unwrap();
+    let mut mesh = gmsh::read(&version_4(Encoding::Text), 1.0).unwrap();
     mesh.nodes_mm[0].x = -1.0 / 3.0 * 1e-7;
     // A node high above the board, on an inclusion.
     let freed = mesh.sets.free.remove(0);
     mesh.sets.bonded.push(freed);
     mesh.sets.bonded.sort_unstable();
     mesh.sets.top.retain(|&node| node != freed);
-    assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes()).unwrap(), mesh);
+    assert_eq!(gmsh::read(gmsh::write(&mesh).as_bytes(), 1.0).unwrap(), mesh);
 }
 
 /// Changes a text file and returns the message that it is refused with.
 fn refusal(from: &str, to: &str) -> String {
     let text = String::from_utf8(version_2(Encoding::Text)).unwrap();
     assert!(text.contains(from), "{from} is not in the file");
-    gmsh::read(text.replacen(from, to, 1).as_bytes())
+    gmsh::read(text.replacen(from, to, 1).as_bytes(), 1.0)
         .unwrap_err()
         .to_string()
 }
@@ -190,7 +190,7 @@ fn damage_is_named_with_its_place() {
     );
     assert_eq!(
         refusal("0 0 3 ", "0 NaN 3 "),
-        "mesh file, line 9: expected a coordinate within ±1e6 mm, found NaN"
+        "mesh file, line 9: expected a coordinate within ±1e6, found NaN"
     );
     assert_eq!(
         refusal("7 12 5 9", "7 12 5 8"),
@@ -205,11 +205,151 @@ fn damage_is_named_with_its_place() {
         "mesh file, line 14: expected `$EndElements`, found `$EndElement`"
     );
     assert!(refusal("30 7 12 5", "30 7 12 7").starts_with("tetrahedron 0 at "));
-    assert!(matches!(gmsh::read(b""), Err(MeshError::File { .. })));
+    assert!(matches!(gmsh::read(b"", 1.0), Err(MeshError::File { .. })));
     assert!(matches!(
-        gmsh::read(b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"),
+        gmsh::read(b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", 1.0),
         Err(MeshError::Empty { .. })
     ));
+}
+
+/// A text file of these nodes, numbered from 1, and elements: kind, entity, nodes.
+fn file_of(nodes: &[[f64; 3]], elements: &[(i64, i64, &[usize])]) -> String {
+    let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", nodes.len());
+    for (index, [x, y, z]) in nodes.iter().enumerate() {
+        text += &format!("{} {x} {y} {z}\n", index + 1);
+    }
+    text += &format!("$EndNodes\n$Elements\n{}\n", elements.len());
+    for (index, (kind, entity, nodes)) in elements.iter().enumerate() {
+        let nodes: Vec<String> = nodes.iter().map(usize::to_string).collect();
+        text += &format!("{} {kind} 2 1 {entity} {}\n", index + 1, nodes.join(" "));
+    }
+    text + "$EndElements\n"
+}
+
+/// A box of five tetrahedra, with its lowest corner here: nodes, and tetrahedra by nodes from `first` on.
+fn box_of(low: [f64; 3], size: [f64; 3], first: usize) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+    let corner = |bits: usize| [0, 1, 2].map(|axis| low[axis] + size[axis] * (bits >> axis & 1) as f64);
+    let tets = [
+        [0, 1, 2, 4],
+        [3, 1, 2, 7],
+        [5, 1, 4, 7],
+        [6, 2, 4, 7],
+        [1, 2, 4, 7],
+    ];
+    let numbered = tets.map(|tet| tet.map(|corner| first + corner).to_vec());
+    ((0..8).map(corner).collect(), numbered.to_vec())
+}
+
+fn read_text(nodes: &[[f64; 3]], tets: &[Vec<usize>], mm_per_unit: f64) -> Result<TetMesh, MeshError> {
+    let elements: Vec<(i64, i64, &[usize])> = tets.iter().map(|tet| (4, 1, &tet[..])).collect();
+    gmsh::read(file_of(nodes, &elements).as_bytes(), mm_per_unit)
+}
+
+#[test]
+fn an_element_of_two_physical_groups_counts_once() {
+    let (nodes, tets) = box_of([0.0; 3], [4.0, 3.0, 3.0], 1);
+    let once = read_text(&nodes, &tets, 1.0).unwrap();
+    let mut turned = tets.clone();
+    turned.iter_mut().for_each(|tet| tet.swap(0, 3));
+    let twice = read_text(&nodes, &[tets.clone(), turned, tets].concat(), 1.0).unwrap();
+    assert_eq!(twice, once);
+    assert!((twice.volume_mm3() - 36.0).abs() < 1e-12);
+    assert_eq!(twice.boundary_triangles().len(), 12);
+}
+
+#[test]
+fn other_solids_are_named_with_their_entity() {
+    let (nodes, tets) = box_of([0.0; 3], [4.0, 3.0, 3.0], 1);
+    let hexahedron = [1, 2, 4, 3, 5, 6, 8, 7];
+    for (kind, n_nodes, name) in [(5, 8, "a hexahedron"), (6, 6, "a prism"), (7, 5, "a pyramid")] {
+        let elements: Vec<(i64, i64, &[usize])> = vec![(4, 1, &tets[0]), (kind, 17, &hexahedron[..n_nodes])];
+        let error = gmsh::read(file_of(&nodes, &elements).as_bytes(), 1.0).unwrap_err();
+        let expected = format!(
+            "line 18: expected tetrahedra as the only solid elements, found {name} (kind {kind}) in entity 17"
+        );
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+    // The same in version 4.1, where elements stand in blocks.
+    let mut file = Writer::new("4.1", Encoding::Text);
+    file.text("$Nodes\n1 8 1 8\n3 9 0 8\n1 2 3 4 5 6 7 8\n");
+    nodes.iter().for_each(|node| file.reals(node));
+    file.text("\n$EndNodes\n$Elements\n1 1 1 1\n3 9 5 1\n1 1 2 4 3 5 6 8 7\n$EndElements\n");
+    let error = gmsh::read(&file.0, 1.0).unwrap_err().to_string();
+    assert!(
+        error.contains("found a hexahedron (kind 5) in entity 9"),
+        "{error}"
+    );
+    // Faces, lines and points are no part of the mesh.
+    let mut elements: Vec<(i64, i64, &[usize])> = vec![
+        (2, 1, &[1, 2, 3]),
+        (1, 1, &[1, 2]),
+        (15, 1, &[1]),
+        (3, 1, &[1, 2, 4, 3]),
+    ];
+    elements.extend(tets.iter().map(|tet| (4, 1, &tet[..])));
+    let mesh = gmsh::read(file_of(&nodes, &elements).as_bytes(), 1.0).unwrap();
+    assert_eq!(mesh, read_text(&nodes, &tets, 1.0).unwrap());
+}
+
+#[test]
+fn bodies_have_to_be_one_mesh() {
+    let (nodes, tets) = box_of([0.0; 3], [4.0, 3.0, 3.0], 1);
+    let with = |low: [f64; 3], size: [f64; 3]| {
+        let (more, tets_more) = box_of(low, size, 9);
+        read_text(
+            &[&nodes[..], &more].concat(),
+            &[&tets[..], &tets_more].concat(),
+            1.0,
+        )
+    };
+    assert!(
+        (with([5.0, 0.0, 0.0], [1.0; 3]).unwrap().volume_mm3() - 37.0).abs() < 1e-12,
+        "apart"
+    );
+    let unmerged = with([4.0, 0.0, 0.0], [4.0, 3.0, 3.0]).unwrap_err();
+    assert!(
+        matches!(unmerged, MeshError::NodesTwice { tags: [2, 9], .. }),
+        "{unmerged}"
+    );
+    assert!(unmerged.to_string().contains("Coherence Mesh;"), "{unmerged}");
+    for (name, low, size) in [
+        ("overlap", [2.0, 1.0, 1.0], [4.0; 3]),
+        ("in the same planes", [2.0, 0.0, 0.0], [4.0, 3.0, 3.0]),
+        ("within", [1.0, 1.0, 1.0], [1.0; 3]),
+        ("touch", [4.0, 1.0, 1.0], [1.0; 3]),
+    ] {
+        let error = with(low, size).unwrap_err();
+        assert!(
+            matches!(error, MeshError::Overlap { .. } | MeshError::NodesTwice { .. }),
+            "{name}: {error}"
+        );
+    }
+    // Two tetrahedra on the same side of their common face.
+    let nodes = [
+        [0.0, 0.0, 0.0],
+        [3.0, 0.0, 0.0],
+        [0.0, 3.0, 0.0],
+        [1.0, 1.0, 2.0],
+        [1.0, 1.0, 3.0],
+    ];
+    let folded = read_text(&nodes, &[vec![1, 2, 3, 4], vec![1, 2, 3, 5]], 1.0).unwrap_err();
+    assert!(matches!(folded, MeshError::Overlap { .. }), "{folded}");
+}
+
+#[test]
+fn a_mesh_in_metres_is_noticed_and_read_as_such() {
+    let (nodes, tets) = box_of([0.0; 3], [0.004, 0.003, 0.003], 1);
+    let error = read_text(&nodes, &tets, 1.0).unwrap_err().to_string();
+    assert!(
+        error.contains("the mesh is 0.004 × 0.003 × 0.003 mm large"),
+        "{error}"
+    );
+    assert!(error.contains("`unit = \"m\"`"), "{error}");
+    assert!((read_text(&nodes, &tets, 1e3).unwrap().volume_mm3() - 36.0).abs() < 1e-9);
+    let (nodes, tets) = box_of([0.0; 3], [4e4, 3e4, 3e4], 1);
+    assert!(matches!(read_text(&nodes, &tets, 1.0), Err(MeshError::Extent(_))));
+    let (nodes, tets) = box_of([5e5, 0.0, 0.0], [4.0, 3.0, 3.0], 1);
+    assert!(matches!(read_text(&nodes, &tets, 1.0), Err(MeshError::Extent(_))));
 }
 
 fn assert_sound(mesh: &TetMesh) {
@@ -227,7 +367,7 @@ proptest! {
         let (name, file) = all_files().swap_remove(which);
         let end = file.windows(12).position(|w| w == b"$EndElements").unwrap();
         let cut = (share * (end + 11) as f64) as usize;
-        prop_assert!(gmsh::read(&file[..cut]).is_err(), "{} cut to {}", name, cut);
+        prop_assert!(gmsh::read(&file[..cut], 1.0).is_err(), "{} cut to {}", name, cut);
     }
 
     #[test]
@@ -240,7 +380,7 @@ proptest! {
             let at = (share * file.len() as f64) as usize;
             file[at] = byte;
         }
-        if let Ok(mesh) = gmsh::read(&file) {
+        if let Ok(mesh) = gmsh::read(&file, 1.0) {
             assert_sound(&mesh);
         }
     }
@@ -250,6 +390,6 @@ proptest! {
         let mut file = Writer::new(if four { "4.1" } else { "2.2" }, if binary { Encoding::Little } else { Encoding::Text });
         file.text("$Nodes\n");
         file.0.append(&mut tail);
-        prop_assert!(gmsh::read(&file.0).is_err());
+        prop_assert!(gmsh::read(&file.0, 1.0).is_err());
     }
 }

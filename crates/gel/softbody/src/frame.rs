@@ -1,7 +1,7 @@
 //! What a step reports.
 
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The result of a step. Forces act on the gel, in the gel's frame; their sum is zero except for the residual.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Frame {
 }
 
 /// How the time of a step was spent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// Energy and forces of the elements, s.
     pub forces_s: f64,

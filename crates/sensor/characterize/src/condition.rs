@@ -1,8 +1,9 @@
-//! Which taxels are dead, stuck or late.
+//! Which taxels are dead, stuck, late or intermittent.
 //!
-//! Dead: a taxel that gives no reading in most frames, or always the count zero. Stuck: one whose value never changes. Late: one whose changes from
-//! frame to frame fit the changes of the other taxels a frame before at least twice as well (by the sum of squares that a common factor leaves) as
-//! those of the same frame, in most presses that tell. A press tells where one of both fits twice as well as the other.
+//! Dead: a taxel that gives nothing that can be used in most frames, or always the count zero. Stuck: one whose value never changes. Late: one whose
+//! changes from frame to frame fit the changes of the other taxels a frame before at least twice as well (by the sum of squares that a common factor
+//! leaves) as those of the same frame, in most presses that tell. A press tells where one of both fits twice as well as the other. Intermittent: one
+//! that gives nothing in some frames. What a taxel does is told from the frames in which it gave something.
 
 use serde::Serialize;
 use twintac_recording::{Press, Recording};
@@ -25,6 +26,8 @@ pub enum Fate {
     Stuck,
     /// It reads what it should have read a frame before.
     Late,
+    /// It reads nothing in some frames.
+    Intermittent,
 }
 
 /// A taxel's condition.
@@ -38,6 +41,8 @@ pub struct Condition {
     pub n_frames: usize,
     /// Those of them whose reading can be used.
     pub n_valid: usize,
+    /// Those of them in which the taxel gave nothing.
+    pub n_missing: usize,
     /// Presses that tell whether it is late.
     pub n_timed: usize,
 }
@@ -46,30 +51,37 @@ pub(crate) fn conditions(recording: &Recording) -> Vec<Condition> {
     let taxels = recording.taxels.iter().enumerate();
     taxels
         .map(|(taxel, name)| {
-            let frames = || {
-                let presses = recording.presses.iter();
-                presses.flat_map(move |press| press.valid.iter().zip(&press.taxels_raw))
-            };
-            let n_valid = frames().filter(|(valid, _)| valid[taxel]).count();
+            let frames = recording
+                .presses
+                .iter()
+                .flat_map(|press| press.valid.iter().zip(&press.taxels_raw));
+            let (mut n_frames, mut n_valid, mut given) = (0, 0, Vec::new());
+            for (valid, raw) in frames {
+                n_frames += 1;
+                n_valid += usize::from(valid[taxel]);
+                given.extend(Some(raw[taxel]).filter(|raw| !raw.is_nan()));
+            }
+            let n_missing = n_frames - given.len();
             let lags: Vec<bool> = recording
                 .presses
                 .iter()
                 .filter_map(|press| lags(press, taxel))
                 .collect();
             let n_late = lags.iter().filter(|lags| **lags).count();
-            let first = frames().next().map_or(0.0, |(_, raw)| raw[taxel]);
-            let never_changes = frames().count() >= FEWEST && frames().all(|(_, raw)| raw[taxel] == first);
+            let never_changes = given.len() >= FEWEST && given.iter().all(|raw| *raw == given[0]);
             let fate = match () {
-                () if never_changes && first != 0.0 => Fate::Stuck,
-                () if never_changes || 2 * n_valid < frames().count() => Fate::Dead,
+                () if never_changes && given[0] != 0.0 => Fate::Stuck,
+                () if never_changes || 2 * n_valid < n_frames => Fate::Dead,
                 () if 2 * n_late > lags.len() => Fate::Late,
+                () if n_missing > 0 => Fate::Intermittent,
                 () => Fate::Fine,
             };
             Condition {
                 taxel: name.clone(),
                 fate,
-                n_frames: frames().count(),
+                n_frames,
                 n_valid,
+                n_missing,
                 n_timed: lags.len(),
             }
         })
@@ -162,6 +174,37 @@ mod tests {
             }
         });
         assert_eq!((late.fate, late.n_timed), (Fate::Late, 1));
+    }
+
+    /// Lets the last taxel give nothing in some frames.
+    fn silence(press: &mut Press, is_silent: impl Fn(usize) -> bool) {
+        for frame in (0..press.time_s.len()).filter(|frame| is_silent(*frame)) {
+            (press.taxels_kpa[frame][2], press.taxels_raw[frame][2]) = (f64::NAN, f64::NAN);
+            press.valid[frame][2] = false;
+        }
+    }
+
+    #[test]
+    fn a_taxel_that_gives_nothing_at_times_is_intermittent_and_else_as_it_is() {
+        let at_times = |frame: usize| frame % 7 == 3;
+        let silent = with_last(|press| silence(press, at_times));
+        assert_eq!(silent.fate, Fate::Intermittent);
+        assert_eq!(silent.n_missing, silent.n_frames - silent.n_valid);
+        assert!(silent.n_missing > 10, "{silent:?}");
+        let stuck = with_last(|press| {
+            press.taxels_raw.iter_mut().for_each(|raw| raw[2] = 101.3);
+            silence(press, at_times);
+        });
+        assert_eq!(stuck.fate, Fate::Stuck, "silence is no change");
+        let zero = with_last(|press| {
+            press.taxels_raw.iter_mut().for_each(|raw| raw[2] = 0.0);
+            silence(press, at_times);
+        });
+        assert_eq!(zero.fate, Fate::Dead);
+        let dead = with_last(|press| silence(press, |frame| frame > 2));
+        assert_eq!(dead.fate, Fate::Dead);
+        let gone = with_last(|press| silence(press, |_| true));
+        assert_eq!((gone.fate, gone.n_missing), (Fate::Dead, gone.n_frames));
     }
 
     #[test]

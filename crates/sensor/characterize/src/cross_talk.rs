@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use crate::recorded::{Recorded, above};
-use crate::statistics::{between, binned};
+use crate::statistics::{between, binned, mean};
 use crate::{CharacterizeOptions, Finding};
 
 /// Steps of force that readings are averaged in.
@@ -21,8 +21,8 @@ pub struct CrossTalk {
     pub pressed: Vec<String>,
     /// Names of the taxels: the columns.
     pub taxels: Vec<String>,
-    /// Reading over that of the pressed taxel, %; rows, then columns. Mean over presses.
-    pub percent: Vec<Vec<f64>>,
+    /// Reading over that of the pressed taxel, %; rows, then columns. Mean over presses in which both read; none of a taxel that reads in none of them.
+    pub percent: Vec<Vec<Option<f64>>>,
     /// The largest but for the pressed taxels themselves, %.
     pub largest_percent: f64,
 }
@@ -37,26 +37,26 @@ pub(crate) fn cross_talk(
     let force_n = peaks_n.fold(f64::INFINITY, f64::min) * (1.0 - 1.0 / BINS as f64);
     let (mut pressed, mut percent) = (Vec::new(), Vec::new());
     for (taxel, name) in taxels.iter().enumerate() {
-        let rows: Vec<Vec<f64>> = slow(taxel)
+        let rows: Vec<Vec<Option<f64>>> = slow(taxel)
             .filter_map(|press| row(press, taxel, taxels.len(), force_n))
             .collect();
         if rows.is_empty() {
             continue;
         }
-        let column = |other: usize| rows.iter().map(|row| row[other]).sum::<f64>() / rows.len() as f64;
+        let column = |other: usize| mean(&rows.iter().filter_map(|row| row[other]).collect::<Vec<f64>>());
         pressed.push(name.clone());
-        percent.push((0..taxels.len()).map(column).collect::<Vec<f64>>());
+        percent.push((0..taxels.len()).map(column).collect::<Vec<_>>());
     }
     let others = percent.iter().zip(&pressed).flat_map(|(row, name)| {
         row.iter()
             .zip(taxels)
             .filter(move |(_, other)| *other != name)
-            .map(|(percent, _)| *percent)
+            .filter_map(|(percent, _)| *percent)
     });
-    let largest_percent = others.fold(f64::NEG_INFINITY, f64::max);
-    if pressed.is_empty() || taxels.len() < 2 {
-        return Finding::NotGiven("it takes slow presses above a taxel, and another taxel".to_owned());
-    }
+    let Some(largest_percent) = others.reduce(f64::max) else {
+        let why = "it takes slow presses above a taxel, and another taxel that reads meanwhile";
+        return Finding::NotGiven(why.to_owned());
+    };
     Finding::Found(CrossTalk {
         force_n,
         pressed,
@@ -66,15 +66,15 @@ pub(crate) fn cross_talk(
     })
 }
 
-fn row(press: &Recorded<'_>, taxel: usize, n_taxels: usize, force_n: f64) -> Option<Vec<f64>> {
+/// What each taxel reads over the pressed one, %; nothing if that one does not read.
+fn row(press: &Recorded<'_>, taxel: usize, n_taxels: usize, force_n: f64) -> Option<Vec<Option<f64>>> {
     let reading_kpa = |other: usize| {
         let response = binned(&press.points(other, &press.up()), press.peak_n(), BINS);
         between(&response, force_n)
     };
     let pressed_kpa = reading_kpa(taxel)?;
-    (0..n_taxels)
-        .map(|other| Some(100.0 * reading_kpa(other)? / pressed_kpa))
-        .collect()
+    let percent = |other: usize| Some(100.0 * reading_kpa(other)? / pressed_kpa);
+    Some((0..n_taxels).map(percent).collect())
 }
 
 #[cfg(test)]
@@ -92,7 +92,28 @@ mod tests {
         );
         let found = finding.found().unwrap();
         assert_eq!(found.pressed, ["a"]);
-        assert!((found.percent[0][0] - 100.0).abs() < 1e-9 && (found.percent[0][1] - 25.0).abs() < 1e-9);
+        let percent = found.percent[0].iter().map(|percent| percent.unwrap());
+        assert!(
+            percent
+                .zip([100.0, 25.0])
+                .all(|(found, known)| (found - known).abs() < 1e-9)
+        );
         assert!((found.largest_percent - 25.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_taxel_that_does_not_read_has_none_and_takes_none_from_the_others() {
+        let mut silent = press(&Shape::default());
+        silent.valid.iter_mut().for_each(|valid| valid[1] = false);
+        let names = ["a".to_owned(), "b".to_owned()];
+        let talk = |presses: &[twintac_recording::Press]| {
+            cross_talk(&all(presses), &names, &CharacterizeOptions::default())
+        };
+        let both = talk(&[press(&Shape::default()), silent.clone()]);
+        assert!(
+            (both.found().unwrap().largest_percent - 25.0).abs() < 1e-9,
+            "{both:?}"
+        );
+        assert!(talk(&[silent]).why_not().unwrap().contains("reads meanwhile"));
     }
 }

@@ -8,7 +8,7 @@ use crate::{DetectionLimit, Finding};
 /// The largest force and reading in the data. Nothing is said of what lies beyond.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CoveredRange {
-    /// Largest force with valid readings of all taxels, N, wherever it was.
+    /// Largest force with valid readings of all taxels that gave one, N, wherever it was.
     pub force_n: f64,
     /// The taxel that reads most then.
     pub taxel: String,
@@ -33,10 +33,16 @@ pub(crate) fn covered(
         let frames = press.phases.loading.start..press.phases.unloading.end;
         let invalid = frames.clone().flat_map(|frame| &press.press.valid[frame]);
         n_invalid += invalid.filter(|valid| !**valid).count();
-        for frame in frames.filter(|&frame| press.press.valid[frame].iter().all(|valid| *valid)) {
+        // A taxel that gave nothing says nothing of the range; one whose reading cannot be used is at its end.
+        let is_there = |frame: usize, taxel: usize| !press.press.taxels_raw[frame][taxel].is_nan();
+        let is_in_range = |frame: &usize| {
+            (0..taxels.len()).all(|taxel| press.press.valid[*frame][taxel] || !is_there(*frame, taxel))
+        };
+        for frame in frames.filter(is_in_range) {
             let readings_kpa = &press.press.taxels_kpa[frame];
             let force_n = press.force_n(frame);
-            let most = (0..taxels.len()).max_by(|&a, &b| readings_kpa[a].total_cmp(&readings_kpa[b]));
+            let given = (0..taxels.len()).filter(|taxel| is_there(frame, *taxel));
+            let most = given.max_by(|&a, &b| readings_kpa[a].total_cmp(&readings_kpa[b]));
             let Some(taxel) = most else { continue };
             if best.as_ref().is_none_or(|best| force_n > best.force_n) {
                 best = Some(CoveredRange {
@@ -86,6 +92,15 @@ mod tests {
             .zip(saturated.force_n.as_ref().unwrap())
         {
             valid[0] = *force_n < 5.0;
+        }
+        // A taxel that gives nothing at all does not end the range.
+        for (taxels, valid) in saturated
+            .taxels_kpa
+            .iter_mut()
+            .zip(&mut saturated.taxels_raw)
+            .zip(&mut saturated.valid)
+        {
+            (taxels.0[1], taxels.1[1], valid[1]) = (f64::NAN, f64::NAN, false);
         }
         let presses = [press(&Shape::default()), saturated];
         let limits = Finding::NotGiven(String::new());

@@ -4,12 +4,25 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use twintac_config::{ConfigError, Document};
+use twintac_shape::{ExtentError, SignedDistance, Solid, Surfaces};
 
 use crate::file::SensorToml;
 use crate::{Indenter, Sensor};
 
 /// Lengths that differ by less are the same, mm.
 const TOLERANCE_MM: f64 = 1e-6;
+/// A surface in a file stands on the board if its lowest point is so near, mm.
+const ON_BOARD_MM: f64 = 1e-3;
+
+/// What numbers of a description can be at most: lengths, mm; pressures, kPa; forces, N; rates, Hz; friction; counts.
+mod most {
+    pub(super) const LENGTH_MM: f64 = 1e3;
+    pub(super) const PRESSURE_KPA: f64 = 1e6;
+    pub(super) const FORCE_N: f64 = 1e6;
+    pub(super) const RATE_HZ: f64 = 1e4;
+    pub(super) const FRICTION: f64 = 10.0;
+    pub(super) const PRESSURE_PA: f64 = 1e9;
+}
 
 struct Checker<'a> {
     sensor: &'a Sensor,
@@ -46,11 +59,23 @@ impl Checker<'_> {
         self.document.error(field, problem, hint)
     }
 
-    fn above_zero(&self, field: &str, value: f64) -> Checked {
-        if value > 0.0 {
+    fn above_zero(&self, field: &str, value: f64, most: f64) -> Checked {
+        if value > 0.0 && value <= most {
             return Ok(());
         }
-        Err(self.error(field, format!("is {value}"), "give a number above 0"))
+        let hint = format!("give a number above 0, {most} at most");
+        Err(self.error(field, format!("is {value}"), &hint))
+    }
+
+    fn within(&self, field: &str, value: f64, most: f64) -> Checked {
+        if value.abs() <= most {
+            return Ok(());
+        }
+        Err(self.error(
+            field,
+            format!("is {value}"),
+            &format!("give a number from -{most} to {most}"),
+        ))
     }
 
     fn names(&self) -> Checked {
@@ -106,14 +131,22 @@ impl Checker<'_> {
                 &hint,
             )
         })?;
-        let lowest_mm = gel.solid.bounds_mm(&self.sensor.surfaces).0.z;
-        if lowest_mm.abs() > TOLERANCE_MM {
+        let Solid::Stl(file) = &gel.solid else {
+            return Ok(());
+        };
+        let surface = &self.sensor.surfaces[&*file.name()];
+        let lowest_mm = surface.bounds_mm().0.z;
+        if lowest_mm.abs() > ON_BOARD_MM {
             let problem = format!("names a surface whose lowest point is at z = {lowest_mm} mm");
             return Err(self.error(
                 "gel.solid.path",
                 problem,
                 "move it so that it stands on the board at z = 0",
             ));
+        }
+        if let Some(at_mm) = surface.bodies_meet_at_mm() {
+            let problem = format!("names a surface of bodies that touch or overlap, as at {at_mm} mm");
+            return Err(self.error("gel.solid.path", problem, "unite them to one body"));
         }
         Ok(())
     }
@@ -158,8 +191,8 @@ impl Checker<'_> {
         let Some(shell) = &self.sensor.shell else {
             return Ok(());
         };
-        self.above_zero("shell.gap_mm", shell.gap_mm)?;
-        self.above_zero("shell.height_mm", shell.height_mm)
+        self.above_zero("shell.gap_mm", shell.gap_mm, most::LENGTH_MM)?;
+        self.above_zero("shell.height_mm", shell.height_mm, most::LENGTH_MM)
     }
 
     fn taxels(&self) -> Checked {
@@ -183,7 +216,7 @@ impl Checker<'_> {
                 let problem = format!("is {at}, inside the rigid `{}`", inclusion.name);
                 return Err(self.error(&field("position_mm"), problem, "put the taxel onto its face"));
             }
-            self.above_zero(&field("port_radius_mm"), taxel.port_radius_mm)?;
+            self.above_zero(&field("port_radius_mm"), taxel.port_radius_mm, most::LENGTH_MM)?;
             if let Some(first) = channels.insert(taxel.channel, index) {
                 let problem = format!("is {}, as that of taxels[{first}]", taxel.channel);
                 return Err(self.error(&field("channel"), problem, "give each taxel a channel of its own"));
@@ -194,11 +227,17 @@ impl Checker<'_> {
 
     fn readout(&self) -> Checked {
         let readout = &self.sensor.readout;
+        self.within("readout.min_kpa", readout.min_kpa, most::PRESSURE_KPA)?;
+        self.within("readout.max_kpa", readout.max_kpa, most::PRESSURE_KPA)?;
         if readout.min_kpa >= readout.max_kpa {
             let problem = format!("is {}, not above min_kpa {}", readout.max_kpa, readout.min_kpa);
             return Err(self.error("readout.max_kpa", problem, "give the larger pressure here"));
         }
-        self.above_zero("readout.resolution_kpa", readout.resolution_kpa)?;
+        self.above_zero(
+            "readout.resolution_kpa",
+            readout.resolution_kpa,
+            most::PRESSURE_KPA,
+        )?;
         if readout.counts_per_pa == Some(0) {
             let problem = "is 0".to_owned();
             return Err(self.error(
@@ -208,27 +247,40 @@ impl Checker<'_> {
             ));
         }
         if let Some(transfer) = &readout.transfer {
-            self.above_zero("readout.transfer.pa_per_count", transfer.pa_per_count)?;
+            self.above_zero(
+                "readout.transfer.pa_per_count",
+                transfer.pa_per_count,
+                most::PRESSURE_PA,
+            )?;
+            self.within(
+                "readout.transfer.offset_pa",
+                transfer.offset_pa,
+                most::PRESSURE_PA,
+            )?;
             if readout.counts_per_pa.is_some() {
                 let problem = "stands beside counts_per_pa".to_owned();
                 return Err(self.error("readout.transfer", problem, "give one of the two"));
             }
         }
-        self.above_zero("readout.rate_hz", readout.rate_hz)
+        self.above_zero("readout.rate_hz", readout.rate_hz, most::RATE_HZ)
     }
 
     fn limits(&self) -> Checked {
         let Some(limits) = self.sensor.limits else {
             return Ok(());
         };
-        self.above_zero("limits.force_n", limits.force_n)?;
-        self.above_zero("limits.depth_mm", limits.depth_mm)
+        self.above_zero("limits.force_n", limits.force_n, most::FORCE_N)?;
+        self.above_zero("limits.depth_mm", limits.depth_mm, most::LENGTH_MM)
     }
 
     fn indenters(&self) -> Checked {
-        let mut indenters = self.sensor.indenters.iter().enumerate();
-        indenters
-            .try_for_each(|(index, indenter)| indenter.check(self.document, &format!("indenters[{index}].")))
+        for (index, indenter) in self.sensor.indenters.iter().enumerate() {
+            let within = format!("indenters[{index}].");
+            indenter.check(self.document, &within)?;
+            indenter.check_size(self.document, &within, &self.sensor.surfaces)?;
+            indenter.check_reach(self.document, &within, self.sensor)?;
+        }
+        Ok(())
     }
 
     fn inferred(&self) -> Checked {
@@ -264,10 +316,45 @@ impl Indenter {
             let hint = format!("give {}", error.expected);
             document.error(&field, format!("is {}", error.found), hint)
         })?;
-        if let Some(friction) = self.friction.filter(|friction| *friction < 0.0) {
+        let can_be = |friction: &f64| (0.0..=most::FRICTION).contains(friction);
+        if let Some(friction) = self.friction.filter(|friction| !can_be(friction)) {
             let field = format!("{within}friction");
-            return Err(document.error(&field, format!("is {friction}"), "give zero or more"));
+            let hint = format!("give zero or more, {} at most", most::FRICTION);
+            return Err(document.error(&field, format!("is {friction}"), &hint));
         }
         Ok(())
+    }
+
+    /// Whether the size of the whole can be in mm.
+    pub(crate) fn check_size<T>(&self, document: &Document<T>, within: &str, surfaces: &Surfaces) -> Checked {
+        let (low_mm, high_mm) = self.bounds_mm(surfaces);
+        ExtentError::check(low_mm, high_mm)
+            .map_err(|error| document.error(&format!("{within}shape"), error.problem(), error.remedy()))
+    }
+
+    /// Whether the indenter meets a sensor's gel from some place above it: presses are placed by the indenter's origin.
+    pub(crate) fn check_reach<T>(&self, document: &Document<T>, within: &str, sensor: &Sensor) -> Checked {
+        let (low, high) = self.bounds_mm(&sensor.surfaces);
+        let aside_mm = low.max(-high).max(DVec3::ZERO).truncate().length();
+        let (gel_low, gel_high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let reach_mm = (gel_high - gel_low).truncate().length();
+        if aside_mm <= reach_mm {
+            return Ok(());
+        }
+        let problem = format!(
+            "lies {aside_mm:.1} mm beside its origin, farther than the gel is long, {reach_mm:.1} mm: it never touches"
+        );
+        Err(document.error(
+            &format!("{within}shape"),
+            problem,
+            "move it over its origin, or give its `unit`",
+        ))
+    }
+
+    fn bounds_mm(&self, surfaces: &Surfaces) -> (DVec3, DVec3) {
+        let field = self.shape.signed_distance_field(surfaces);
+        field
+            .expect("the shape is checked and its surfaces are loaded")
+            .bounds_mm()
     }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use glam::DVec3;
 use twintac_shape::{Shape, Solid};
+use twintac_text::visible;
 
 use crate::Sensor;
 
@@ -26,7 +27,7 @@ impl Sensor {
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = self.write_description(&mut text);
-        text
+        visible(&text).into_owned()
     }
 
     fn mark(&self, field: &str) -> &'static str {
@@ -106,7 +107,7 @@ impl Sensor {
             }
             Solid::Block { .. } => "block".to_owned(),
             Solid::Dome(_) => "dome".to_owned(),
-            Solid::Stl { path } => format!("`{path}`"),
+            Solid::Stl(file) => format!("`{}`", file.name()),
         };
         let mark = self.mark("gel.solid");
         let volume_mm3 = self.gel.solid.volume_mm3(&self.surfaces);
@@ -237,7 +238,7 @@ fn shape_in_words(shape: &Shape) -> String {
             "wedge, {angle_rad:.3} rad, ridge {length_mm} mm, {height_mm} mm high{}",
             edges(*edge_radius_mm)
         ),
-        Shape::Stl { path } => format!("triangle surface `{path}`"),
+        Shape::Stl(file) => format!("triangle surface `{}`", file.name()),
         Shape::Union { parts } => {
             let parts: Vec<String> = parts.iter().map(|part| shape_in_words(&part.shape)).collect();
             parts.join(" with ")

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use twintac_shape::Surfaces;
+use twintac_config::Document;
+use twintac_shape::{Surfaces, TriangleSurface};
 
 use crate::load::load_surface;
 use crate::{Indenter, Sensor, SensorError};
@@ -20,6 +21,8 @@ pub struct IndenterFile {
     pub indenter: Indenter,
     /// Its triangle surface, if it has one.
     surfaces: Surfaces,
+    /// Where its fields stand.
+    document: Document<Indenter>,
 }
 
 impl IndenterFile {
@@ -31,29 +34,40 @@ impl IndenterFile {
         let document = twintac_config::read::<Indenter>(path)?;
         let mut indenter = document.value.clone();
         indenter.check(&document, "")?;
-        let mut surfaces = Surfaces::new();
         let in_folder = |surface: &str| path.parent().unwrap_or(Path::new("")).join(surface);
+        let load = |surface: &str| std::fs::read(in_folder(surface));
+        let files = indenter.shape.surface_files().into_iter();
+        let loaded =
+            files.map(|(field, file)| load_surface(&document, &format!("shape.{field}"), file, &load));
+        let loaded = loaded.collect::<Result<Vec<TriangleSurface>, _>>()?;
         // The sensor may have another surface of the same name.
-        let name = |surface: &str| in_folder(surface).display().to_string();
-        for (field, surface) in indenter.shape.surface_paths() {
-            let load = |surface: &str| std::fs::read(in_folder(surface));
-            let loaded = load_surface(&document, &format!("shape.{field}"), surface, &load)?;
-            surfaces.insert(name(surface), Arc::new(loaded));
-        }
-        indenter.shape.rename_surfaces(&name);
-        Ok(Self { indenter, surfaces })
+        indenter
+            .shape
+            .rename_surfaces(&|surface| in_folder(surface).display().to_string());
+        let files = indenter.shape.surface_files().into_iter().zip(loaded);
+        let surfaces = files.map(|((_, file), loaded)| (file.name().into_owned(), Arc::new(loaded)));
+        let surfaces: Surfaces = surfaces.collect();
+        indenter.check_size(&document, "", &surfaces)?;
+        Ok(Self {
+            indenter,
+            surfaces,
+            document,
+        })
     }
 
     /// The sensor with this indenter, which takes the place of one of its name.
-    #[must_use]
-    pub fn added_to(&self, sensor: &Sensor) -> Sensor {
+    ///
+    /// # Errors
+    /// An indenter so far from its origin that it comes down beside the sensor's gel.
+    pub fn added_to(&self, sensor: &Sensor) -> Result<Sensor, SensorError> {
         let mut sensor = sensor.clone();
         sensor
             .indenters
             .retain(|indenter| indenter.name != self.indenter.name);
         sensor.indenters.push(self.indenter.clone());
         sensor.surfaces.extend(self.surfaces.clone());
-        sensor
+        self.indenter.check_reach(&self.document, "", &sensor)?;
+        Ok(sensor)
     }
 }
 
@@ -72,7 +86,7 @@ mod tests {
         for (name, n_more) in [("ball-8", 1), ("cube", 0)] {
             let text = format!("name = \"{name}\"\nshape = {{ kind = \"sphere\", radius_mm = 4.0 }}\n");
             std::fs::write(&path, text).unwrap();
-            let sensor = IndenterFile::read(&path).unwrap().added_to(&phystac);
+            let sensor = IndenterFile::read(&path).unwrap().added_to(&phystac).unwrap();
             assert_eq!(sensor.indenters.len(), phystac.indenters.len() + n_more);
             let found = &sensor.indenter(name).unwrap().shape;
             assert!(matches!(found, Shape::Sphere { radius_mm } if *radius_mm == 4.0));

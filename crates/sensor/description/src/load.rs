@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use toml::{Table, Value};
 use twintac_config::Document;
-use twintac_shape::{Solid, Surfaces, TriangleSurface};
+use twintac_shape::{SurfaceFile, Surfaces, TriangleSurface};
 
 use crate::file::SensorToml;
 use crate::material_table::material;
+use crate::sensor::surface_files;
 use crate::{Gel, GelMaterial, Sensor, SensorError};
 
 impl Sensor {
@@ -123,32 +124,30 @@ fn load_surfaces(
     load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<Surfaces, SensorError> {
     let file = &document.value;
-    let of_gel = match &file.gel.solid {
-        Solid::Stl { path } => Some(("gel.solid.path".to_owned(), path.as_str())),
-        _ => None,
-    };
-    let of_indenters = file.indenters.iter().enumerate().flat_map(|(index, indenter)| {
-        let paths = indenter.shape.surface_paths().into_iter();
-        paths.map(move |(field, path)| (format!("indenters[{index}].shape.{field}"), path))
-    });
     let mut surfaces = Surfaces::new();
-    for (field, path) in of_gel.into_iter().chain(of_indenters) {
-        if surfaces.contains_key(path) {
-            continue;
-        }
-        let surface = load_surface(document, &field, path, load)?;
-        surfaces.insert(path.to_owned(), Arc::new(surface));
+    for (field, surface) in surface_files(&file.gel.solid, &file.indenters) {
+        let loaded = load_surface(document, &field, surface, load)?;
+        surfaces.insert(surface.name().into_owned(), Arc::new(loaded));
     }
     Ok(surfaces)
 }
 
-/// The surface of an STL file that a field names.
+/// The surface of an STL file, of which a field names the path.
 pub(crate) fn load_surface<T>(
     document: &Document<T>,
     field: &str,
-    path: &str,
+    file: &SurfaceFile,
     load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<TriangleSurface, SensorError> {
+    file.validate().map_err(|error| {
+        let beside = field.strip_suffix("path").expect("the field is a path");
+        let (field, hint) = (
+            format!("{beside}{}", error.field),
+            format!("give {}", error.expected),
+        );
+        document.error(&field, format!("is {}", error.found), &hint)
+    })?;
+    let path = &file.path;
     let error =
         |problem: String, hint: &str| document.error(field, format!("names `{path}`, which {problem}"), hint);
     let bytes = load(path).map_err(|found| {
@@ -157,6 +156,8 @@ pub(crate) fn load_surface<T>(
             "give a path relative to this file",
         )
     })?;
-    TriangleSurface::from_stl(&bytes)
-        .map_err(|found| error(found.to_string(), "export it again as a closed mesh in mm"))
+    TriangleSurface::from_stl(&bytes, file.mm_per_unit()).map_err(|found| {
+        let (problem, remedy) = found.problem_and_remedy();
+        error(problem, &remedy)
+    })
 }

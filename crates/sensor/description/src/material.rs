@@ -1,9 +1,10 @@
 //! What a gel is made of.
 
+use serde::Serialize;
 use twintac_material::{Model, PronyTerm};
 
 /// A nearly incompressible rubber, at once elastic and slowly relaxing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GelMaterial {
     /// Answer to a change of shape; its constants are instantaneous, before anything relaxes.
     pub model: Model,

@@ -3,16 +3,17 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
-use twintac_shape::{Shape, Solid, Surfaces};
+use serde::{Deserialize, Serialize, Serializer};
+use twintac_shape::{Shape, Solid, SurfaceFile, Surfaces};
 
 use crate::GelMaterial;
 
 /// Points of a port's rim.
 const RIM_POINTS: u32 = 16;
 
-/// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole.
-#[derive(Clone, Debug)]
+/// A sensor, checked: whatever [`Sensor::parse`] gives out makes sense as a whole. It is written with all that it consists of, surfaces with their corners: what is
+/// made from a sensor is told by that from what is made from another.
+#[derive(Clone, Debug, Serialize)]
 pub struct Sensor {
     /// A short name, fit for file names.
     pub name: String,
@@ -39,6 +40,7 @@ pub struct Sensor {
     /// Path, relative to the description, of the import description that reads recordings of this sensor.
     pub import: Option<String>,
     /// The triangle surfaces that the gel and the indenters name.
+    #[serde(serialize_with = "written")]
     pub surfaces: Surfaces,
 }
 
@@ -47,6 +49,11 @@ impl Sensor {
     #[must_use]
     pub fn indenter(&self, name: &str) -> Option<&Indenter> {
         self.indenters.iter().find(|indenter| indenter.name == name)
+    }
+
+    /// The surfaces (STL) that the gel and the indenters name, each with the field of its path.
+    pub(crate) fn surface_files(&self) -> Vec<(String, &SurfaceFile)> {
+        surface_files(&self.gel.solid, &self.indenters)
     }
 
     /// Whether a port reaches out of the gel, over its side: it feels what gel there is below it.
@@ -63,8 +70,29 @@ impl Sensor {
     }
 }
 
+/// Surfaces as the corners of their triangles.
+fn written<S: Serializer>(surfaces: &Surfaces, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(surfaces.iter().map(|(name, surface)| (name, &**surface)))
+}
+
+/// The surfaces (STL) that a gel and indenters name, each with the field of its path in a description.
+pub(crate) fn surface_files<'a>(
+    solid: &'a Solid,
+    indenters: &'a [Indenter],
+) -> Vec<(String, &'a SurfaceFile)> {
+    let of_gel = match solid {
+        Solid::Stl(file) => Some(("gel.solid.path".to_owned(), file)),
+        _ => None,
+    };
+    let of_indenters = indenters.iter().enumerate().flat_map(|(index, indenter)| {
+        let files = indenter.shape.surface_files().into_iter();
+        files.map(move |(field, file)| (format!("indenters[{index}].shape.{field}"), file))
+    });
+    of_gel.into_iter().chain(of_indenters).collect()
+}
+
 /// The soft part. It is bonded to the board at z = 0 and to the inclusions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Gel {
     /// Its undeformed shape.
     pub solid: Solid,

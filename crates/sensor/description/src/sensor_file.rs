@@ -1,8 +1,11 @@
 //! A sensor description with its text.
 
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
 use crate::{Sensor, SensorError};
@@ -23,7 +26,12 @@ pub struct SensorFile {
     pub text: String,
     /// Where surfaces and the import description lie.
     folder: PathBuf,
+    /// The files of surfaces (STL) as they were read, by the names that the description has for them.
+    surfaces: BTreeMap<String, Arc<[u8]>>,
 }
+
+/// Where the surfaces of a description lie that is kept with them.
+const SURFACES: &str = "surfaces";
 
 impl SensorFile {
     /// Reads a description; paths of other files are relative to its folder.
@@ -47,13 +55,37 @@ impl SensorFile {
     /// Those of [`Sensor::parse`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, SensorError> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let load = |name: &str| std::fs::read(folder.join(name));
+        Self::parse_with(path, text, &|name| std::fs::read(folder.join(name)))
+    }
+
+    /// The same with files of materials and surfaces that `load` gives by the names that the description has for them.
+    ///
+    /// # Errors
+    /// Those of [`Sensor::parse`].
+    pub fn parse_with(
+        path: &Path,
+        text: &str,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let loaded = RefCell::new(BTreeMap::new());
+        let load = |name: &str| {
+            let bytes = load(name)?;
+            loaded.borrow_mut().insert(name.to_owned(), Arc::from(&*bytes));
+            Ok(bytes)
+        };
         let file = path.display().to_string();
         let sensor = Sensor::parse(&file, text, &load)?;
+        let text = Sensor::text_with_material(&file, text, &load)?;
+        let mut surfaces: BTreeMap<String, Arc<[u8]>> = loaded.into_inner();
+        let named = sensor.surface_files().into_iter();
+        let named: BTreeSet<&String> = named.map(|(_, file)| &file.path).collect();
+        surfaces.retain(|name, _| named.contains(name));
         Ok(Self {
             sensor: Arc::new(sensor),
-            text: Sensor::text_with_material(&file, text, &load)?,
+            text,
             folder,
+            surfaces,
         })
     }
 
@@ -114,16 +146,18 @@ impl SensorFile {
             toml::from_str(&self.text).map_err(|found| self.unreadable("", &found))?;
         edit(&mut description);
         let text = toml::to_string(&description).map_err(|found| self.unreadable("", &found))?;
-        Self::parse(&self.file(), &text)
+        Self::parse(&self.path(), &text)
     }
 
-    fn file(&self) -> PathBuf {
+    /// Where the description lies, or would lie if it is of no file.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
         self.folder.join(&self.sensor.name).with_extension("toml")
     }
 
     fn unreadable(&self, field: &str, found: &dyn std::fmt::Display) -> SensorError {
         SensorError {
-            file: self.file().display().to_string(),
+            file: self.path().display().to_string(),
             line: 0,
             field: field.to_owned(),
             problem: format!("is no TOML table: {found}"),
@@ -131,16 +165,83 @@ impl SensorFile {
         }
     }
 
-    /// The files of surfaces (STL) that the description names: their names, and where they are.
-    pub fn surfaces(&self) -> impl Iterator<Item = (&String, PathBuf)> {
-        let names = self.sensor.surfaces.keys();
-        names.map(|name| (name, self.folder.join(name)))
+    /// The same description as it is kept in the file `path` with its surfaces: their names are made of their contents, in a folder beside the file. So the text tells it from
+    /// every other description, whatever lies elsewhere. [`surfaces`](Self::surfaces) has the files to write.
+    ///
+    /// # Errors
+    /// None that is known of: the description was read before.
+    pub fn kept_as(&self, path: &Path) -> Result<Self, SensorError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        if self.surfaces.is_empty() {
+            return Ok(Self {
+                folder,
+                ..self.clone()
+            });
+        }
+        let names: BTreeMap<&str, String> = self
+            .surfaces
+            .iter()
+            .map(|(name, bytes)| (name.as_str(), kept_name(bytes)))
+            .collect();
+        let mut description: Table =
+            toml::from_str(&self.text).map_err(|found| self.unreadable("", &found))?;
+        for shapes in ["gel", "indenters"] {
+            description
+                .get_mut(shapes)
+                .into_iter()
+                .for_each(|value| rename(value, &names));
+        }
+        let text = toml::to_string(&description).map_err(|found| self.unreadable("", &found))?;
+        let surfaces = self.surfaces.values();
+        let surfaces: BTreeMap<String, Arc<[u8]>> = surfaces
+            .map(|bytes| (kept_name(bytes), Arc::clone(bytes)))
+            .collect();
+        let load = |name: &str| {
+            let bytes = surfaces.get(name).ok_or(std::io::ErrorKind::NotFound)?;
+            Ok(bytes.to_vec())
+        };
+        let sensor = Sensor::parse(&path.display().to_string(), &text, &load)?;
+        Ok(Self {
+            sensor: Arc::new(sensor),
+            text,
+            folder,
+            surfaces,
+        })
+    }
+
+    /// The files of surfaces (STL) that the description names, relative to its own, and their contents.
+    #[must_use]
+    pub fn surfaces(&self) -> &BTreeMap<String, Arc<[u8]>> {
+        &self.surfaces
     }
 
     /// The file that says how to read recordings of the sensor, if the description names one.
     #[must_use]
     pub fn import(&self) -> Option<PathBuf> {
         self.sensor.import.as_ref().map(|path| self.folder.join(path))
+    }
+}
+
+/// A name that tells a surface from every other.
+fn kept_name(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    let digits: String = digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+    format!("{SURFACES}/{digits}.stl")
+}
+
+/// Gives surfaces other names, wherever a shape names one.
+fn rename(value: &mut Value, names: &BTreeMap<&str, String>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table.iter_mut() {
+                match value.as_str().and_then(|name| names.get(name)) {
+                    Some(name) if key == "path" => *value = Value::String(name.clone()),
+                    _ => rename(value, names),
+                }
+            }
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| rename(value, names)),
+        _ => (),
     }
 }
 

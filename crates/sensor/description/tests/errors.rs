@@ -166,7 +166,7 @@ fn gel_and_inclusions() {
         "size_mm = [20.0, 10.0, 6.0]",
         "size_mm = [20.0, 10.0, 0.0]",
         "gel.solid.size_mm[2]",
-        "a number above 0",
+        "give 0.1 to 1000",
     );
     expect(
         "max_mm = [2.0, 2.0, 1.0]",
@@ -413,7 +413,7 @@ fn readout_indenters_and_inferred_fields() {
         ball,
         "shape = { kind = \"sphere\", radius_mm = 0.0 }",
         "indenters[0].shape.radius_mm",
-        "above 0",
+        "give 0.05 to 1000000 (lengths are in mm)",
     );
     expect(
         ball,
@@ -469,5 +469,213 @@ fn surfaces_are_loaded_and_checked() {
             .to_string()
             .contains("names `tip.stl`, which has 0 triangles"),
         "{found}"
+    );
+}
+
+/// A box of triangles as a text STL.
+fn box_stl(low: [f64; 3], high: [f64; 3]) -> Vec<u8> {
+    let corner = |bits: usize| {
+        [0, 1, 2].map(|axis| {
+            if bits >> axis & 1 == 0 {
+                low[axis]
+            } else {
+                high[axis]
+            }
+        })
+    };
+    let sides = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let mut text = "solid box\n".to_owned();
+    for [a, b, c, d] in sides {
+        for corners in [[a, b, c], [a, c, d]] {
+            let vertices = corners.map(|bits| corner(bits).map(|number| number.to_string()).join(" "));
+            text += &format!(
+                "facet normal 0 0 0\nouter loop\nvertex {}\nendloop\nendfacet\n",
+                vertices.join("\nvertex ")
+            );
+        }
+    }
+    text.into_bytes()
+}
+
+fn with_tip(tip: &str, surface: Vec<u8>) -> Result<Sensor, SensorError> {
+    let text = GOOD.replace("kind = \"sphere\", radius_mm = 2.0", tip);
+    Sensor::parse("small.toml", &text, &|_| Ok(surface.clone()))
+}
+
+const TIP: &str = "kind = \"stl\", path = \"tip.stl\"";
+
+#[test]
+fn a_surface_in_metres_is_said_and_read_with_its_unit() {
+    let in_metres = box_stl([-0.005, -0.004, 0.0], [0.005, 0.004, 0.006]);
+    let error = with_tip(TIP, in_metres.clone()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "small.toml:47: `indenters[0].shape.path` names `tip.stl`, which is 0.01 × 0.008 × 0.006 mm large, expected 0.1 to 1000 mm along each \
+         axis; if its lengths are in metres, give `unit = \"m\"` or `scale = 1000`"
+    );
+    for unit in ["unit = \"m\"", "scale = 1000", "scale = 1e3"] {
+        let sensor = with_tip(&format!("{TIP}, {unit}"), in_metres.clone()).unwrap();
+        let shape = &sensor.indenter("ball").unwrap().shape;
+        let (low, high) = shape.signed_distance_field(&sensor.surfaces).unwrap().bounds_mm();
+        assert!(
+            ((high - low) - glam::DVec3::new(10.0, 8.0, 6.0)).length() < 1e-9,
+            "{unit}: {low} to {high}"
+        );
+        assert!(sensor.describe().contains("tip.stl × 1000"));
+    }
+    for (wrong, field, words) in [
+        (
+            "unit = \"m\", scale = 1000",
+            "indenters[0].shape.scale",
+            "one of the two",
+        ),
+        ("scale = 0", "indenters[0].shape.scale", "above 0"),
+        ("scale = -1", "indenters[0].shape.scale", "above 0"),
+        ("unit = \"feet\"", "indenters", "unknown variant"),
+    ] {
+        let error = with_tip(&format!("{TIP}, {wrong}"), in_metres.clone()).unwrap_err();
+        assert!(
+            error.field.starts_with(field) && error.to_string().contains(words),
+            "{wrong}: {error}"
+        );
+    }
+}
+
+#[test]
+fn one_surface_can_be_named_with_two_units() {
+    let text = GOOD.replace(
+        "kind = \"sphere\", radius_mm = 2.0",
+        "kind = \"stl\", path = \"tip.stl\"",
+    );
+    let text = format!(
+        "{text}\n[[indenters]]\nname = \"large\"\nshape = {{ kind = \"stl\", path = \"tip.stl\", unit = \"cm\" }}\n"
+    );
+    let tip = box_stl([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
+    let sensor = Sensor::parse("small.toml", &text, &|_| Ok(tip.clone())).unwrap();
+    let height_mm = |name: &str| {
+        let shape = &sensor.indenter(name).unwrap().shape;
+        shape
+            .signed_distance_field(&sensor.surfaces)
+            .unwrap()
+            .bounds_mm()
+            .1
+            .z
+    };
+    assert_eq!((height_mm("ball"), height_mm("large")), (2.0, 20.0));
+}
+
+#[test]
+fn an_indenter_that_can_never_touch_is_an_error() {
+    let beside = |x: f64| box_stl([x - 5.0, -4.0, 0.0], [x + 5.0, 4.0, 6.0]);
+    for x in [0.0, 10.0, -20.0] {
+        with_tip(TIP, beside(x)).unwrap();
+    }
+    for x in [40.0, -300.0] {
+        let error = with_tip(TIP, beside(x)).unwrap_err();
+        assert_eq!(error.field, "indenters[0].shape");
+        assert!(
+            error.problem.contains("beside its origin") && error.problem.contains("never touches"),
+            "{error}"
+        );
+    }
+    let far = with_tip(TIP, beside(1e6)).unwrap_err();
+    assert!(far.problem.contains("expected within 1 m of its origin"), "{far}");
+    let large = with_tip(
+        "kind = \"box\", size_mm = [2000.0, 10.0, 10.0], edge_radius_mm = 0.0",
+        Vec::new(),
+    )
+    .unwrap_err();
+    assert!(large.problem.contains("is 2000 × 10 × 10 mm large"), "{large}");
+}
+
+#[test]
+fn a_gel_of_triangles_is_one_body_on_the_board() {
+    let gel = |surface: Vec<u8>, unit: &str| {
+        let text = GOOD.replace(
+            "kind = \"block\"\nsize_mm = [20.0, 10.0, 6.0]",
+            &format!("kind = \"stl\"\npath = \"gel.stl\"\n{unit}"),
+        );
+        let text = text.replace("gel.solid.size_mm", "gel.solid.path");
+        Sensor::parse("small.toml", &text, &|_| Ok(surface.clone()))
+    };
+    let good = || box_stl([-10.0, -5.0, 0.0], [10.0, 5.0, 6.0]);
+    assert!(
+        (gel(good(), "")
+            .unwrap()
+            .gel
+            .solid
+            .volume_mm3(&gel(good(), "").unwrap().surfaces)
+            - 1200.0)
+            .abs()
+            < 1e-9
+    );
+    let in_metres = box_stl([-0.01, -0.005, 0.0], [0.01, 0.005, 0.006]);
+    assert!(
+        gel(in_metres.clone(), "")
+            .unwrap_err()
+            .hint
+            .contains("`unit = \"m\"`")
+    );
+    assert!(gel(in_metres, "unit = \"m\"").is_ok());
+    let error = gel([good(), box_stl([8.0, -4.0, 0.0], [14.0, 4.0, 5.0])].concat(), "").unwrap_err();
+    assert!(error.problem.contains("touch or overlap"), "{error}");
+    let error = gel(
+        [good(), box_stl([10.0, -4.0, 0.0], [14.0, 4.0, 5.0])].concat(),
+        "",
+    )
+    .unwrap_err();
+    assert!(error.problem.contains("touch or overlap"), "{error}");
+    assert!(
+        gel(
+            [good(), box_stl([11.0, -4.0, 0.0], [14.0, 4.0, 5.0])].concat(),
+            ""
+        )
+        .is_ok()
+    );
+    let error = gel(box_stl([-10.0, -5.0, 1.0], [10.0, 5.0, 6.0]), "").unwrap_err();
+    assert!(error.problem.contains("lowest point is at z = 1 mm"), "{error}");
+}
+
+#[test]
+fn absurd_numbers_are_refused() {
+    let expect = |from: &str, to: &str, field: &str| {
+        let error = Sensor::parse("small.toml", &GOOD.replacen(from, to, 1), &no_files).unwrap_err();
+        assert_eq!(error.field, field, "{error}");
+    };
+    expect("gap_mm = 1.0", "gap_mm = 1e300", "shell.gap_mm");
+    expect("height_mm = 5.0", "height_mm = 1e9", "shell.height_mm");
+    expect("rate_hz = 50.0", "rate_hz = 1e9", "readout.rate_hz");
+    expect("max_kpa = 150.0", "max_kpa = 1e300", "readout.max_kpa");
+    expect(
+        "port_radius_mm = 0.5",
+        "port_radius_mm = 1e12",
+        "taxels[0].port_radius_mm",
+    );
+    expect(
+        "size_mm = [20.0, 10.0, 6.0]",
+        "size_mm = [0.020, 0.010, 0.006]",
+        "gel.solid.size_mm[0]",
+    );
+    expect(
+        "size_mm = [20.0, 10.0, 6.0]",
+        "size_mm = [20.0, 10.0, 6e300]",
+        "gel.solid.size_mm[2]",
+    );
+    expect(
+        "radius_mm = 2.0 }",
+        "radius_mm = 0.002 }",
+        "indenters[0].shape.radius_mm",
+    );
+    expect(
+        "radius_mm = 2.0 }",
+        "radius_mm = 2.0 }\nfriction = 1e30",
+        "indenters[0].friction",
     );
 }

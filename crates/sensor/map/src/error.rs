@@ -34,6 +34,18 @@ pub(crate) fn check_length(
     Err(input(what, &expected, values.len()))
 }
 
+/// Readings are numbers, or missing: NaN.
+pub(crate) fn check_finite_or_missing(above_kpa: &[f64]) -> Result<(), MapError> {
+    let infinite = above_kpa.iter().find(|above| above.is_infinite());
+    match infinite {
+        Some(above) => {
+            let expected = "finite ones, and NaN for a taxel without a reading";
+            Err(input("readings of a pressure map", expected, above))
+        }
+        None => Ok(()),
+    }
+}
+
 pub(crate) fn check_grid([columns, rows]: [usize; 2]) -> Result<(), MapError> {
     if columns == 0 || rows == 0 {
         return Err(input(

@@ -1,8 +1,8 @@
 //! One map.
 
-use crate::error::{check_grid, check_length};
+use crate::error::{check_finite_or_missing, check_grid, check_length};
 use crate::fit::Fit;
-use crate::geometry::{Rectangle, cells, finite_or_zero};
+use crate::geometry::{Rectangle, cells};
 use crate::{MapError, MapSettings};
 
 /// Pressure over a grid of cell centres.
@@ -12,20 +12,20 @@ pub struct PressureMap {
     pub rectangle: Rectangle,
     /// Columns and rows.
     pub grid: [usize; 2],
-    /// Pressure above the baseline, kPa, `[rows][columns]` flattened, the row of smallest y first.
+    /// Pressure above the baseline, kPa, `[rows][columns]` flattened, the row of smallest y first. NaN everywhere if no taxel has a reading.
     pub pressure_kpa: Vec<f64>,
 }
 
 /// Interpolates readings over a rectangle; with Gaussians `f(x) = Σᵢ wᵢ exp(-|x - xᵢ|² / 2σ²)`.
 ///
 /// Without load (readings equal to the baseline) the map is zero everywhere. The paper writes the weights as
-/// `λᵢ - p(xᵢ)`; here their sign is turned, so that more pressure is more. A reading that is not a number counts
-/// as the baseline. Of many maps of the same taxels, [`PreparedMap`](crate::PreparedMap) makes each about 90 times as fast (`cargo run --release -p twintac-map --example map_rate`).
+/// `λᵢ - p(xᵢ)`; here their sign is turned, so that more pressure is more. A taxel without a reading, NaN, is left out:
+/// the map is that of the other taxels. Of many maps of the same taxels, [`PreparedMap`](crate::PreparedMap) makes each about 90 times as fast (`cargo run --release -p twintac-map --example map_rate`).
 ///
 /// `taxels_mm`, `readings_kpa` and `baseline_kpa` have one entry a taxel.
 ///
 /// # Errors
-/// [`MapError::Input`] if lengths differ, the grid is empty or a setting is out of its range;
+/// [`MapError::Input`] if lengths differ, a reading is infinite, the grid is empty or a setting is out of its range;
 /// [`MapError::Singular`] if two taxels share a place and the map shall meet both.
 pub fn pressure_map(
     taxels_mm: &[[f64; 2]],
@@ -37,22 +37,36 @@ pub fn pressure_map(
     check_length("readings of a pressure map", readings_kpa, taxels_mm)?;
     check_length("baseline of a pressure map", baseline_kpa, taxels_mm)?;
     check_grid(settings.grid)?;
-    let above: Vec<f64> = readings_kpa
-        .iter()
-        .zip(baseline_kpa)
-        .map(|(reading, baseline)| finite_or_zero(reading - baseline))
-        .collect();
-    let fit = Fit::new(taxels_mm, settings, &[&above])?;
-    let weights = fit.weights(&above);
-    let at = |place| {
-        fit.functions(place)
-            .zip(&weights)
-            .map(|(value, weight)| weight * value)
-            .sum()
-    };
+    let above = readings_kpa.iter().zip(baseline_kpa);
+    let above: Vec<f64> = above.map(|(reading, baseline)| reading - baseline).collect();
     Ok(PressureMap {
         rectangle,
         grid: settings.grid,
-        pressure_kpa: cells(rectangle, settings.grid).map(at).collect(),
+        pressure_kpa: through_answers(taxels_mm, &above, rectangle, settings)?,
     })
+}
+
+/// The map of the taxels that have a reading above the baseline; NaN if none has.
+pub(crate) fn through_answers(
+    taxels_mm: &[[f64; 2]],
+    above_kpa: &[f64],
+    rectangle: Rectangle,
+    settings: &MapSettings,
+) -> Result<Vec<f64>, MapError> {
+    check_finite_or_missing(above_kpa)?;
+    let answers = taxels_mm
+        .iter()
+        .zip(above_kpa)
+        .filter(|(_, above)| !above.is_nan());
+    let (answering_mm, above): (Vec<[f64; 2]>, Vec<f64>) = answers.unzip();
+    if above.is_empty() && !taxels_mm.is_empty() {
+        return Ok(vec![f64::NAN; settings.grid[0] * settings.grid[1]]);
+    }
+    let fit = Fit::new(&answering_mm, settings, &[&above])?;
+    let weights = fit.weights(&above);
+    let at = |place| {
+        let terms = fit.functions(place).zip(&weights);
+        terms.map(|(value, weight)| weight * value).sum()
+    };
+    Ok(cells(rectangle, settings.grid).map(at).collect())
 }

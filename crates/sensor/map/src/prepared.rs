@@ -1,15 +1,17 @@
 //! Many maps of the same taxels.
 
-use crate::error::{check_grid, check_length};
+use crate::error::{check_finite_or_missing, check_grid, check_length};
 use crate::fit::Fit;
-use crate::geometry::{Rectangle, cells, finite_or_zero};
+use crate::geometry::{Rectangle, cells};
+use crate::interpolate::through_answers;
 use crate::{MapError, MapSettings};
 
 /// A map is linear in its readings: what each taxel adds to each cell, worked out once, so that a map is a sum.
 #[derive(Clone, Debug)]
 pub struct PreparedMap {
     rectangle: Rectangle,
-    grid: [usize; 2],
+    /// With the width that was chosen.
+    settings: MapSettings,
     taxels_mm: Vec<[f64; 2]>,
     length_mm: f64,
     /// `[taxels][cells]`: kPa in the cell for 1 kPa at the taxel.
@@ -38,7 +40,10 @@ impl PreparedMap {
         }
         Ok(Self {
             rectangle,
-            grid: settings.grid,
+            settings: MapSettings {
+                width_mm: Some(fit.length_mm),
+                ..*settings
+            },
             taxels_mm: taxels_mm.to_vec(),
             length_mm: fit.length_mm,
             shares,
@@ -54,7 +59,7 @@ impl PreparedMap {
     /// Columns and rows.
     #[must_use]
     pub fn grid(&self) -> [usize; 2] {
-        self.grid
+        self.settings.grid
     }
 
     /// Standard deviation of the Gaussians, given or chosen, mm; the taxels' pitch for a thin plate.
@@ -64,16 +69,20 @@ impl PreparedMap {
     }
 
     /// Fills `pressure_kpa` with a map, `[rows][columns]` flattened as in [`PressureMap`](crate::PressureMap), of one reading above the
-    /// baseline a taxel; one that is not a number counts as the baseline.
+    /// baseline a taxel. A taxel without one, NaN, is left out: the map is then solved anew for the others, with the same width.
     ///
     /// # Errors
-    /// [`MapError::Input`] if there is not one reading a taxel.
+    /// [`MapError::Input`] if there is not one reading a taxel, or one is infinite; as [`pressure_map`](crate::pressure_map) where some are left out.
     pub fn fill(&self, above_kpa: &[f64], pressure_kpa: &mut Vec<f64>) -> Result<(), MapError> {
         check_length("readings of a pressure map", above_kpa, &self.taxels_mm)?;
+        if above_kpa.iter().any(|above| above.is_nan()) {
+            *pressure_kpa = through_answers(&self.taxels_mm, above_kpa, self.rectangle, &self.settings)?;
+            return Ok(());
+        }
+        check_finite_or_missing(above_kpa)?;
         pressure_kpa.clear();
-        pressure_kpa.resize(self.grid[0] * self.grid[1], 0.0);
+        pressure_kpa.resize(self.settings.grid[0] * self.settings.grid[1], 0.0);
         for (shares, above) in self.shares.iter().zip(above_kpa) {
-            let above = finite_or_zero(*above);
             for (pressure, share) in pressure_kpa.iter_mut().zip(shares) {
                 *pressure += above * share;
             }

@@ -121,7 +121,48 @@ fn no_taxels_and_no_numbers_still_give_a_map() {
     };
     let map = pressure_map(&[], &[], &[], rectangle, &MapSettings::default()).unwrap();
     assert!(map.pressure_kpa.iter().all(|&pressure| pressure == 0.0));
-    assert_eq!(at([0.0, 0.0], &[f64::NAN; 8], Weights::Interpolating), 0.0);
+    assert!(at([0.0, 0.0], &[f64::NAN; 8], Weights::Interpolating).is_nan());
+}
+
+#[test]
+fn a_taxel_without_a_reading_is_left_out() {
+    let settings = with(Kernel::Gaussian, Weights::Interpolating);
+    for missing in 0..8 {
+        let mut readings = [5.0, 4.0, 6.0, 5.0, 5.5, 4.5, 5.0, 6.0];
+        let (others_mm, others): (Vec<[f64; 2]>, Vec<f64>) = TAXELS
+            .iter()
+            .zip(readings)
+            .enumerate()
+            .filter(|(taxel, _)| *taxel != missing)
+            .map(|(_, both)| both)
+            .unzip();
+        let expected = pressure_map(&others_mm, &others, &[0.0; 7], GEL, &settings).unwrap();
+        readings[missing] = f64::NAN;
+        assert_eq!(
+            pressure_map(&TAXELS, &readings, &[0.0; 8], GEL, &settings).unwrap(),
+            expected
+        );
+        assert!(at(TAXELS[missing], &readings, Weights::Interpolating) > 2.0);
+        let mut prepared = Vec::new();
+        let map = PreparedMap::new(&TAXELS, GEL, &settings, &[&[5.0; 8]]).unwrap();
+        map.fill(&readings, &mut prepared).unwrap();
+        assert!(prepared.iter().all(|pressure| pressure.is_finite()));
+        let met = at_taxels(&TAXELS, &readings, settings);
+        for taxel in (0..8).filter(|taxel| *taxel != missing) {
+            assert!((met[taxel] - readings[taxel]).abs() < 1e-8);
+        }
+    }
+}
+
+#[test]
+fn an_infinite_reading_is_named() {
+    let mut readings = [5.0; 8];
+    readings[3] = f64::INFINITY;
+    let settings = MapSettings::default();
+    let error = pressure_map(&TAXELS, &readings, &[0.0; 8], GEL, &settings).unwrap_err();
+    assert!(error.to_string().contains("found inf"), "{error}");
+    let prepared = PreparedMap::new(&TAXELS, GEL, &settings, &[]).unwrap();
+    assert!(prepared.fill(&readings, &mut Vec::new()).is_err());
 }
 
 const GEL: Rectangle = Rectangle {

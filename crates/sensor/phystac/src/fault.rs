@@ -13,7 +13,8 @@ pub enum Fault {
     Stuck,
     /// The bus failed with its channel open, and works again with it closed.
     Bus(ErrorKind),
-    /// Its channel hung the bus and stays closed until [`PhysTac::readmit`](crate::PhysTac::readmit).
+    /// Its channel hung the bus, and is closed until it is looked into again: after [`Settings::retry_us`](crate::Settings::retry_us), or
+    /// [`PhysTac::readmit`](crate::PhysTac::readmit).
     Isolated,
     /// Its barometer does not keep the oversampling that it is given.
     Refused,

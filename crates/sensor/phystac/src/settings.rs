@@ -13,6 +13,9 @@ pub struct Settings<const N: usize> {
     pub conversion_us: u32,
     /// How long all taxels together may take beyond that. Default 56 waits of 250 µs: 20 ms in all, the family's longest conversion.
     pub patience: Patience,
+    /// How long a channel that hung the bus stays closed before it is looked into again, µs. Each further time is twice as long, up to 64 times.
+    /// Default 1 s: a channel that goes on hanging the bus costs a frame each time.
+    pub retry_us: u32,
 }
 
 impl<const N: usize> Settings<N> {
@@ -27,6 +30,7 @@ impl<const N: usize> Settings<N> {
                 interval_us: 250,
                 waits: 56,
             },
+            retry_us: 1_000_000,
         }
     }
 }

@@ -317,6 +317,80 @@ fn a_shorted_taxel_is_found_and_left_out() {
     }
 }
 
+/// Frames for so long, with the switch's RESET after each error: when the taxel has a value again, ms, and how many frames were lost.
+fn frames_for<C: Fn() -> u64>(
+    bench: &Bench,
+    sensor: &mut Sensor<C>,
+    taxel: usize,
+    seconds: u64,
+) -> (Option<u64>, usize) {
+    let start_ns = bench.with(|world| world.now_ns);
+    let (mut back_ms, mut lost) = (None, 0);
+    while bench.with(|world| world.now_ns) < start_ns + seconds * 1_000_000_000 {
+        // Counts have 24 bits.
+        bench.with(|world| world.parts.iter_mut().for_each(|part| part.counts %= 8_000_000));
+        match next_frame(bench, sensor) {
+            Ok(frame) if frame.taxels[taxel].is_ok() => {
+                back_ms.get_or_insert((bench.with(|world| world.now_ns) - start_ns) / 1_000_000);
+            }
+            Ok(frame) => assert_eq!(faults(&frame), [(taxel, Fault::Isolated)]),
+            Err(_) => {
+                lost += 1;
+                sensor.recover(|bus, _| bus.reset());
+            }
+        }
+    }
+    (back_ms, lost)
+}
+
+#[test]
+fn a_taxel_whose_short_has_passed_takes_part_again() {
+    for shorted in [0, 3, 7] {
+        let bench = Bench::new();
+        let mut sensor = sensor_on(&bench);
+        assert!(is_complete(&next_frame(&bench, &mut sensor)));
+        bench.with(|world| world.parts[shorted].is_shorted = true);
+        frame_with_resets(&bench, &mut sensor);
+        bench.with(|world| world.parts[shorted].is_shorted = false);
+        let (back_ms, lost) = frames_for(&bench, &mut sensor, shorted, 3);
+        assert!(
+            back_ms.is_some_and(|ms| (900..1100).contains(&ms)),
+            "taxel {shorted}: {back_ms:?}"
+        );
+        assert_eq!(lost, 0);
+        assert!(is_complete(&next_frame(&bench, &mut sensor)));
+    }
+}
+
+#[test]
+fn a_short_that_stays_costs_ever_fewer_frames() {
+    let bench = Bench::new();
+    let mut sensor = sensor_on(&bench);
+    bench.with(|world| world.parts[5].is_shorted = true);
+    frame_with_resets(&bench, &mut sensor);
+    // After 1, 2, 4, ... 32 s, then every 64 s.
+    assert_eq!(frames_for(&bench, &mut sensor, 5, 60), (None, 5));
+    assert_eq!(frames_for(&bench, &mut sensor, 5, 400), (None, 7));
+}
+
+#[test]
+fn each_of_two_isolated_taxels_is_looked_into() {
+    let bench = Bench::new();
+    let mut sensor = sensor_on(&bench);
+    bench.with(|world| {
+        world.parts[1].is_shorted = true;
+        world.parts[6].is_shorted = true;
+    });
+    frame_with_resets(&bench, &mut sensor);
+    bench.with(|world| world.parts[6].is_shorted = false);
+    let start_ns = bench.with(|world| world.now_ns);
+    while bench.with(|world| world.now_ns) < start_ns + 3_000_000_000 {
+        frame_with_resets(&bench, &mut sensor);
+    }
+    let frame = frame_with_resets(&bench, &mut sensor).1;
+    assert_eq!(faults(&frame), [(1, Fault::Isolated)]);
+}
+
 #[test]
 fn two_shorted_taxels_are_left_out_and_a_passing_short_is_forgiven() {
     let bench = Bench::new();

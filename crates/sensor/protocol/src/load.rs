@@ -5,8 +5,11 @@ use twintac_config::{ConfigError, Document};
 
 use twintac_random::stream;
 
-use crate::part::{name_of, once};
+use crate::part::{LONGEST_S, name_of, once};
 use crate::{Indenters, Places, PlanError, Range, Target};
+
+/// Heaviest weight, N: a hundred kilograms.
+const MOST_N: f64 = 1000.0;
 
 /// Weights that are put on, left there and taken off, as people write them.
 ///
@@ -58,13 +61,13 @@ impl Load {
         let error = |field: &str, problem: String, hint: &str| {
             Err(document.error(&format!("{within}{field}"), problem, hint))
         };
-        let smallest = [
-            ("force_n", &self.force_n, 1e-6),
-            ("rest_s", &Range::Fixed(self.rest_s), 0.1),
-            ("hold_s", &Range::Fixed(self.hold_s), 0.1),
+        let bounds = [
+            ("force_n", &self.force_n, [1e-6, MOST_N]),
+            ("rest_s", &Range::Fixed(self.rest_s), [0.1, LONGEST_S]),
+            ("hold_s", &Range::Fixed(self.hold_s), [0.1, LONGEST_S]),
         ];
-        for (field, range, least) in smallest {
-            if let Some((problem, hint)) = range.problem(least) {
+        for (field, range, bounds) in bounds {
+            if let Some((problem, hint)) = range.problem(bounds) {
                 return error(field, problem, &hint);
             }
         }

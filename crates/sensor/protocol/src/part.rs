@@ -42,6 +42,16 @@ pub struct Part {
     pub repeats: u32,
 }
 
+/// Longest way and fastest speed of a press, mm and mm/s: beyond any gel and any arm.
+const MOST_MM: f64 = 1000.0;
+const MOST_MM_PER_S: f64 = 1000.0;
+
+/// Longest time of a phase of a press, s: an hour of frames fits in memory.
+pub(crate) const LONGEST_S: f64 = 3600.0;
+
+/// Farthest turn, radians.
+const MOST_SPIN_RAD: f64 = 100.0;
+
 pub(crate) fn once() -> u32 {
     1
 }
@@ -77,25 +87,26 @@ impl Part {
         let error = |field: &str, problem: String, hint: &str| {
             Err(document.error(&format!("{within}{field}"), problem, hint))
         };
-        let smallest = [
-            ("depth_mm", &self.depth_mm, 1e-3),
-            ("speed_mm_per_s", &self.speed_mm_per_s, 1e-3),
-            ("hold_s", &self.hold_s, 0.0),
-            ("spin_rad", &self.spin_rad, f64::NEG_INFINITY),
-            ("tilt_rad", &self.tilt_rad, 0.0),
-            ("clearance_mm", &Range::Fixed(self.clearance_mm), 0.0),
+        let bounds = [
+            ("depth_mm", &self.depth_mm, [1e-3, MOST_MM]),
+            ("speed_mm_per_s", &self.speed_mm_per_s, [1e-3, MOST_MM_PER_S]),
+            ("hold_s", &self.hold_s, [0.0, LONGEST_S]),
+            ("spin_rad", &self.spin_rad, [-MOST_SPIN_RAD, MOST_SPIN_RAD]),
+            ("tilt_rad", &self.tilt_rad, [0.0, 1.0]),
+            ("clearance_mm", &Range::Fixed(self.clearance_mm), [0.0, MOST_MM]),
         ];
-        for (field, range, least) in smallest {
-            if let Some((problem, hint)) = range.problem(least) {
+        for (field, range, bounds) in bounds {
+            if let Some((problem, hint)) = range.problem(bounds) {
                 return error(field, problem, &hint);
             }
         }
-        let tilt_rad = self.tilt_rad.ends()[1];
-        if tilt_rad > 1.0 {
+        let slowest_mm_per_s = self.speed_mm_per_s.ends()[0];
+        let travel_s = (self.depth_mm.ends()[1] + self.clearance_mm) / slowest_mm_per_s;
+        if travel_s > LONGEST_S {
             return error(
-                "tilt_rad",
-                format!("is {tilt_rad}"),
-                "keep the tilt at 1 rad or below",
+                "speed_mm_per_s",
+                format!("is {slowest_mm_per_s}, so that the way down takes {travel_s:.0} s"),
+                &format!("let it take {LONGEST_S} s at most"),
             );
         }
         if let Some((field, problem, hint)) = self.indenters.problem() {

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use twintac_config::ConfigError;
 use twintac_shape::Pose;
 
+/// Farthest that an indenter may be from the gel's origin, mm.
+const FARTHEST_MM: f64 = 10_000.0;
+
 /// Most frames of a path.
 const MOST_FRAMES: f64 = 100_000.0;
 
@@ -167,6 +170,16 @@ impl PressPath {
                     "give finite ones",
                 ));
             }
+            let farthest_mm = pose.position_mm.abs().max_element();
+            if farthest_mm > FARTHEST_MM {
+                let field = format!("poses[{index}].position_mm");
+                let hint = format!("give places within {FARTHEST_MM} mm of the gel's origin");
+                return Err(PathError::new(
+                    &field,
+                    &format!("is {farthest_mm} mm away"),
+                    &hint,
+                ));
+            }
         }
         for (index, pair) in self.poses.windows(2).enumerate() {
             if pair[1].time_s <= pair[0].time_s {
@@ -190,26 +203,34 @@ impl PressPath {
                 return Err(PathError::new(&field, &problem, hint));
             }
         }
-        if self.force_direction.try_normalize().is_none() {
+        if self.force_direction.is_finite() && self.force_direction.try_normalize().is_none() {
             return Err(PathError::new(
                 "force_direction",
                 "is zero",
                 "give a vector of any length",
             ));
         }
-        if let Some(travel_mm) = self.force_travel_mm.filter(|travel_mm| *travel_mm <= 0.0) {
+        if !self.force_direction.is_finite() {
+            let problem = "has a number that is not finite";
+            return Err(PathError::new("force_direction", problem, "give finite ones"));
+        }
+        let is_travel = |travel_mm: f64| travel_mm > 0.0 && travel_mm <= FARTHEST_MM;
+        if let Some(travel_mm) = self.force_travel_mm.filter(|travel_mm| !is_travel(*travel_mm)) {
             let problem = format!("is {travel_mm} mm");
-            return Err(PathError::new(
-                "force_travel_mm",
-                &problem,
-                "give a distance above zero",
-            ));
+            let hint = format!("give a distance above zero, {FARTHEST_MM} mm at most");
+            return Err(PathError::new("force_travel_mm", &problem, &hint));
         }
         for (index, point) in self.points.iter().enumerate() {
-            if point.radius_mm < 0.0 {
+            if !(0.0..=FARTHEST_MM).contains(&point.radius_mm) {
                 let field = format!("points[{index}].radius_mm");
                 let problem = format!("is {} mm", point.radius_mm);
-                return Err(PathError::new(&field, &problem, "give zero or more"));
+                let hint = format!("give zero to {FARTHEST_MM}");
+                return Err(PathError::new(&field, &problem, &hint));
+            }
+            if !point.position_mm.is_finite() {
+                let field = format!("points[{index}].position_mm");
+                let problem = "has a number that is not finite";
+                return Err(PathError::new(&field, problem, "give finite ones"));
             }
             if self.points[..index].iter().any(|other| other.name == point.name) {
                 let field = format!("points[{index}].name");
@@ -316,6 +337,28 @@ points = [{ name = "below", position_mm = [0.0, 0.0, 0.0], radius_mm = 1.0 }]
         for (from, to, words) in [
             ("time_s = 2.0", "time_s = 0.5", "path.toml:9: `poses[2].time_s`"),
             ("rate_hz = 4.0", "rate_hz = 0.0", "path.toml:5: `rate_hz`"),
+            ("rate_hz = 4.0", "rate_hz = 1e9", "path.toml:5: `rate_hz`"),
+            ("rate_hz = 4.0", "rate_hz = nan", "path.toml:5: `rate_hz`"),
+            (
+                "rate_hz = 4.0",
+                "force_travel_mm = nan",
+                "path.toml:5: `force_travel_mm`",
+            ),
+            (
+                "rate_hz = 4.0",
+                "force_direction = [nan, 0.0, 1.0]",
+                "path.toml:5: `force_direction[0]`",
+            ),
+            (
+                "[1.0, 0.0, -2.0]",
+                "[1.0, 0.0, -1e300]",
+                "path.toml:9: `poses[2].position_mm`",
+            ),
+            (
+                "radius_mm = 1.0",
+                "radius_mm = inf",
+                "path.toml:11: `points[0].radius_mm`",
+            ),
             (
                 "rate_hz = 4.0",
                 "force_direction = [0.0, 0.0, 0.0]",

@@ -8,6 +8,9 @@ use crate::{PlanError, Range, Target};
 /// Most presses that one indenter can be planned to do.
 const MOST_PRESSES: u64 = 1_000_000;
 
+/// Farthest place from the gel's origin, mm.
+const FARTHEST_MM: f64 = 1000.0;
+
 /// Where to press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
@@ -127,6 +130,10 @@ impl Places {
             .iter()
             .flat_map(|area| [("places.x_mm", area.x_mm), ("places.y_mm", area.y_mm)])
         {
+            if !(low.abs().max(high.abs()) <= FARTHEST_MM) {
+                let hint = format!("give places within {FARTHEST_MM} mm of the gel's origin");
+                return wrong(field, format!("runs from {low} to {high}"), &hint);
+            }
             if low > high {
                 return wrong(
                     field,

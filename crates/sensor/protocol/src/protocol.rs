@@ -31,6 +31,14 @@ struct Lists {
     loads: Option<serde::de::IgnoredAny>,
 }
 
+const PLAIN: &str = "give each part and load a name of its own, of letters, digits and dashes";
+
+/// Whether files and folders can bear a name.
+fn is_plain(name: &str) -> bool {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+    !name.is_empty() && name.chars().all(is_plain)
+}
+
 impl Protocol {
     /// Reads a protocol from the text of a TOML file.
     ///
@@ -41,6 +49,10 @@ impl Protocol {
         if lists.parts.is_none() && lists.loads.is_none() {
             let document = twintac_config::parse::<Part>(file, text)?;
             document.value.check(&document, "")?;
+            if !document.value.name.is_empty() && !is_plain(&document.value.name) {
+                let problem = format!("is `{}`", document.value.name);
+                return Err(document.error("name", problem, PLAIN));
+            }
             return Ok(Self {
                 summary: document.value.summary.clone(),
                 parts: vec![document.value],
@@ -60,16 +72,14 @@ impl Protocol {
             .chain(protocol.loads.iter().map(|load| &load.name))
             .collect();
         for (index, name) in names.iter().enumerate() {
-            let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
-            if name.is_empty() || !name.chars().all(is_plain) || names[..index].contains(name) {
+            if !is_plain(name) || names[..index].contains(name) {
                 let n_parts = protocol.parts.len();
                 let field = match index.checked_sub(n_parts) {
                     None => format!("parts[{index}].name"),
                     Some(load) => format!("loads[{load}].name"),
                 };
                 let problem = format!("is `{name}`");
-                let hint = "give each part and load a name of its own, of letters, digits and dashes";
-                return Err(document.error(&field, problem, hint));
+                return Err(document.error(&field, problem, PLAIN));
             }
         }
         Ok(document.value)
@@ -288,6 +298,53 @@ mod tests {
         );
         let protocol = Protocol::parse("demo.toml", DEMO).unwrap();
         assert!(protocol.plan(&Target::default(), 1).is_err());
+    }
+
+    #[test]
+    fn numbers_that_would_fill_the_memory_and_names_that_leave_the_folder_are_refused() {
+        let set = |text: &str, field: &str, value: &str| {
+            let is_field = |line: &&str| line.trim_start().starts_with(&format!("{field} = "));
+            let line = text
+                .lines()
+                .find(is_field)
+                .unwrap_or_else(|| panic!("no {field}"));
+            Protocol::parse("p.toml", &text.replacen(line, &format!("{field} = {value}"), 1)).unwrap_err()
+        };
+        for (field, value) in [
+            ("hold_s", "1e9"),
+            ("hold_s", "nan"),
+            ("hold_s", "[0.0, inf]"),
+            ("depth_mm", "1e300"),
+            ("depth_mm", "{ one_of = [1.0, nan] }"),
+            ("speed_mm_per_s", "1e9"),
+            ("clearance_mm", "1e300"),
+            ("clearance_mm", "nan"),
+        ] {
+            let error = set(DEMO, field, value); // an element of a list has its number
+            assert!(error.field.starts_with(field), "{value}: {error}");
+        }
+        let deep = DEMO.replace("depth_mm = [0.6, 1.6]", "depth_mm = [0.6, 50.0]");
+        let slow = set(&deep, "speed_mm_per_s", "0.001").to_string();
+        assert!(
+            slow.contains("`speed_mm_per_s` is 0.001, so that the way down takes"),
+            "{slow}"
+        );
+        let far = DEMO.replace("x_mm = [-9.0, 9.0]", "x_mm = [-1e300, 9.0]");
+        assert_eq!(Protocol::parse("p.toml", &far).unwrap_err().field, "places.x_mm");
+        for name in ["../../../escaped/x", "/tmp/x", "a/b", "..", "a\\u001b", " "] {
+            let text = format!("name = \"{name}\"\n{DEMO}");
+            assert_eq!(
+                Protocol::parse("p.toml", &text).unwrap_err().field,
+                "name",
+                "{name}"
+            );
+        }
+        for (field, value) in [("force_n", "1e9"), ("rest_s", "1e9"), ("rest_s", "nan")] {
+            let from = CHARACTERIZE.find("[[loads]]").unwrap();
+            let text = format!("summary = \"weights\"\n{}", &CHARACTERIZE[from..]);
+            let error = set(&text, field, value).to_string();
+            assert!(error.contains(&format!("`loads[0].{field}`")), "{error}");
+        }
     }
 
     #[test]

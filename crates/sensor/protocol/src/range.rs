@@ -42,6 +42,14 @@ impl Range {
         }
     }
 
+    fn numbers(&self) -> &[f64] {
+        match self {
+            Self::Fixed(value) => std::slice::from_ref(value),
+            Self::Between(ends) => ends,
+            Self::OneOf(OneOf { one_of }) => one_of,
+        }
+    }
+
     pub(crate) fn draw(&self, random: &mut RandomStream) -> f64 {
         let [low, high] = self.ends();
         let share = random.random::<f64>();
@@ -51,8 +59,8 @@ impl Range {
         }
     }
 
-    /// What is wrong with it if nothing may be less than `least`: the problem and a hint.
-    pub(crate) fn problem(&self, least: f64) -> Option<(String, String)> {
+    /// What is wrong with it if nothing may be less than the first of two numbers or more than the second: the problem and a hint.
+    pub(crate) fn problem(&self, [least, most]: [f64; 2]) -> Option<(String, String)> {
         let [low, high] = self.ends();
         if matches!(self, Self::OneOf(OneOf { one_of }) if one_of.is_empty()) {
             return Some((
@@ -60,12 +68,18 @@ impl Range {
                 "give one number or more".to_owned(),
             ));
         }
+        if let Some(strange) = self.numbers().iter().find(|number| !number.is_finite()) {
+            return Some((format!("is {strange}"), "give finite numbers".to_owned()));
+        }
         if low > high {
             return Some((
                 format!("runs from {low} to {high}"),
                 "give the smaller number first".to_owned(),
             ));
         }
-        (low < least).then(|| (format!("is {low}"), format!("give {least} or more")))
+        if low < least {
+            return Some((format!("is {low}"), format!("give {least} or more")));
+        }
+        (high > most).then(|| (format!("is {high}"), format!("give {most} or less")))
     }
 }

@@ -7,9 +7,13 @@ use crate::{Press, Recording, RecordingError};
 /// Largest distance of a rotation's length from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
 
+/// Farthest from the gel's origin that an indenter can be, mm: ten times the reach of a robot's arm.
+const FARTHEST_MM: f64 = 10_000.0;
+
 impl Recording {
-    /// Checks that names are unique, vectors have their documented shapes, numbers are finite, rotations are unit quaternions,
-    /// and times increase in every press. Writing and reading files check it too.
+    /// Checks that names are unique, vectors have their documented shapes, numbers are finite but for readings that are missing, which are
+    /// not valid, indenters within ten metres of the gel, rotations unit quaternions, and that times increase in every press. Writing and reading
+    /// files check it too.
     ///
     /// # Errors
     ///
@@ -28,14 +32,14 @@ impl Recording {
             expect(names.insert(&press.name), recording, || {
                 format!("press name `{}` is there twice", press.name)
             })?;
-            press.check(self.taxels.len())?;
+            press.check(&self.taxels)?;
         }
         Ok(())
     }
 }
 
 impl Press {
-    pub(crate) fn check(&self, taxels: usize) -> Result<(), RecordingError> {
+    pub(crate) fn check(&self, taxels: &[String]) -> Result<(), RecordingError> {
         let frames = self.time_s.len();
         let lengths = [
             ("gel_from_indenter", self.gel_from_indenter.len()),
@@ -57,15 +61,16 @@ impl Press {
         Ok(())
     }
 
-    fn check_frame(&self, frame: usize, taxels: usize) -> Result<(), RecordingError> {
+    fn check_frame(&self, frame: usize, taxels: &[String]) -> Result<(), RecordingError> {
         let place = || format!("press `{}`, frame {frame}", self.name);
         let widths = [
             self.taxels_kpa[frame].len(),
             self.taxels_raw[frame].len(),
             self.valid[frame].len(),
         ];
-        expect(widths == [taxels; 3], place, || {
-            format!("expected {taxels} taxels, found {widths:?} (kPa, raw, valid)")
+        let n_taxels = taxels.len();
+        expect(widths == [n_taxels; 3], place, || {
+            format!("expected {n_taxels} taxels, found {widths:?} (kPa, raw, valid)")
         })?;
         let time_s = self.time_s[frame];
         expect(time_s.is_finite(), place, || {
@@ -82,6 +87,12 @@ impl Press {
         let pose = self.gel_from_indenter[frame];
         let finite = pose.position_mm.is_finite() && pose.rotation.is_finite();
         expect(finite, place, || "the pose is not finite".to_owned())?;
+        let farthest_mm = pose.position_mm.abs().max_element();
+        expect(farthest_mm <= FARTHEST_MM, place, || {
+            format!(
+                "the indenter is {farthest_mm} mm from the gel, expected {FARTHEST_MM} at most; are its lengths in mm?"
+            )
+        })?;
         let length = pose.rotation.length();
         let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
         expect(is_unit, place, || {
@@ -91,10 +102,17 @@ impl Press {
         expect(force.is_finite(), place, || {
             format!("`force_n` is {force}, expected a finite number")
         })?;
-        let mut readings = self.taxels_kpa[frame].iter().chain(&self.taxels_raw[frame]);
-        expect(readings.all(|reading| reading.is_finite()), place, || {
-            "a reading is not finite".to_owned()
-        })
+        for (taxel, name) in taxels.iter().enumerate() {
+            let [kpa, raw] = [&self.taxels_kpa, &self.taxels_raw].map(|rows| rows[frame][taxel]);
+            expect(!kpa.is_infinite() && !raw.is_infinite(), place, || {
+                format!("the reading of `{name}` is infinite; one that is missing is NaN")
+            })?;
+            let is_there = !kpa.is_nan() && !raw.is_nan();
+            expect(is_there || !self.valid[frame][taxel], place, || {
+                format!("the reading of `{name}` is missing, but marked as valid")
+            })?;
+        }
+        Ok(())
     }
 }
 

@@ -59,7 +59,7 @@ pub enum RecordingError {
         /// What is wrong, read after the column's name.
         problem: String,
     },
-    /// Nothing in the file is a press in the sense of the import description.
+    /// Nothing in the file is a press, in the sense of the import description if there is one.
     #[error("{file}: found no presses in {rows} rows: {why}")]
     NoPresses {
         /// The file as the user named it.

@@ -6,7 +6,7 @@ use twintac_shape::Pose;
 use crate::Provenance;
 
 /// Presses of one sensor with one origin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recording {
     /// Name of the sensor description that the presses belong to.
     pub sensor: String,
@@ -38,7 +38,10 @@ impl std::fmt::Display for Control {
 }
 
 /// One press. All per-frame vectors have the same length, `n_frames`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+///
+/// A reading that did not come is NaN and not valid, in memory as in JSON (null) and Parquet (null). Nothing else is NaN. Two presses are
+/// equal where both miss the same readings.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Press {
     /// Unique in its recording: `<file stem>#<number>`, the number from 1.
     pub name: String,
@@ -55,10 +58,43 @@ pub struct Press {
     pub gel_from_indenter: Vec<Pose>,
     /// Force of the indenter on the gel along -z, N; `[n_frames]`, if it was measured or prescribed.
     pub force_n: Option<Vec<f64>>,
-    /// Readings above the unloaded baseline, kPa; `[n_frames][n_taxels]`.
+    /// Readings above the unloaded baseline, kPa, NaN where one is missing or there is no baseline; `[n_frames][n_taxels]`.
+    #[serde(deserialize_with = "crate::null_as_nan")]
     pub taxels_kpa: Vec<Vec<f64>>,
-    /// Readings as the source gives them, in its own unit; `[n_frames][n_taxels]`.
+    /// Readings as the source gives them, in its own unit, NaN where it gave none; `[n_frames][n_taxels]`.
+    #[serde(deserialize_with = "crate::null_as_nan")]
     pub taxels_raw: Vec<Vec<f64>>,
     /// Whether the reading can be used (not clipped, not missing); `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
+}
+
+impl PartialEq for Press {
+    fn eq(&self, other: &Self) -> bool {
+        let Self {
+            name,
+            mounting,
+            indenter,
+            control,
+            time_s,
+            gel_from_indenter,
+            force_n,
+            taxels_kpa,
+            taxels_raw,
+            valid,
+        } = self;
+        (name, mounting, indenter) == (&other.name, &other.mounting, &other.indenter)
+            && (control, time_s, gel_from_indenter)
+                == (&other.control, &other.time_s, &other.gel_from_indenter)
+            && (force_n, valid) == (&other.force_n, &other.valid)
+            && are_same(taxels_kpa, &other.taxels_kpa)
+            && are_same(taxels_raw, &other.taxels_raw)
+    }
+}
+
+/// Whether readings are equal; one that is missing equals another.
+fn are_same(readings: &[Vec<f64>], others: &[Vec<f64>]) -> bool {
+    let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+    let of_frame =
+        |(row, other): (&Vec<f64>, &Vec<f64>)| row.len() == other.len() && row.iter().zip(other).all(is_same);
+    readings.len() == others.len() && readings.iter().zip(others).all(of_frame)
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use tempfile::TempDir;
-use twintac_recording::{Control, Press, Provenance, Recording};
+use twintac_recording::{Column, Control, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
 fn number() -> impl Strategy<Value = f64> {
@@ -21,12 +21,18 @@ fn number() -> impl Strategy<Value = f64> {
 }
 
 fn press(taxels: usize) -> impl Strategy<Value = Press> {
+    let mm = || prop_oneof![-1e4..1e4, Just(-0.0)];
+    let reading = || prop_oneof![4 => number(), 1 => Just(f64::NAN)];
+    let taxel = (reading(), reading(), any::<bool>()).prop_map(|(kpa, raw, valid)| {
+        let is_there = !kpa.is_nan() && !raw.is_nan();
+        (kpa, raw, valid && is_there)
+    });
     let frame = (
         1e-6..10.0,
-        [number(), number(), number()],
+        [mm(), mm(), mm()],
         [-3.0..3.0, -3.0..3.0, -3.0..3.0],
         number(),
-        proptest::collection::vec((number(), number(), any::<bool>()), taxels),
+        proptest::collection::vec(taxel, taxels),
     );
     let frames = proptest::collection::vec(frame, 1..30);
     ("\\PC{0,12}", "\\PC{1,8}", any::<bool>(), any::<bool>(), frames).prop_map(
@@ -75,7 +81,7 @@ fn recording() -> impl Strategy<Value = Recording> {
         (
             "\\PC{0,12}",
             provenance.clone(),
-            proptest::collection::vec(press(taxels), 0..5),
+            proptest::collection::vec(press(taxels), 1..5),
         )
             .prop_map(move |(sensor, provenance, mut presses)| {
                 for (index, press) in presses.iter_mut().enumerate() {
@@ -145,6 +151,9 @@ proptest! {
         let back = Recording::read_parquet(&path).unwrap();
         // Debug text tells 0 from -0, which are equal.
         prop_assert_eq!(format!("{:?}", back), format!("{:?}", recording));
+        let json = serde_json::to_string(&recording.presses).unwrap();
+        let back: Vec<Press> = serde_json::from_str(&json).unwrap();
+        prop_assert_eq!(&back, &recording.presses);
     }
 
     #[test]
@@ -232,8 +241,20 @@ fn inconsistent_recordings_are_not_written() {
         error,
         "press `bench#2`, frame 2: time 0.05 s follows 0.1 s, expected times to increase"
     );
-    let error = spoiled(|r| r.presses[0].taxels_kpa[1][0] = f64::NAN);
-    assert_eq!(error, "press `bench#1`, frame 1: a reading is not finite");
+    let missing = "press `bench#1`, frame 1: the reading of `S0` is missing, but marked as valid";
+    assert_eq!(spoiled(|r| r.presses[0].taxels_kpa[1][0] = f64::NAN), missing);
+    assert_eq!(spoiled(|r| r.presses[0].taxels_raw[1][0] = f64::NAN), missing);
+    let error = spoiled(|r| r.presses[0].taxels_raw[1][1] = f64::INFINITY);
+    assert_eq!(
+        error,
+        "press `bench#1`, frame 1: the reading of `S1` is infinite; one that is missing is NaN"
+    );
+    let error = spoiled(|r| r.presses[0].gel_from_indenter[2].position_mm.z = -1e300);
+    assert!(
+        error.starts_with("press `bench#1`, frame 2: the indenter is 1")
+            && error.contains("are its lengths in mm?"),
+        "{error}"
+    );
     let error = spoiled(|r| r.presses[0].time_s[0] = f64::NAN);
     assert_eq!(
         error,
@@ -256,4 +277,47 @@ fn inconsistent_recordings_are_not_written() {
     assert_eq!(error, "recording: press name `bench#1` is there twice");
     let error = spoiled(|r| r.taxels[1] = "S0".to_owned());
     assert_eq!(error, "recording: taxel name `S0` is empty or there twice");
+}
+
+#[test]
+fn a_table_without_presses_is_an_error() {
+    let (_folder, path) = file();
+    let mut empty = example();
+    empty.presses.clear();
+    empty.write_parquet(&path).unwrap();
+    let error = Recording::read_parquet(&path).unwrap_err().to_string();
+    let expected = format!(
+        "{}: found no presses in 0 rows: the table is empty",
+        path.display()
+    );
+    assert_eq!(error, expected);
+}
+
+/// A reading that did not come: NaN in memory, null in the table.
+fn example_with_a_gap() -> Recording {
+    let mut recording = example();
+    let press = &mut recording.presses[0];
+    (press.taxels_kpa[1][1], press.taxels_raw[1][1]) = (f64::NAN, f64::NAN);
+    recording
+}
+
+#[test]
+fn a_missing_reading_is_missing_in_columns_and_files() {
+    let recording = example_with_a_gap();
+    let columns = recording.columns();
+    for name in ["S1_kpa", "S1_raw"] {
+        let (_, Column::Known(readings)) = columns.iter().find(|(other, _)| other == name).unwrap() else {
+            panic!("{name} has no gaps");
+        };
+        let missing: Vec<usize> = (0..readings.len())
+            .filter(|&row| readings[row].is_none())
+            .collect();
+        assert_eq!(missing, [1]);
+    }
+    let (_folder, path) = file();
+    recording.write_parquet(&path).unwrap();
+    let back = Recording::read_parquet(&path).unwrap();
+    assert_eq!(back, recording);
+    assert!(back.presses[0].taxels_kpa[1][1].is_nan());
+    assert_ne!(back, example());
 }

@@ -1,6 +1,7 @@
 //! A trained classifier.
 
 use rand::seq::SliceRandom;
+use twintac_config::Checked;
 use twintac_learn::{AdamW, AdamWSettings, Matrix};
 use twintac_random::{RandomStream, normal, stream};
 
@@ -53,7 +54,7 @@ impl Classifier {
         seed: u64,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self, ClassifyError> {
-        settings.check()?;
+        settings.checked()?;
         let first = trials.first().ok_or(ClassifyError::NoTrials)?;
         for trial in trials {
             let (expected, found) = (first.series.n_taxels(), trial.series.n_taxels());
@@ -269,7 +270,7 @@ mod tests {
     fn order_in_time_is_learned() {
         let classifier = train(&trials(120, 1));
         let found = classifier.judge(&trials(100, 2));
-        assert!(found.accuracy_percent() > 95.0, "{found:?}");
+        assert!(found.accuracy_percent().unwrap() > 95.0, "{found:?}");
     }
 
     #[test]
@@ -292,6 +293,6 @@ mod tests {
             n_heads: 5,
             ..settings
         };
-        assert!(error(&trials(2, 1), &settings).contains("n_heads is 5"));
+        assert!(error(&trials(2, 1), &settings).contains("`n_heads` is 5"));
     }
 }

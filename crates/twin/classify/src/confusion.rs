@@ -35,9 +35,9 @@ impl Confusion {
         }
     }
 
-    /// Part of the trials whose class was found, %; zero of none.
+    /// Part of the trials whose class was found, %; `None` of none.
     #[must_use]
-    pub fn accuracy_percent(&self) -> f64 {
+    pub fn accuracy_percent(&self) -> Option<f64> {
         let right: usize = self
             .counts
             .iter()
@@ -45,7 +45,7 @@ impl Confusion {
             .map(|(class, row)| row[class])
             .sum();
         let all: usize = self.counts.iter().flatten().sum();
-        100.0 * right as f64 / all.max(1) as f64
+        (all > 0).then(|| 100.0 * right as f64 / all as f64)
     }
 }
 
@@ -56,12 +56,12 @@ mod tests {
     #[test]
     fn accuracy_is_the_part_on_the_diagonal() {
         let mut confusion = Confusion::new(3);
-        assert_eq!(confusion.accuracy_percent(), 0.0);
+        assert_eq!(confusion.accuracy_percent(), None);
         for (truth, found) in [(0, 0), (1, 1), (2, 1), (2, 2)] {
             confusion.count(truth, found);
         }
         assert_eq!(confusion.counts[2], [0, 1, 1]);
-        assert_eq!(confusion.accuracy_percent(), 75.0);
+        assert_eq!(confusion.accuracy_percent(), Some(75.0));
         confusion.add(&confusion.clone());
         assert_eq!(confusion.counts[2], [0, 2, 2]);
     }

@@ -23,13 +23,6 @@ pub enum ClassifyError {
         n_classes: usize,
     },
     /// A setting that makes no sense.
-    #[error("{setting} is {found}, expected {expected}")]
-    Setting {
-        /// Which.
-        setting: &'static str,
-        /// What it should be.
-        expected: &'static str,
-        /// What it is.
-        found: String,
-    },
+    #[error("setting {0}")]
+    Setting(#[from] twintac_config::Problem),
 }

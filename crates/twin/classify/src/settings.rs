@@ -1,8 +1,7 @@
 //! How a classifier is built and trained.
 
 use serde::{Deserialize, Serialize};
-
-use crate::ClassifyError;
+use twintac_config::{Checked, Ranges};
 
 /// Size and training of a classifier. The TwinTac paper states none of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,33 +55,40 @@ impl Default for TrainSettings {
     }
 }
 
-impl TrainSettings {
-    pub(crate) fn check(&self) -> Result<(), ClassifyError> {
-        let sizes = [
-            ("n_networks", self.n_networks),
-            ("width", self.width),
-            ("n_layers", self.n_layers),
-            ("n_heads", self.n_heads),
-            ("hidden", self.hidden),
-            ("epochs", self.epochs),
-            ("batch", self.batch),
-        ];
-        for (setting, size) in sizes {
-            if size == 0 {
-                return Err(ClassifyError::Setting {
-                    setting,
-                    expected: "one or more",
-                    found: "0".to_owned(),
-                });
-            }
-        }
-        if !self.width.is_multiple_of(self.n_heads) {
-            return Err(ClassifyError::Setting {
-                setting: "n_heads",
-                expected: "a divisor of the width",
-                found: self.n_heads.to_string(),
-            });
-        }
-        Ok(())
+impl Checked for TrainSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            n_networks,
+            width,
+            n_layers,
+            n_heads,
+            hidden,
+            epochs,
+            least_steps,
+            batch,
+            learning_rate,
+            weight_decay,
+            gradient_norm,
+            gain_noise,
+            sample_noise,
+        } = self;
+        ranges.number("n_networks", *n_networks, 1.0..=100.0);
+        ranges.number("width", *width, 1.0..=1024.0);
+        ranges.number("n_layers", *n_layers, 1.0..=32.0);
+        ranges.number("n_heads", *n_heads, 1.0..=64.0);
+        let divides = *n_heads > 0 && width.is_multiple_of(*n_heads);
+        let problem = || format!("is {n_heads}");
+        ranges.that("n_heads", divides, problem, || {
+            format!("give a divisor of the width, {width}")
+        });
+        ranges.number("hidden", *hidden, 1.0..=8192.0);
+        ranges.number("epochs", *epochs, 1.0..=100_000.0);
+        ranges.zero_or("least_steps", *least_steps, 1.0..=1e7);
+        ranges.number("batch", *batch, 1.0..=1e6);
+        ranges.number("learning_rate", *learning_rate, 1e-6..=1.0);
+        ranges.zero_or("weight_decay", *weight_decay, 1e-9..=10.0);
+        ranges.number("gradient_norm", *gradient_norm, 1e-6..=1e6);
+        ranges.zero_or("gain_noise", *gain_noise, 1e-6..=1.0);
+        ranges.zero_or("sample_noise", *sample_noise, 1e-6..=1.0);
     }
 }

@@ -1,5 +1,6 @@
 //! Where tables over depth come from.
 
+use serde::{Deserialize, Serialize};
 use twintac_shape::{Pose, Underside};
 
 use crate::DepthTable;
@@ -8,7 +9,7 @@ use crate::DepthTable;
 pub type SourceError = Box<dyn std::error::Error + Send + Sync>;
 
 /// One place to simulate.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DepthTableRequest {
     /// Name of the indenter in the sensor description.
     pub indenter: String,

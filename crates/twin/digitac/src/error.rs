@@ -9,6 +9,9 @@ pub enum DigitacError {
     /// The simulation could not deliver.
     #[error("the simulation failed: {0}")]
     Simulation(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// A model's folder could not be written.
+    #[error(transparent)]
+    Store(#[from] twintac_store::StoreError),
     /// The simulation delivered another number of tables over depth than was asked for.
     #[error("expected {expected} tables over depth, found {found}")]
     DepthTableCount {
@@ -41,16 +44,9 @@ pub enum DigitacError {
         /// What is there.
         found: String,
     },
-    /// A setting is out of its range.
-    #[error("setting `{setting}`: expected {expected}, found {found}")]
-    Setting {
-        /// Name of the setting.
-        setting: &'static str,
-        /// Its range.
-        expected: &'static str,
-        /// Its value.
-        found: String,
-    },
+    /// A setting cannot be what it is.
+    #[error("setting {0}")]
+    Setting(#[from] twintac_config::Problem),
     /// The loss became infinite or NaN.
     #[error("training of variant `{variant}` diverged in epoch {epoch}: the loss is {loss}")]
     Diverged {

@@ -21,6 +21,8 @@ mod error;
 mod evaluation;
 mod features;
 mod model_folder;
+#[cfg(test)]
+mod model_test;
 mod network;
 mod numerics;
 mod physical_fit;
@@ -29,6 +31,8 @@ mod pipeline_test;
 mod prediction;
 mod seed;
 #[cfg(test)]
+mod settings_test;
+#[cfg(test)]
 mod synthetic;
 mod training;
 
@@ -36,7 +40,7 @@ pub use adaptation::{Adaptation, Adapted, NewSensor, adapt, choose_presses};
 pub use alignment::{PairSettings, PairedPress, Warp, WarpSettings, pair};
 pub use bench_fit::{
     BenchEstimate, BenchSettings, Estimate, PlaceSettings, Places, PortCorrection, PortEstimate,
-    SmoothFactor, features, fit_bench, refine_bench,
+    SmoothFactor, Taxels, features, fit_bench, refine_bench,
 };
 pub use certainty::{
     Certainty, CertaintyScore, Contact, Lessons, PressCertainty, area_under_curve, calibrate, score_certainty,
@@ -51,8 +55,9 @@ pub use features::{Features, Gains};
 pub use model_folder::{Model, ModelRecord, Origin};
 pub use network::{Twin, Variant};
 pub use prediction::{
-    Prediction, TwinAtPlace, TwinState, WithoutMemory, at_place, predict, simulated_recording, unread_press,
+    Prediction, TwinAtPlace, TwinMemory, TwinState, WithoutMemory, at_place, predict, simulated_recording,
+    unread_press,
 };
 pub use training::{
-    Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, choose, train,
+    Epoch, Fold, HeldOut, Progress, Split, SplitSettings, TrainSettings, Trained, TrainedWith, choose, train,
 };

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use twintac_shape::Pose;
 
 use crate::distance::{Body, Field, Form, REACH_MM};
-use crate::engine::dispatch;
+use crate::simd::dispatch;
 use crate::surface::SurfaceGrid;
 
 /// Heights above the undeformed surface at which distances are taken, mm: the deeper ones tell how deep a narrow body presses. Where points are farther
@@ -22,10 +22,17 @@ const SPACING_MM: f32 = 2.0;
 
 /// Gaps up to which something may touch between points, and beyond which nothing does, in distances of points: an end with a radius of 2.5 mm, in the middle of four points
 /// of PhysTac's grid, has a gap of a fifth to them when it touches.
-const TOUCHED: [f32; 2] = [0.05, 0.25];
+pub(crate) const TOUCHED: [f32; 2] = [0.05, 0.25];
 
 /// Numbers for each point.
 pub(crate) const N_CHANNELS: usize = 3;
+
+/// Heights above the undeformed surface at which distances are taken around points so far apart,
+/// mm.
+pub(crate) fn levels_mm(spacing_mm: f32) -> [f32; N_CHANNELS] {
+    let scale = (spacing_mm / SPACING_MM).max(1.0);
+    LEVELS_MM.map(|level_mm| scale * level_mm)
+}
 
 /// The points of all grids, one grid after the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,7 +104,7 @@ impl ContactGrid {
             spacing_mm: grid.spacing_mm as f32,
             n: grid.n,
             highest_mm,
-            levels_mm: LEVELS_MM.map(|level_mm| scale * level_mm),
+            levels_mm: levels_mm(grid.spacing_mm as f32),
             deepest_mm: scale * DEEPEST_MM,
             height_mm,
         }

@@ -1,6 +1,7 @@
 //! A fast gel as one file: safetensors, with what is no tensor as JSON in its header.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
@@ -12,14 +13,15 @@ use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::{LocalNetwork, Perceptron};
 use crate::networks::Networks;
-use crate::novelty::{N_TRAITS, Novelty};
+use crate::novelty::{Coverage, N_TRAITS, Nearest, Novelty};
 use crate::surface::SurfaceGrid;
+use crate::taught::{Port, TaughtGel};
 
 /// The header's entry.
 const ENTRY: &str = "twintac-fast";
 
 /// Version of the file's layout.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// Bytes that are no fast gel: what is wrong with them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,17 +34,26 @@ impl FastFileError {
     }
 }
 
+/// What every version has.
+#[derive(Deserialize)]
+struct Version {
+    version: u32,
+}
+
 /// What is no tensor.
 #[derive(Serialize, Deserialize)]
 struct Header {
     version: u32,
     sensor: String,
-    layout: Layout,
+    gel: TaughtGel,
+    ports: Vec<Port>,
+    /// Where it is read.
     ports_mm: Vec<glam::DVec2>,
+    layout: Layout,
     center_mm: glam::DVec3,
-    /// The distance from what was taught that counts as a novelty of 1. Older versions have none.
-    #[serde(default)]
+    /// The distance from what was taught that counts as a novelty of 1.
     novelty_unit: f32,
+    error_of_one_lesson: f32,
 }
 
 /// PhysTac's fast gel, made by `twintac fast train --sensor sensors/phystac.toml --lessons 2000 --exams 70 --slides 24`.
@@ -76,10 +87,13 @@ impl FastGel {
         let header = Header {
             version: VERSION,
             sensor: self.sensor.clone(),
-            layout: self.layout.clone(),
+            gel: TaughtGel::clone(&self.gel),
+            ports: self.ports.clone(),
             ports_mm: self.ports_mm.clone(),
+            layout: self.layout.clone(),
             center_mm: self.center_mm,
-            novelty_unit: self.novelty.unit,
+            novelty_unit: self.novelty.nearest.unit,
+            error_of_one_lesson: self.novelty.coverage.error_of_one,
         };
         let header = serde_json::to_string(&header).map_err(FastFileError::new)?;
         let mut tensors = Vec::new();
@@ -98,13 +112,22 @@ impl FastGel {
                 tensors.push((tensor("bias"), vec![bias.len()], bytes(bias)));
             }
         }
-        let kept = &self.novelty.kept;
-        tensors.push((
-            "novelty.kept".into(),
-            vec![kept.n_rows(), N_TRAITS],
-            bytes(&kept.values),
-        ));
-        tensors.push(("novelty.scale".into(), vec![N_TRAITS], bytes(&self.novelty.scale)));
+        let Novelty { nearest, coverage } = &self.novelty;
+        let mut put = |name: &str, shape: Vec<usize>, values: &[f32]| {
+            tensors.push((name.to_owned(), shape, bytes(values)));
+        };
+        put(
+            "novelty.kept",
+            vec![nearest.kept.n_rows(), N_TRAITS],
+            &nearest.kept.values,
+        );
+        put("novelty.scale", vec![N_TRAITS], &nearest.scale);
+        put("novelty.lessons", vec![coverage.lessons.len()], &coverage.lessons);
+        put(
+            "novelty.deepest_mm",
+            vec![coverage.deepest_mm.len()],
+            &coverage.deepest_mm,
+        );
         let views = tensors.iter().map(|(name, shape, bytes)| {
             let view = TensorView::new(Dtype::F32, shape.clone(), bytes).map_err(FastFileError::new)?;
             Ok((name.clone(), view))
@@ -122,14 +145,14 @@ impl FastGel {
         let (_, entries) = SafeTensors::read_metadata(bytes).map_err(FastFileError::new)?;
         let entries = entries.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
         let header = entries.ok_or_else(|| FastFileError::new(format!("its header has no `{ENTRY}`")))?;
-        let header: Header = serde_json::from_str(header).map_err(FastFileError::new)?;
-        if header.version != VERSION {
+        let Version { version } = serde_json::from_str(header).map_err(FastFileError::new)?;
+        if version != VERSION {
             let problem = format!(
-                "its version is {} where {VERSION} is expected; train it again with `twintac fast train`",
-                header.version
+                "its version is {version} where {VERSION} is expected; train it again with `twintac fast train`"
             );
             return Err(FastFileError::new(problem));
         }
+        let header: Header = serde_json::from_str(header).map_err(FastFileError::new)?;
         let is_whole = |grid: &SurfaceGrid| grid.n.iter().product::<usize>() == grid.len();
         if header.layout.grids.is_empty() || !header.layout.grids.iter().all(is_whole) {
             return Err(FastFileError::new(
@@ -149,18 +172,27 @@ impl FastGel {
                 .transpose()?,
         };
         let novelty = Novelty {
-            kept: Matrix {
-                values: tensor(&tensors, "novelty.kept", &[None, Some(N_TRAITS)])?,
-                n_columns: N_TRAITS,
+            nearest: Nearest {
+                kept: Matrix {
+                    values: tensor(&tensors, "novelty.kept", &[None, Some(N_TRAITS)])?,
+                    n_columns: N_TRAITS,
+                },
+                scale: tensor(&tensors, "novelty.scale", &[Some(N_TRAITS)])?,
+                unit: header.novelty_unit,
             },
-            scale: tensor(&tensors, "novelty.scale", &[Some(N_TRAITS)])?,
-            unit: header.novelty_unit,
+            coverage: Coverage {
+                lessons: tensor(&tensors, "novelty.lessons", &[Some(n_grid)])?,
+                deepest_mm: tensor(&tensors, "novelty.deepest_mm", &[Some(n_grid)])?,
+                error_of_one: header.error_of_one_lesson,
+            },
         };
         Ok(Self {
             novelty,
             sensor: header.sensor,
-            layout: header.layout,
+            gel: Arc::new(header.gel),
+            ports: header.ports,
             ports_mm: header.ports_mm,
+            layout: header.layout,
             center_mm: header.center_mm,
             networks,
         })
@@ -221,7 +253,11 @@ fn tensor(tensors: &SafeTensors<'_>, name: &str, shape: &[Option<usize>]) -> Res
         return Err(FastFileError::new(format!("`{name}` does not fit the rest")));
     }
     let numbers = found.data().as_chunks::<4>().0.iter();
-    Ok(numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect())
+    let numbers: Vec<f32> = numbers.map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    if !numbers.iter().all(|number| number.is_finite()) {
+        return Err(FastFileError::new(format!("`{name}` has numbers that are none")));
+    }
+    Ok(numbers)
 }
 
 fn bytes(values: &[f32]) -> Vec<u8> {

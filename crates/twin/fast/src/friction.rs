@@ -1,12 +1,14 @@
 //! Friction of a body on the gel: the gel's top is sheared with the body, until it slips.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
 
 use crate::shear::Shear;
+use crate::taught::{FastGelMismatch, TaughtGel};
 use crate::{Body, FastReader};
 
 /// Radius of the smallest contact, mm: a smaller one lies between the points of the grid.
@@ -26,6 +28,9 @@ const ARM_OF_RADIUS: f64 = 0.6;
 /// The pull is felt at the ports as on the floor of such a layer, as high as the gel that is left under the body: more ahead, less behind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
+    sensor: String,
+    /// On what; shared with the reader once it is known to be the same.
+    gel: Arc<TaughtGel>,
     coefficient: f64,
     shear_modulus_kpa: f64,
     poissons_ratio: f64,
@@ -50,6 +55,8 @@ impl Friction {
     pub fn on(sensor: &Sensor, coefficient: f64) -> Self {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         Self {
+            sensor: sensor.name.clone(),
+            gel: Arc::new(TaughtGel::of(sensor)),
             coefficient,
             shear_modulus_kpa: sensor.gel.material.shear_modulus_kpa(),
             poissons_ratio: sensor.gel.material.poissons_ratio(),
@@ -58,6 +65,20 @@ impl Friction {
             shear: Shear::of(sensor.gel.material.poissons_ratio()),
             held: None,
         }
+    }
+
+    /// Whether a fast gel is the one that this friction is on, wherever it is read; from then on
+    /// that is known.
+    ///
+    /// # Errors
+    /// All that differs, in words.
+    pub fn check(&mut self, reader: &FastReader) -> Result<(), FastGelMismatch> {
+        let (of, gel) = reader.taught();
+        if !Arc::ptr_eq(&self.gel, gel) {
+            FastGelMismatch::of((of, &self.sensor), gel.differences(&self.gel))?;
+            self.gel = Arc::clone(gel);
+        }
+        Ok(())
     }
 
     /// One more moment of a sensor that this body alone touches: what [`FastReader::read`] gives, with friction.
@@ -82,7 +103,8 @@ impl Friction {
     /// - `wrench`: is changed; of this body alone: force on the gel, N, and torque about the top of the gel's middle, N mm.
     ///
     /// # Panics
-    /// A slice of pressures of another length than there are taxels, a pose that is not finite.
+    /// A slice of pressures of another length than there are taxels, a pose that is not finite, the
+    /// reader of another gel ([`Self::check`]).
     pub fn add(
         &mut self,
         reader: &mut FastReader,
@@ -91,6 +113,9 @@ impl Friction {
         wrench: &mut [f32; 6],
     ) {
         assert_eq!(pressure_kpa.len(), reader.n_taxels(), "a pressure for each taxel");
+        if let Err(mismatch) = self.check(reader) {
+            panic!("{mismatch}");
+        }
         let Some((footprint, ports_mm)) = reader.footprint(&[(body, gel_from_body)]) else {
             self.held = None;
             *wrench = [0.0; 6];

@@ -1,6 +1,6 @@
 //! How what touches is laid out for the networks.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use twintac_sensor::Sensor;
 
@@ -26,7 +26,8 @@ pub fn finest_edge_mm(height_mm: f64, width_mm: f64) -> f64 {
 /// How what touches is laid out for the networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Layout {
-    /// Each port is above a point of one of them. The force is read from the first.
+    /// Each port is above a point of one of them. The force is read from the first, which may have
+    /// no port.
     pub(crate) grids: Vec<SurfaceGrid>,
     pub(crate) patch: Patch,
     pub(crate) surroundings: Surroundings,
@@ -35,7 +36,16 @@ pub(crate) struct Layout {
 impl Layout {
     /// The layout over a sensor's gel.
     pub(crate) fn of(sensor: &Sensor) -> Self {
-        let (grids, surroundings) = (SurfaceGrid::all(sensor), Surroundings::of(sensor));
+        let (mut grids, surroundings) = (SurfaceGrid::all(sensor), Surroundings::of(sensor));
+        // A press teaches the force of its mirror images too, if the grid that it is read from has
+        // them.
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let center_mm = 0.5 * (low + high).truncate();
+        let central = SurfaceGrid::above(sensor, center_mm);
+        let n_axes = |grid: &SurfaceGrid| grid.is_symmetric(center_mm).into_iter().filter(|is| *is).count();
+        if n_axes(&central) > n_axes(&grids[0]) {
+            grids.insert(0, central);
+        }
         Self {
             patch: Patch::round(&grids[0], surroundings.height_mm()),
             grids,
@@ -66,28 +76,6 @@ impl Layout {
     /// The first grid.
     pub(crate) fn grid(&self) -> &SurfaceGrid {
         &self.grids[0]
-    }
-
-    /// Whether the first grid and the heights of its points are their own mirror images, across x and across y, about a place.
-    pub(crate) fn is_symmetric(&self, center_mm: DVec3) -> [bool; 2] {
-        let grid = self.grid();
-        let [n_x, n_y] = grid.n;
-        [0, 1].map(|axis| {
-            let last_mm = grid.first_mm[axis] + grid.spacing_mm * (grid.n[axis] - 1) as f64;
-            let is_central = (0.5 * (grid.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6;
-            let mirror = |i: usize, j: usize| {
-                if axis == 0 {
-                    [n_x - 1 - i, j]
-                } else {
-                    [i, n_y - 1 - j]
-                }
-            };
-            is_central
-                && (0..grid.len()).all(|point| {
-                    let [i, j] = mirror(point % n_x, point / n_x);
-                    (grid.height_mm[point] - grid.height_mm[j * n_x + i]).abs() < 1e-6
-                })
-        })
     }
 
     fn finest_edge_mm(&self) -> f64 {
@@ -150,5 +138,25 @@ mod tests {
             assert!(layout.coarseness(finest_mm).abs() < 1e-6, "{}", file.sensor.name);
             assert!((layout.coarseness(1.5 * finest_mm) - 0.3).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn forces_are_read_from_a_grid_with_the_gels_mirror_images() {
+        // Ports 5 mm apart are on four grids of points 2 mm apart, none of which is its own mirror
+        // image.
+        let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
+        let n_before = Layout::of(&sensor).grids.len();
+        assert_eq!(
+            (n_before, Layout::of(&sensor).grids),
+            (1, SurfaceGrid::all(&sensor))
+        );
+        for (number, taxel) in sensor.taxels.iter_mut().enumerate() {
+            let (column, row) = (number as f64 % 4.0, (number / 4) as f64);
+            taxel.position_mm = glam::DVec3::new(5.0 * column - 7.5, 5.0 * row - 2.5, 0.0);
+        }
+        let layout = Layout::of(&sensor);
+        assert_eq!(layout.grids.len(), 5);
+        assert_eq!(layout.grid().is_symmetric(DVec2::ZERO), [true; 2]);
+        assert_eq!(layout.grids[1..], SurfaceGrid::all(&sensor));
     }
 }

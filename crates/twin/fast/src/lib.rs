@@ -16,7 +16,9 @@ mod networks;
 mod novelty;
 mod read;
 mod shear;
+mod simd;
 mod surface;
+mod taught;
 mod touch;
 mod training;
 
@@ -29,5 +31,6 @@ pub use layout::finest_edge_mm;
 pub use lesson::{Lesson, LessonFrame, lesson_places_mm};
 pub use model::FastGel;
 pub use read::FastReader;
+pub use taught::FastGelMismatch;
 pub use touch::Touch;
 pub use training::{REPORT_STEPS, TrainProgress, TrainSettings};

@@ -1,5 +1,7 @@
 //! What a trained fast twin is made of.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use twintac_sensor::Sensor;
 use twintac_shape::{ShapeError, Solid};
@@ -9,14 +11,20 @@ use crate::layout::Layout;
 use crate::lesson::lesson_places_mm;
 use crate::networks::Networks;
 use crate::novelty::Novelty;
+use crate::taught::{FastGelMismatch, Port, TaughtGel};
 use crate::training::{Course, Frames, TrainProgress, TrainSettings, train};
 
 /// A fast twin of one sensor's gel: from what touches to the pressure at each port and the force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FastGel {
     pub(crate) sensor: String,
+    /// The gel that it was taught, which its readers share.
+    pub(crate) gel: Arc<TaughtGel>,
+    /// The ports that it was taught, those of the sensor. `[n_taxels]`
+    pub(crate) ports: Vec<Port>,
     pub(crate) layout: Layout,
-    /// Where the ports are, mm. `[n_taxels]`
+    /// Where it is read, mm: at those ports, unless [`Self::with_ports`] has moved them.
+    /// `[n_taxels]`
     pub(crate) ports_mm: Vec<DVec2>,
     /// About which torques count, mm.
     pub(crate) center_mm: DVec3,
@@ -25,7 +33,9 @@ pub struct FastGel {
 }
 
 impl FastGel {
-    /// Learns from presses of a sensor's gel.
+    /// Learns from presses of a sensor's gel, and from others, which are held out, how far off it
+    /// then is where few lessons pressed: its novelty tells. With none held out nobody knows, and
+    /// places count as sure where any lesson pressed.
     ///
     /// # Errors
     /// A lesson whose shape can't be.
@@ -34,7 +44,7 @@ impl FastGel {
     /// No lesson with a frame.
     pub fn train(
         sensor: &Sensor,
-        lessons: &[Lesson],
+        (lessons, held_out): (&[Lesson], &[Lesson]),
         settings: &TrainSettings,
         seed: u64,
         progress: &mut dyn FnMut(TrainProgress),
@@ -44,11 +54,13 @@ impl FastGel {
         let center_mm = (0.5 * (low + high)).with_z(high.z);
         let places_mm = lesson_places_mm(sensor);
         let places = (&places_mm[..], sensor.taxels.len());
-        let frames = Frames::of(lessons, &layout, places, center_mm)?;
+        let frames = Frames::of(lessons, &layout, places, center_mm, &sensor.surfaces)?;
         // A surface of triangles may have the heights of its mirror image, and other sides.
         let has_known_sides = !matches!(sensor.gel.solid, Solid::Stl { .. });
-        let is_symmetric = layout.is_symmetric(center_mm).map(|is| is && has_known_sides);
-        let ports_mm = ports_mm(sensor);
+        let is_symmetric = layout.grid().is_symmetric(center_mm.truncate());
+        let is_symmetric = is_symmetric.map(|is| is && has_known_sides);
+        let ports = Port::all(sensor);
+        let ports_mm = Port::places_mm(&ports);
         let mirrored = |axis: usize| {
             let images = is_symmetric[axis].then(|| mirror_images(&ports_mm, center_mm.truncate(), axis));
             images.flatten()
@@ -63,14 +75,18 @@ impl FastGel {
             seed,
         };
         let networks = train(&course, progress);
-        Ok(Self {
-            novelty: Novelty::of(&frames, layout.grid()),
+        let mut trained = Self {
+            novelty: Novelty::of(&frames, layout.grid(), is_symmetric),
             sensor: sensor.name.clone(),
+            gel: Arc::new(TaughtGel::of(sensor)),
+            ports,
             ports_mm,
             layout,
             center_mm,
             networks,
-        })
+        };
+        trained.calibrate_novelty(held_out, &sensor.surfaces)?;
+        Ok(trained)
     }
 }
 
@@ -81,7 +97,29 @@ impl FastGel {
         &self.sensor
     }
 
-    /// Where the ports are in the gel's plane, mm. `[n_taxels]`
+    /// Whether it is the fast gel of a sensor: whether it was taught the sensor's gel (shape,
+    /// material, shell, and what is cast into it) and is read at the sensor's ports. Names do not
+    /// count, nor do indenters, limits, the read-out, relaxation and friction, which a fast gel
+    /// does not know.
+    ///
+    /// # Errors
+    /// All that differs, in words.
+    pub fn check(&self, sensor: &Sensor) -> Result<(), FastGelMismatch> {
+        let mut differences = self.gel.differences(&TaughtGel::of(sensor));
+        differences.extend(Port::difference(&self.read_ports(), &Port::all(sensor)));
+        FastGelMismatch::of((&self.sensor, &sensor.name), differences)
+    }
+
+    /// The ports at which it is read.
+    fn read_ports(&self) -> Vec<Port> {
+        match &self.ports[..] {
+            ports if Port::places_mm(ports) == self.ports_mm => ports.to_vec(),
+            [] => Vec::new(),
+            [first, ..] => self.ports_mm.iter().map(|at| first.at(*at)).collect(),
+        }
+    }
+
+    /// Where it is read in the gel's plane, mm: at the ports, in their order. `[n_taxels]`
     #[must_use]
     pub fn ports_mm(&self) -> &[DVec2] {
         &self.ports_mm
@@ -112,12 +150,6 @@ impl FastGel {
     }
 }
 
-/// Where a sensor's ports are, mm.
-fn ports_mm(sensor: &Sensor) -> Vec<DVec2> {
-    let taxels = sensor.taxels.iter();
-    taxels.map(|taxel| taxel.position_mm.truncate()).collect()
-}
-
 /// For each place, the number of its mirror image about a center across an axis; `None` if one of them has none.
 fn mirror_images(places_mm: &[DVec2], center_mm: DVec2, axis: usize) -> Option<Vec<usize>> {
     let image = |at: &DVec2| {
@@ -138,8 +170,11 @@ mod tests {
         let sensor = SensorFile::phystac_tip().unwrap().sensor;
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let center_mm = (0.5 * (low + high)).with_z(high.z);
-        assert_eq!(Layout::of(&sensor).is_symmetric(center_mm), [false, true]);
-        let images = |axis| mirror_images(&ports_mm(&sensor), center_mm.truncate(), axis);
+        let layout = Layout::of(&sensor);
+        let is_symmetric = layout.grid().is_symmetric(center_mm.truncate());
+        assert_eq!(is_symmetric, [false, true]);
+        let ports_mm = Port::places_mm(&Port::all(&sensor));
+        let images = |axis| mirror_images(&ports_mm, center_mm.truncate(), axis);
         assert_eq!(images(1), Some(vec![2, 1, 0, 5, 4, 3, 7, 6]));
         assert_eq!(images(0), None);
     }

@@ -10,11 +10,15 @@ use crate::engine::{Engine, Scratch};
 use crate::footprint::Footprint;
 use crate::novelty::Novelty;
 use crate::surface::SurfaceGrid;
+use crate::taught::TaughtGel;
 use crate::{Body, FastGel, Touch};
 
 /// A fast gel, ready to be read: it owns all memory that a reading needs.
 #[derive(Clone, Debug)]
 pub struct FastReader {
+    /// The sensor and the gel that were taught.
+    sensor: Arc<str>,
+    gel: Arc<TaughtGel>,
     points: Arc<ContactPoints>,
     engine: Arc<Engine>,
     /// What touches sensors that are evaluated together.
@@ -32,6 +36,8 @@ impl FastGel {
         let points = ContactPoints::new(&self.layout.grids);
         let engine = Engine::of(self);
         FastReader {
+            sensor: self.sensor.as_str().into(),
+            gel: Arc::clone(&self.gel),
             inputs: vec![0.0; engine.n_together() * points.n_inputs()],
             scratch: engine.scratch(),
             ports_mm: self.ports_mm.as_slice().into(),
@@ -56,6 +62,11 @@ impl FastReader {
         self.ports_mm.len()
     }
 
+    /// Name of the sensor, and the gel, that were taught.
+    pub(crate) fn taught(&self) -> (&str, &Arc<TaughtGel>) {
+        (&self.sensor, &self.gel)
+    }
+
     /// What the gel does under bodies at these poses in the gel's frame.
     ///
     /// - `pressure_kpa`: is written; hydrostatic pressure at each port. `[n_taxels]`
@@ -72,8 +83,12 @@ impl FastReader {
         quieten(self.points.touched(inputs), pressure_kpa, wrench);
     }
 
-    /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where it is farther from all that was taught than 99 of 100 contacts of the
-    /// same kinds, so that readings and force may be wrong. It looks at how deep, steep, large, tilted and uneven the contact is, not at where it is.
+    /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where
+    /// readings and force may be wrong. That is where it is farther from all that was taught than
+    /// 99 of 100 contacts of the same kinds, by how deep, steep, large, tilted and uneven it is;
+    /// where it is deeper than lessons pressed; and where so few lessons pressed that more than one
+    /// of ten readings would be off by more than a tenth, as presses have shown that were not
+    /// taught.
     ///
     /// # Panics
     /// A pose that is not finite.
@@ -81,6 +96,13 @@ impl FastReader {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
         self.novelty.score(&self.grid, inputs)
+    }
+
+    /// What touches the points of all grids. `[n_points * N_CHANNELS]`
+    pub(crate) fn inputs(&mut self, bodies: &[(&Body, Pose)]) -> &[f32] {
+        let inputs = &mut self.inputs[..self.points.n_inputs()];
+        self.points.fill(bodies.iter().copied(), inputs);
+        inputs
     }
 
     /// Where bodies are carried, and where the ports are, mm; `None` where nothing touches.

@@ -37,7 +37,7 @@ impl SurfaceGrid {
     }
 
     /// A grid with a point above a place.
-    fn above(sensor: &Sensor, anchor: DVec2) -> Self {
+    pub(crate) fn above(sensor: &Sensor, anchor: DVec2) -> Self {
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         let spacing_mm = SPACING_MM.max(SPACING_OF_HEIGHT * (high.z - low.z));
         let axis = |axis: usize| {
@@ -55,6 +55,28 @@ impl SurfaceGrid {
         let top_mm = |at: DVec2| sensor.gel.solid.top_height_mm(at.x, at.y, &sensor.surfaces);
         grid.height_mm = grid.places().map(|at| top_mm(at).unwrap_or(high.z)).collect();
         grid
+    }
+
+    /// Whether it and the heights of its points are their own mirror images, across x and across y,
+    /// about a place.
+    pub(crate) fn is_symmetric(&self, center_mm: DVec2) -> [bool; 2] {
+        let [n_x, n_y] = self.n;
+        [0, 1].map(|axis| {
+            let last_mm = self.first_mm[axis] + self.spacing_mm * (self.n[axis] - 1) as f64;
+            let is_central = (0.5 * (self.first_mm[axis] + last_mm) - center_mm[axis]).abs() < 1e-6;
+            let mirror = |i: usize, j: usize| {
+                if axis == 0 {
+                    [n_x - 1 - i, j]
+                } else {
+                    [i, n_y - 1 - j]
+                }
+            };
+            is_central
+                && (0..self.len()).all(|point| {
+                    let [i, j] = mirror(point % n_x, point / n_x);
+                    (self.height_mm[point] - self.height_mm[j * n_x + i]).abs() < 1e-6
+                })
+        })
     }
 
     /// The points' places in the gel's plane, mm.

@@ -81,7 +81,7 @@ fn judge(points: &[Point], every: usize) -> Result<(), Box<dyn Error>> {
     let (mut n_within, mut n_unfelt) = (0, 0);
     let inside = |point: &&Point| !is_taught(point) && (0..2).all(|axis| point.at[axis] <= most(axis));
     for point in points.iter().filter(inside) {
-        if let Some(contact) = inverse.start().update(1.0, &point.readings_kpa) {
+        if let Some(contact) = inverse.start().update(1.0, &point.readings_kpa)? {
             let error = contact.place_mm - place_mm(point);
             errors_mm.push(error.length());
             n_within += usize::from(error.abs().cmplt(2.0 * contact.place_deviation_mm).all());

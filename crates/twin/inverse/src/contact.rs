@@ -1,12 +1,12 @@
 //! What touches.
 
 use glam::DVec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::model::Press;
 
 /// What touches, with how sure that is. Deviations are standard deviations, as the settings' noise and model errors make them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Number of the most probable shape, of which the rest is said.
     pub shape: usize,

@@ -1,6 +1,7 @@
 //! The pressure on the gel's floor under a contact, finer than the taxels.
 
 use glam::DVec2;
+use twintac_config::Problem;
 use twintac_fast::FastReader;
 
 use crate::contact::Contact;
@@ -28,19 +29,16 @@ impl Inverse<FastModel> {
     /// # Errors
     /// [`InverseError::Setting`]: a spacing that is not above zero, or makes more than ten million points.
     pub fn floor_map(&self, spacing_mm: f64) -> Result<FloorMap, InverseError> {
-        let refused = |expected| InverseError::Setting {
-            field: "spacing_mm",
-            found: spacing_mm,
-            expected,
-        };
+        let refused =
+            |hint: &str| InverseError::Setting(Problem::new("spacing_mm", format!("is {spacing_mm}"), hint));
         if !(spacing_mm > 0.0 && spacing_mm.is_finite()) {
-            return Err(refused("a number above 0"));
+            return Err(refused("give a number above 0"));
         }
         let [low, high] = self.model.gel().bounds_mm();
         let size = high - low;
         let n = [size.x, size.y].map(|size| (size / spacing_mm).floor().max(1.0));
         if n[0] * n[1] > MOST_POINTS {
-            return Err(refused("a spacing that makes at most ten million points"));
+            return Err(refused("give one that makes at most ten million points"));
         }
         let n = n.map(|n| n as usize);
         let first_mm = 0.5 * (low + high - spacing_mm * DVec2::new(n[0] as f64 - 1.0, n[1] as f64 - 1.0));

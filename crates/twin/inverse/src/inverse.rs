@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use twintac_config::Checked;
 use twintac_fast::FastGel;
 use twintac_shape::Surfaces;
 
@@ -30,13 +31,14 @@ impl Inverse<FastModel> {
     /// Of a fast gel and the shapes that may touch it, upright. Takes a fraction of a second for a few shapes, on all threads.
     ///
     /// # Errors
-    /// No shape, a shape that can't be, settings that can't be.
+    /// No shape, a shape that can't be, settings that can't be, more ports than can be searched.
     pub fn of_fast_gel(
         gel: &FastGel,
         shapes: &[KnownShape],
         surfaces: &Surfaces,
         settings: InverseSettings,
     ) -> Result<Self, InverseError> {
+        settings.checked().map_err(InverseError::Setting)?;
         Self::new(
             FastModel::new(gel, shapes, surfaces, settings.deepest_mm)?,
             settings,
@@ -48,18 +50,21 @@ impl<M: ContactModel> Inverse<M> {
     /// Of any model.
     ///
     /// # Errors
-    /// No shape, settings that can't be.
+    /// No shape, settings that can't be, shapes whose tables are too large to be searched.
     pub fn new(model: M, settings: InverseSettings) -> Result<Self, InverseError> {
-        settings.check()?;
+        settings.checked().map_err(InverseError::Setting)?;
         if model.n_shapes() == 0 {
             return Err(InverseError::NoShape);
         }
-        let prepared = |shape| Prepared {
-            prior: Prior::of(&model, shape),
-            starts: Starts::of(&model, shape),
+        let prepared = |shape| {
+            Ok(Prepared {
+                starts: Starts::of(&model, shape)?,
+                prior: Prior::of(&model, shape),
+            })
         };
+        let shapes: Result<Vec<Prepared>, InverseError> = (0..model.n_shapes()).map(prepared).collect();
         Ok(Self {
-            shapes: Arc::new((0..model.n_shapes()).map(prepared).collect()),
+            shapes: Arc::new(shapes?),
             model,
             settings,
         })

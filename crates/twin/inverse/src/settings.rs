@@ -1,8 +1,7 @@
 //! What the inverse assumes.
 
 use serde::{Deserialize, Serialize};
-
-use crate::error::InverseError;
+use twintac_config::{Checked, Ranges};
 
 /// How sure readings and model are, and how fast a contact changes.
 ///
@@ -31,11 +30,11 @@ pub struct InverseSettings {
     pub spin_walk_rad: f64,
     /// Time after which what told the shape is forgotten to a part of 1/e, s.
     pub shape_memory_s: f64,
-    /// Possible presses of each shape that are followed at once.
+    /// Possible presses of each shape that are followed at once, at most 100.
     pub n_starts: usize,
-    /// Steps towards the best press of each of them in a frame.
+    /// Steps towards the best press of each of them in a frame, at most 100.
     pub n_steps: usize,
-    /// Deepest press that is thought of, mm below first touch. For a fast gel: not deeper than it was taught.
+    /// Deepest press that is thought of, mm below first touch, at most 50. For a fast gel: not deeper than it was taught.
     pub deepest_mm: f64,
 }
 
@@ -59,43 +58,35 @@ impl Default for InverseSettings {
     }
 }
 
-impl InverseSettings {
-    /// Whether these settings can be.
-    ///
-    /// # Errors
-    /// [`InverseError::Setting`], which names the first that is not finite, below zero, or zero where that has no meaning.
-    pub fn check(&self) -> Result<(), InverseError> {
-        let above_zero = [
-            ("noise_kpa", self.noise_kpa),
-            ("correlated_s", self.correlated_s),
-            ("shape_memory_s", self.shape_memory_s),
-            ("touch_deviations", self.touch_deviations),
-            ("deepest_mm", self.deepest_mm),
-            ("n_starts", self.n_starts as f64),
-            ("n_steps", self.n_steps as f64),
-        ];
-        let from_zero_on = [
-            ("model_part", self.model_part),
-            ("model_part_of_largest", self.model_part_of_largest),
-            ("force_part", self.force_part),
-            ("place_walk_mm", self.place_walk_mm),
-            ("depth_walk_mm", self.depth_walk_mm),
-            ("spin_walk_rad", self.spin_walk_rad),
-        ];
-        let refuse = |(field, found), expected| InverseError::Setting {
-            field,
-            found,
-            expected,
-        };
-        let is_wrong = |number: &f64| !number.is_finite() || *number < 0.0;
-        let no_positive = above_zero
-            .into_iter()
-            .find(|(_, number)| is_wrong(number) || *number == 0.0);
-        let negative = from_zero_on.into_iter().find(|(_, number)| is_wrong(number));
-        let refused = no_positive.map(|setting| refuse(setting, "a number above 0"));
-        match refused.or(negative.map(|setting| refuse(setting, "0 or a number above it"))) {
-            Some(error) => Err(error),
-            None => Ok(()),
-        }
+impl Checked for InverseSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            noise_kpa,
+            model_part,
+            model_part_of_largest,
+            force_part,
+            correlated_s,
+            touch_deviations,
+            place_walk_mm,
+            depth_walk_mm,
+            spin_walk_rad,
+            shape_memory_s,
+            n_starts,
+            n_steps,
+            deepest_mm,
+        } = *self;
+        ranges.number("noise_kpa", noise_kpa, 1e-9..=1e6);
+        ranges.zero_or("model_part", model_part, 1e-9..=10.0);
+        ranges.zero_or("model_part_of_largest", model_part_of_largest, 1e-9..=10.0);
+        ranges.zero_or("force_part", force_part, 1e-9..=10.0);
+        ranges.number("correlated_s", correlated_s, 1e-6..=1e6);
+        ranges.number("touch_deviations", touch_deviations, 1e-3..=1e6);
+        ranges.zero_or("place_walk_mm", place_walk_mm, 1e-9..=1e4);
+        ranges.zero_or("depth_walk_mm", depth_walk_mm, 1e-9..=1e4);
+        ranges.zero_or("spin_walk_rad", spin_walk_rad, 1e-9..=1e4);
+        ranges.number("shape_memory_s", shape_memory_s, 1e-3..=1e6);
+        ranges.number("n_starts", n_starts, 1.0..=100.0);
+        ranges.number("n_steps", n_steps, 1.0..=100.0);
+        ranges.number("deepest_mm", deepest_mm, 0.01..=50.0);
     }
 }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::error::InverseError;
 use crate::model::{ContactModel, N, Press};
 use crate::turn::nearest;
 
@@ -23,6 +24,9 @@ const POWER: f64 = 1.3;
 /// Presses closer than this are one start, mm.
 const APART_MM: f64 = 4.0;
 
+/// Most numbers of a table: 1 GB of memory.
+const MOST_NUMBERS: f64 = 2.5e8;
+
 /// Readings are filled up with zeros to multiples of so many.
 pub(crate) const LANES: usize = 8;
 
@@ -38,9 +42,23 @@ pub(crate) struct Starts {
 }
 
 impl Starts {
-    pub(crate) fn of<M: ContactModel>(model: &M, shape: usize) -> Self {
+    pub(crate) fn of<M: ContactModel>(model: &M, shape: usize) -> Result<Self, InverseError> {
         let domain = model.domain(shape);
         let ranges = domain.ranges();
+        let n_readings = model.n_readings();
+        let n_padded = n_readings.next_multiple_of(LANES);
+        let places = [0, 1].map(|axis| 1.0 + (ranges[axis][1] - ranges[axis][0]).max(0.0) / SPACING_MM);
+        let n_spins = domain
+            .turn_rad
+            .map_or(1.0, |turn_rad| (turn_rad / SPIN_RAD).ceil());
+        let n_presses = places[0] * places[1] * n_spins * DEPTHS.len() as f64;
+        if n_presses * n_padded as f64 > MOST_NUMBERS {
+            return Err(InverseError::TooLarge {
+                presses: n_presses,
+                readings: n_readings,
+                most: MOST_NUMBERS,
+            });
+        }
         let [xs, ys] = [0, 1].map(|axis| evenly(ranges[axis], SPACING_MM));
         let spins = match domain.turn_rad {
             None => vec![0.0],
@@ -63,8 +81,6 @@ impl Starts {
                 }
             }
         }
-        let n_readings = model.n_readings();
-        let n_padded = n_readings.next_multiple_of(LANES);
         let mut readings_kpa = vec![0.0; presses.len() * n_padded];
         readings_kpa
             .par_chunks_exact_mut(n_padded)
@@ -75,13 +91,13 @@ impl Starts {
                     model.read(shape, &Press::of(*at), &mut readings_kpa[..n_readings]);
                 },
             );
-        Self {
+        Ok(Self {
             presses,
             readings_kpa,
             n_padded,
             turn_rad: domain.turn_rad,
             ranges,
-        }
+        })
     }
 
     /// Presses in the table.

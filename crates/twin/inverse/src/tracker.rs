@@ -1,13 +1,21 @@
 //! One sensor, frame by frame.
 
 use glam::DVec2;
+use twintac_config::{Problem, Ranges};
 
 use crate::contact::Contact;
+use crate::error::InverseError;
 use crate::hypothesis::{Hypothesis, Prior, Weighed};
 use crate::inverse::{Inverse, Prepared};
 use crate::matrix::form;
 use crate::model::{ContactModel, N};
 use crate::starts::LANES;
+
+/// The largest reading that can be, kPa: that of a kilometre of granite is a fortieth of it.
+pub const LARGEST_READING_KPA: f64 = 1e6;
+
+/// The longest time between two frames, s.
+const LONGEST_S: f64 = 1e9;
 
 /// Hypotheses whose readings are less probable than the best's by e to this power wait for their shape's turn.
 const IMPROBABLE: f64 = 10.0;
@@ -90,29 +98,25 @@ impl<M: ContactModel> Tracker<M> {
         }
     }
 
-    /// Takes a frame; returns what touches, or nothing if the readings are within noise.
+    /// Takes a frame; returns what touches, or nothing if the readings are within noise. After an error, all is as before the frame.
     ///
     /// - `since_previous_s`: time since the frame before, s, touched or not.
     /// - `readings_kpa`: above the untouched sensor, kPa. `[n_readings]`
     ///
-    /// # Panics
-    /// Another number of readings, numbers that are not finite, a negative time.
-    pub fn update(&mut self, since_previous_s: f64, readings_kpa: &[f64]) -> Option<&Contact> {
-        assert_eq!(
-            readings_kpa.len(),
-            self.readings_kpa.len(),
-            "a reading for each taxel"
-        );
-        assert!(since_previous_s >= 0.0, "a time that does not run backwards");
-        assert!(
-            readings_kpa.iter().all(|reading| reading.is_finite()),
-            "finite readings"
-        );
+    /// # Errors
+    /// [`InverseError::Frame`]: another number of readings; a reading that is not finite or beyond [`LARGEST_READING_KPA`]; a time that is not finite or negative.
+    pub fn update(
+        &mut self,
+        since_previous_s: f64,
+        readings_kpa: &[f64],
+    ) -> Result<Option<&Contact>, InverseError> {
+        self.check(since_previous_s, readings_kpa)
+            .map_err(InverseError::Frame)?;
         let settings = self.inverse.settings;
         let largest_kpa = readings_kpa.iter().copied().fold(0.0, f64::max);
         if largest_kpa < settings.touch_deviations * settings.noise_kpa {
             self.is_touched = false;
-            return None;
+            return Ok(None);
         }
         self.weigh(since_previous_s, readings_kpa, largest_kpa);
         if !self.is_touched {
@@ -134,7 +138,29 @@ impl<M: ContactModel> Tracker<M> {
             self.candidate = (self.candidate + 1) % N_CANDIDATES;
         }
         self.conclude();
-        Some(&self.contact)
+        Ok(Some(&self.contact))
+    }
+
+    fn check(&self, since_previous_s: f64, readings_kpa: &[f64]) -> Result<(), Problem> {
+        let mut ranges = Ranges::default();
+        let expected = self.readings_kpa.len();
+        ranges.that(
+            "readings_kpa",
+            readings_kpa.len() == expected,
+            || format!("has {} readings", readings_kpa.len()),
+            || format!("give one of each of {expected} taxels"),
+        );
+        ranges.number("since_previous_s", since_previous_s, 0.0..=LONGEST_S);
+        let can_be = |kpa: &f64| kpa.abs() <= LARGEST_READING_KPA;
+        if let Some(taxel) = readings_kpa.iter().position(|kpa| !can_be(kpa)) {
+            let field = format!("readings_kpa[{taxel}]");
+            ranges.number(
+                &field,
+                readings_kpa[taxel],
+                -LARGEST_READING_KPA..=LARGEST_READING_KPA,
+            );
+        }
+        ranges.finish()
     }
 
     fn weigh(&mut self, since_s: f64, readings_kpa: &[f64], largest_kpa: f64) {

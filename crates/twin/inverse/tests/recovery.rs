@@ -7,8 +7,12 @@ use std::sync::LazyLock;
 
 use glam::DVec2;
 use rand::Rng;
+use twintac_config::Checked;
 use twintac_fast::FastGel;
-use twintac_inverse::{ContactModel, FastModel, Inverse, InverseError, InverseSettings, KnownShape, Press};
+use twintac_inverse::{
+    ContactModel, FastModel, Inverse, InverseError, InverseSettings, KnownShape, Press, ReadingTable,
+    TableModel,
+};
 use twintac_random::{normal, stream};
 use twintac_shape::{Shape, Surfaces};
 
@@ -78,9 +82,12 @@ fn place_depth_force_and_shape_are_found() {
         let (readings_kpa, force_n) = read(shape, &press);
         let mut tracker = KNOWN.start();
         for _ in 0..30 {
-            tracker.update(0.02, &noisy(readings_kpa, random));
+            tracker.update(0.02, &noisy(readings_kpa, random)).unwrap();
         }
-        let contact = tracker.update(0.02, &noisy(readings_kpa, random)).unwrap();
+        let contact = tracker
+            .update(0.02, &noisy(readings_kpa, random))
+            .unwrap()
+            .unwrap();
         assert!((contact.shape_probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         if contact.shape != shape {
             // A bar across the press reads nearly as a ball does.
@@ -137,7 +144,10 @@ fn errors_are_as_large_as_is_said() {
         };
         let (readings_kpa, force_n) = read(0, &press);
         let mut tracker = inverse.start();
-        let contact = tracker.update(1.0, &noisy(readings_kpa, random)).unwrap();
+        let contact = tracker
+            .update(1.0, &noisy(readings_kpa, random))
+            .unwrap()
+            .unwrap();
         let error = contact.place_mm - press.place_mm;
         let deviation = contact.place_deviation_mm;
         over_deviation[0].push(error.x / deviation.x);
@@ -164,14 +174,14 @@ fn nothing_touches_an_untouched_sensor() {
     let random = &mut stream(3, "noise of a test");
     let mut tracker = KNOWN.start();
     for _ in 0..2000 {
-        assert_eq!(tracker.update(0.001, &noisy([0.0; 8], random)), None);
+        assert_eq!(tracker.update(0.001, &noisy([0.0; 8], random)), Ok(None));
     }
     let press = Press {
         depth_mm: 1.0,
         ..Press::default()
     };
-    assert!(tracker.update(0.001, &read(0, &press).0).is_some());
-    assert_eq!(tracker.update(0.001, &noisy([0.0; 8], random)), None);
+    assert!(tracker.update(0.001, &read(0, &press).0).unwrap().is_some());
+    assert_eq!(tracker.update(0.001, &noisy([0.0; 8], random)), Ok(None));
 }
 
 #[test]
@@ -186,7 +196,10 @@ fn a_contact_that_slides_is_followed() {
             depth_mm: 1.5 + at,
             spin_rad: 0.0,
         };
-        let contact = tracker.update(0.002, &noisy(read(0, &press).0, random)).unwrap();
+        let contact = tracker
+            .update(0.002, &noisy(read(0, &press).0, random))
+            .unwrap()
+            .unwrap();
         // At first it may be taken for another shape, elsewhere.
         if frame > 300 {
             farthest_mm = farthest_mm.max(contact.place_mm.distance(press.place_mm));
@@ -205,9 +218,9 @@ fn the_floor_is_highest_below_the_contact() {
     let mut tracker = KNOWN.start();
     let (readings_kpa, _) = read(0, &press);
     for _ in 0..20 {
-        tracker.update(0.1, &readings_kpa);
+        tracker.update(0.1, &readings_kpa).unwrap();
     }
-    let contact = tracker.update(0.1, &readings_kpa).unwrap();
+    let contact = tracker.update(0.1, &readings_kpa).unwrap().unwrap();
     let mut map = KNOWN.floor_map(0.5).unwrap();
     assert_eq!(map.n(), [68, 36]);
     let floor_kpa = map.read(contact).to_vec();
@@ -219,6 +232,36 @@ fn the_floor_is_highest_below_the_contact() {
 }
 
 #[test]
+fn what_is_too_large_to_be_searched_is_an_error() {
+    let floor = FastGel::phystac()
+        .unwrap()
+        .with_ports(&vec![DVec2::ZERO; 1_000_000]);
+    let error = Inverse::of_fast_gel(&floor, &shapes(), &Surfaces::new(), settings()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            InverseError::TooLarge {
+                readings: 1_000_000,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let far = ReadingTable {
+        first_mm: [0.0; 3],
+        step_mm: [1e12, 1.0, 1.0],
+        n: [2, 1, 1],
+        readings_kpa: vec![vec![1.0]; 2],
+        force_n: vec![1.0; 2],
+    };
+    let error = Inverse::new(TableModel::new(vec![far]), settings()).unwrap_err();
+    assert!(
+        matches!(error, InverseError::TooLarge { readings: 1, .. }),
+        "{error}"
+    );
+}
+
+#[test]
 fn what_cannot_be_is_an_error() {
     let gel = FastGel::phystac().unwrap();
     let new =
@@ -227,7 +270,10 @@ fn what_cannot_be_is_an_error() {
     for (field, wrong) in [
         ("noise_kpa", serde_json::json!({"noise_kpa": 0.0})),
         ("deepest_mm", serde_json::json!({"deepest_mm": -1.0})),
+        ("deepest_mm", serde_json::json!({"deepest_mm": 1000.0})),
         ("n_starts", serde_json::json!({"n_starts": 0})),
+        ("n_starts", serde_json::json!({"n_starts": 1_000_000_000_000_u64})),
+        ("n_steps", serde_json::json!({"n_steps": 101})),
         ("model_part", serde_json::json!({"model_part": -0.01})),
         (
             "model_part_of_largest",
@@ -241,7 +287,7 @@ fn what_cannot_be_is_an_error() {
         let settings: InverseSettings = serde_json::from_value(wrong).unwrap();
         let error = new(&shapes(), settings).unwrap_err();
         assert!(
-            matches!(error, InverseError::Setting { field: named, .. } if named == field),
+            matches!(&error, InverseError::Setting(problem) if problem.field == field),
             "{error}"
         );
     }
@@ -255,5 +301,67 @@ fn what_cannot_be_is_an_error() {
     for spacing_mm in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-3] {
         let error = KNOWN.floor_map(spacing_mm).unwrap_err().to_string();
         assert!(error.contains("`spacing_mm`"), "{error}");
+    }
+}
+
+/// Every number of the settings, one after the other, at what nobody means: accepted with a meaning, or refused by its name.
+#[test]
+fn every_setting_has_a_range() {
+    let accepts_zero = [
+        "model_part",
+        "model_part_of_largest",
+        "force_part",
+        "place_walk_mm",
+        "depth_walk_mm",
+        "spin_walk_rad",
+    ];
+    let defaults = serde_json::to_value(InverseSettings::default()).unwrap();
+    for (field, default) in defaults.as_object().unwrap() {
+        let mut tried = vec![serde_json::json!(0)];
+        if default.is_f64() {
+            tried.extend([-1.0, 1e300, 1e-300].map(|number| serde_json::json!(number)));
+        } else {
+            tried.push(serde_json::json!(u64::MAX));
+        }
+        for number in tried {
+            let mut changed = defaults.clone();
+            changed[field] = number.clone();
+            let settings: InverseSettings = serde_json::from_value(changed).unwrap();
+            match settings.checked() {
+                Ok(()) => assert!(
+                    number == 0 && accepts_zero.contains(&&field[..]),
+                    "{field} = {number}"
+                ),
+                Err(problem) => assert_eq!(problem.field, *field),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_frame_that_cannot_be_is_refused_and_the_contact_goes_on_as_if_it_had_not_come() {
+    let press = Press {
+        place_mm: DVec2::new(3.0, -1.0),
+        depth_mm: 1.5,
+        spin_rad: 0.0,
+    };
+    let good = read(0, &press).0;
+    let (mut tracker, mut other) = (KNOWN.start(), KNOWN.start());
+    for frame in 0..5 {
+        for (taxel, bad) in [f64::NAN, f64::INFINITY, 1e39, -1e300].into_iter().enumerate() {
+            let mut wrong = good;
+            wrong[taxel] = bad;
+            let error = tracker.update(0.02, &wrong).unwrap_err();
+            let InverseError::Frame(problem) = &error else {
+                panic!("{error}")
+            };
+            assert_eq!(problem.field, format!("readings_kpa[{taxel}]"));
+        }
+        for (since_s, readings_kpa) in [(-0.1, &good[..]), (f64::NAN, &good[..]), (0.02, &good[..3])] {
+            assert!(tracker.update(since_s, readings_kpa).is_err());
+        }
+        let (found, expected) = (tracker.update(0.02, &good), other.update(0.02, &good));
+        assert_eq!(found, expected, "frame {frame}");
+        assert!(found.unwrap().is_some());
     }
 }

@@ -11,18 +11,57 @@ pub struct Coupling {
     pub retardation_s: f64,
 }
 
-/// What one sensor remembers of the bodies that touch it.
+/// Which of the things that touch one sensor: the same as long as it is the same thing, and not
+/// that of another thing. What a gel remembers of a touch, it remembers under
+/// this, wherever the touch stands in a list and whatever its shape is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TouchId(pub u64);
+
+/// A thing that touches a sensor, or not, and that its gel holds if it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldTouch {
+    /// Which thing it is.
+    pub id: TouchId,
+    /// Its shape, and where it is.
+    pub touch: Touch,
+}
+
+impl From<HeldTouch> for Touch {
+    fn from(held: HeldTouch) -> Self {
+        held.touch
+    }
+}
+
+/// Memory that holding needs in a step.
+#[derive(Clone, Debug)]
+pub(crate) struct Holding {
+    /// `[n_taxels]`
+    unused_kpa: Vec<f32>,
+}
+
+impl Holding {
+    pub(crate) fn of(n_taxels: usize) -> Self {
+        Self {
+            unused_kpa: vec![0.0; n_taxels],
+        }
+    }
+}
+
+/// What one sensor remembers of the things that touch it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Holds {
-    bodies: Vec<Hold>,
+    holds: Vec<Hold>,
 }
 
 /// What it remembers of one.
 #[derive(Clone, Debug)]
 struct Hold {
-    body: u32,
+    id: TouchId,
     friction: Friction,
-    elastic: [f32; 6],
+    /// The wrench without loss, a moment before; a touch that is new has none.
+    elastic: Option<[f32; 6]>,
+    /// What its loss added to that.
+    loss: [f32; 6],
     is_here: bool,
 }
 
@@ -30,60 +69,64 @@ impl Holds {
     /// One more moment of a sensor.
     ///
     /// - `pressure_kpa`: is changed: without friction, then with it. `[n_taxels]`
-    /// - `wrench`: is changed: of all bodies, without friction and loss, then with them.
-    /// - `apart`: is written: of each body by itself. `[n_touches]`
+    /// - `wrench`: is changed: of all touches, without friction and loss, then with them.
+    /// - `apart`: is written: of each touch by itself. `[n_touches]`
     pub(crate) fn step(
         &mut self,
         coupling: &Coupling,
         since_previous_s: f64,
-        reader: &mut FastReader,
-        (bodies, touches): (&[Body], &[Touch]),
+        (reader, holding): (&mut FastReader, &mut Holding),
+        (bodies, touches, ids): (&[Body], &[Touch], impl Iterator<Item = TouchId>),
         pressure_kpa: &mut [f32],
         (wrench, apart): (&mut [f32; 6], &mut [[f32; 6]]),
     ) {
-        share(reader, (bodies, touches), wrench, apart);
-        for hold in &mut self.bodies {
+        share(reader, holding, (bodies, touches), wrench, apart);
+        for hold in &mut self.holds {
             hold.is_here = false;
         }
         *wrench = [0.0; 6];
-        for (touch, own) in touches.iter().zip(apart) {
+        for ((touch, id), own) in touches.iter().zip(ids).zip(apart) {
             let body = (&bodies[touch.body as usize], touch.gel_from_body);
-            let hold = self.of_body(touch.body, coupling);
+            let hold = self.of_touch(id, coupling);
             hold.friction.add(reader, body, pressure_kpa, own);
             hold.lose(coupling.retardation_s, since_previous_s, own);
             for (all, own) in wrench.iter_mut().zip(own) {
                 *all += *own;
             }
         }
-        self.bodies.retain(|hold| hold.is_here);
+        self.holds.retain(|hold| hold.is_here);
     }
 
-    fn of_body(&mut self, body: u32, coupling: &Coupling) -> &mut Hold {
-        let known = self.bodies.iter().position(|hold| hold.body == body);
+    fn of_touch(&mut self, id: TouchId, coupling: &Coupling) -> &mut Hold {
+        let known = self.holds.iter().position(|hold| hold.id == id);
         let place = known.unwrap_or_else(|| {
-            self.bodies.push(Hold {
-                body,
+            self.holds.push(Hold {
+                id,
                 friction: coupling.friction.clone(),
-                elastic: [0.0; 6],
+                elastic: None,
+                loss: [0.0; 6],
                 is_here: true,
             });
-            self.bodies.len() - 1
+            self.holds.len() - 1
         });
-        let hold = &mut self.bodies[place];
+        let hold = &mut self.holds[place];
         hold.is_here = true;
         hold
     }
 }
 
 impl Hold {
-    /// Adds the loss to a wrench.
+    /// Adds the loss to a wrench. Another look at the same moment finds the same.
     fn lose(&mut self, retardation_s: f64, since_previous_s: f64, wrench: &mut [f32; 6]) {
-        let before = std::mem::replace(&mut self.elastic, *wrench);
+        let before = self.elastic.replace(*wrench).unwrap_or(*wrench);
         if since_previous_s > 0.0 {
             let lead = (retardation_s / since_previous_s) as f32;
-            for (force, before) in wrench.iter_mut().zip(before) {
-                *force += lead * (*force - before);
+            for ((loss, force), before) in self.loss.iter_mut().zip(*wrench).zip(before) {
+                *loss = lead * (force - before);
             }
+        }
+        for (force, loss) in wrench.iter_mut().zip(self.loss) {
+            *force += loss;
         }
         // A gel does not pull at what leaves it.
         if wrench[2] > 0.0 {
@@ -92,9 +135,10 @@ impl Hold {
     }
 }
 
-/// Shares the wrench of all bodies among them, as each would have it by itself.
+/// Shares the wrench of all touches among them, as each would have it by itself.
 fn share(
     reader: &mut FastReader,
+    holding: &mut Holding,
     (bodies, touches): (&[Body], &[Touch]),
     wrench: &[f32; 6],
     apart: &mut [[f32; 6]],
@@ -103,10 +147,9 @@ fn share(
         *only = *wrench;
         return;
     }
-    let mut unused_kpa = vec![0.0; reader.n_taxels()];
     for (touch, own) in touches.iter().zip(apart.iter_mut()) {
         let body = (&bodies[touch.body as usize], touch.gel_from_body);
-        reader.read(&[body], &mut unused_kpa, own);
+        reader.read(&[body], &mut holding.unused_kpa, own);
     }
     let together_n: f32 = apart.iter().map(|own| own[2]).sum();
     if together_n < 0.0 {

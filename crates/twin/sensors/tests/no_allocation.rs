@@ -4,8 +4,9 @@
 
 use digitac::Variant;
 use glam::{DQuat, DVec3};
-use twintac_fast::{Body, FastGel, Touch};
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_fast::{Body, FastGel, Friction, Touch};
+use twintac_sensor::SensorFile;
+use twintac_sensors::{Coupling, HeldTouch, Imperfection, SensorBatch, TouchId};
 use twintac_shape::{Pose, Shape, Surfaces};
 
 #[path = "../examples/rate/counting.rs"]
@@ -81,6 +82,31 @@ fn steps_allocate_nothing() {
         let fewest = pool.install(|| counting::fewest_of_runs(|| counted(n_threads)));
         assert_eq!(fewest, 0, "{n_threads} threads");
     }
+    let coupling = Coupling {
+        friction: Friction::on(&SensorFile::phystac().unwrap().sensor, 0.8),
+        retardation_s: 0.005,
+    };
+    let held = |touches: &Vec<Touch>| -> Vec<HeldTouch> {
+        let things = touches.iter().zip((0..).map(TouchId));
+        things
+            .map(|(touch, id)| HeldTouch { id, touch: *touch })
+            .collect()
+    };
+    let held_steps: Vec<Vec<HeldTouch>> = steps.iter().map(held).collect();
+    let counted_holding = || {
+        let batch = SensorBatch::new(&gel, Some(&twin), imperfection(), [N_SENSORS, 1], 1);
+        let mut batch = batch.with_coupling(coupling.clone()).unwrap();
+        let (mut readings_kpa, mut wrench) = (vec![0.0; N_SENSORS * N_TAXELS], vec![[0.0; 6]; N_SENSORS]);
+        let mut step = |touches: &[HeldTouch]| {
+            let step = batch.step(0.01, &bodies, touches, &ends, &mut readings_kpa, &mut wrench);
+            step.unwrap();
+        };
+        held_steps[..5].iter().for_each(|touches| step(touches));
+        let before = counting::n_allocations();
+        held_steps[5..].iter().for_each(|touches| step(touches));
+        counting::n_allocations() - before
+    };
+    assert_eq!(counting::fewest_of_runs(counted_holding), 0, "gels that hold");
     // Work that comes from a thread beside the pool goes through the pool's queue, which takes memory for some 60 entries at once.
     assert!(counting::fewest_of_runs(|| counted(2)) <= 2);
 

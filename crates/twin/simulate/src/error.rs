@@ -29,6 +29,16 @@ pub enum SimulateError {
         /// Place of the press, mm.
         y_mm: f64,
     },
+    /// A force that the sensor does not stand.
+    #[error(
+        "`force_n` is {force_n} N, the sensor stands {limit_n} N at most (`limits.force_n` of its description); ask for less"
+    )]
+    ForceLimit {
+        /// The force that was asked for, N.
+        force_n: f64,
+        /// The largest force of the description, N.
+        limit_n: f64,
+    },
     /// The sensor's description has no such indenter.
     #[error("there is no indenter `{asked_for}`; the sensor has {}", described.join(", "))]
     NoIndenter {

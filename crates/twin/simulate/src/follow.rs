@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use twintac_depth_table::SolveQuality;
 use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
@@ -17,7 +17,7 @@ use crate::{Gel, GelMesh, SimulateError};
 const GUESSED_DEPTH: f64 = 0.25;
 
 /// The gel and the indenter at one moment of a path. Forces act on the gel, in its frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FollowedFrame {
     /// Time, s.
     pub time_s: f64,
@@ -47,7 +47,7 @@ pub struct FollowedFrame {
 }
 
 /// The result of a path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Followed {
     /// Nodes of the mesh.
     pub n_nodes: usize,

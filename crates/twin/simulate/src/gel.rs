@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec2, DVec3};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use twintac_depth_table::{DepthTable, PressFrame};
 use twintac_mesh::{Cuboid, Focus, MeshError, MeshSettings, Stretch, TetMesh};
 use twintac_sensor::Sensor;
@@ -47,6 +47,20 @@ pub struct Gel {
     /// Whether paths read the stress feature.
     pub(crate) stress_along_paths: bool,
     upwards: DVec3,
+}
+
+/// A gel is written with all that its answers depend on.
+impl Serialize for Gel {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self {
+            sensor,
+            settings,
+            material,
+            stress_along_paths,
+            upwards,
+        } = self;
+        (&**sensor, settings, material, stress_along_paths, upwards).serialize(serializer)
+    }
 }
 
 /// Where, with what and how deep to press.

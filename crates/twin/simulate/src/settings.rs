@@ -1,6 +1,7 @@
 //! How finely a press is simulated.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 use twintac_softbody::SolverSettings;
 
 /// Settings of a simulated press.
@@ -26,6 +27,59 @@ pub struct SimulateSettings {
     pub depth_step_mm: f64,
     /// The solver's own settings.
     pub solver: SolverSettings,
+}
+
+impl Checked for SimulateSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            edges_per_height,
+            edges_per_contact_radius,
+            contact_edge_mm,
+            max_nodes,
+            max_path_nodes,
+            edges_per_rounding,
+            depth_step_mm,
+            solver,
+        } = self;
+        ranges.number("edges_per_height", *edges_per_height, 1.0..=30.0);
+        ranges.number("edges_per_contact_radius", *edges_per_contact_radius, 0.5..=50.0);
+        if let Some(edge_mm) = contact_edge_mm {
+            ranges.number("contact_edge_mm", *edge_mm, 0.01..=20.0);
+        }
+        ranges.number("max_nodes", *max_nodes, 100.0..=1e6);
+        ranges.number("max_path_nodes", *max_path_nodes, 100.0..=1e6);
+        ranges.number("edges_per_rounding", *edges_per_rounding, 0.1..=20.0);
+        ranges.number("depth_step_mm", *depth_step_mm, 0.01..=5.0);
+        ranges.inside("solver", &Solver(solver));
+    }
+}
+
+/// The solver's settings, as people write them: those that it takes, and that end in some time.
+struct Solver<'a>(&'a SolverSettings);
+
+impl Checked for Solver<'_> {
+    fn check(&self, ranges: &mut Ranges) {
+        let SolverSettings {
+            element: _,
+            linear: _,
+            tolerance,
+            max_iterations,
+            max_travel_mm,
+            min_substep,
+            contact_stiffness,
+            penetration_mm,
+            friction,
+            obstacle_friction,
+        } = self.0;
+        ranges.number("tolerance", *tolerance, 1e-12..=0.1);
+        ranges.number("max_iterations", *max_iterations, 1.0..=10_000.0);
+        ranges.number("max_travel_mm", *max_travel_mm, 1e-3..=10.0);
+        ranges.number("min_substep", *min_substep, 1e-6..=1.0);
+        ranges.number("contact_stiffness", *contact_stiffness, 0.1..=1e6);
+        ranges.number("penetration_mm", *penetration_mm, 1e-6..=1.0);
+        ranges.zero_or("friction", *friction, 1e-6..=10.0);
+        ranges.zero_or("obstacle_friction", *obstacle_friction, 1e-6..=10.0);
+    }
 }
 
 impl SimulateSettings {

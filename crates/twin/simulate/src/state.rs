@@ -19,14 +19,20 @@ pub struct GelState {
     /// Height of the indenter's origin at first touch, at the place and turn of the first pose, mm.
     touch_mm: f64,
     reads_stress: bool,
+    /// The largest force that the sensor stands, N.
+    limit_n: Option<f64>,
 }
 
 impl Gel {
     /// The gel before an indenter is taken along a path. The mesh is fine wherever the path presses.
     ///
     /// # Errors
-    /// Those of [`Gel::mesh`]; a point outside the gel, or with the name of a taxel.
+    /// Those of [`Gel::mesh`]; a point outside the gel, or with the name of a taxel; a force that the sensor does not stand.
     pub fn state_along(&self, shape: &Shape, path: &PressPath) -> Result<GelState, SimulateError> {
+        let limit_n = self.sensor().limits.map(|limits| limits.force_n);
+        for force_n in path.poses.iter().filter_map(|pose| pose.force_n) {
+            stands(limit_n, force_n)?;
+        }
         let rough = self.rough_for(&path.indenter);
         let first = rough.frames(shape, path)?[0].pose;
         let touch_mm = rough.touch(shape, &first)?.position_mm.z;
@@ -48,7 +54,16 @@ impl Gel {
             ports,
             touch_mm,
             reads_stress: self.stress_along_paths,
+            limit_n,
         })
+    }
+}
+
+/// Whether a force is within what the sensor stands. What is far beyond is looked for until the gel is flat, which takes minutes.
+fn stands(limit_n: Option<f64>, force_n: f64) -> Result<(), SimulateError> {
+    match limit_n.filter(|limit_n| force_n > *limit_n) {
+        Some(limit_n) => Err(SimulateError::ForceLimit { force_n, limit_n }),
+        None => Ok(()),
     }
 }
 
@@ -68,13 +83,14 @@ impl GelState {
     /// The same to where the indenter presses with a force straight down, N, above 0: the pose, moved up or down by at most the gel's height.
     ///
     /// # Errors
-    /// As [`step`](Self::step); a force that is not met.
+    /// As [`step`](Self::step); a force that is not met, or that the sensor does not stand.
     pub fn step_to_force(
         &mut self,
         since_previous_s: f64,
         gel_from_indenter: &Pose,
         force_n: f64,
     ) -> Result<FollowedFrame, SimulateError> {
+        stands(self.limit_n, force_n)?;
         self.step_to(since_previous_s, gel_from_indenter, Some(force_n))
     }
 

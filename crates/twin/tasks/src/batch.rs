@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use twintac_fast::FastGel;
-use twintac_sensors::{Imperfection, SensorBatch};
+use twintac_sensors::{Imperfection, SensorBatch, most_sensors};
 
 use crate::answers::{Answers, Autoreset};
 use crate::chunk::{Chunk, Steps};
@@ -33,7 +33,7 @@ impl Tasks {
     /// from the imperfection.
     ///
     /// # Errors
-    /// None that the tasks' own shapes do not have.
+    /// No environment, or more than [`most_sensors`].
     pub fn new(
         kind: Kind,
         gel: &FastGel,
@@ -41,6 +41,13 @@ impl Tasks {
         [n_environments, n_threads]: [usize; 2],
         autoreset: Autoreset,
     ) -> Result<Self, TaskError> {
+        let most = most_sensors(gel.n_taxels());
+        if n_environments == 0 || n_environments > most {
+            return Err(TaskError::Count {
+                found: n_environments,
+                most,
+            });
+        }
         let batch = SensorBatch::new(gel, None, imperfection.clone(), [n_environments, n_threads], 0);
         let sensors = batch.into_parts();
         match kind {

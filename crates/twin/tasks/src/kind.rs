@@ -50,6 +50,14 @@ pub enum TaskError {
         /// What was asked for.
         name: String,
     },
+    /// A number of environments that can't be.
+    #[error("`n_environments` is {found}, expected 1 to {most}")]
+    Count {
+        /// What was asked for.
+        found: usize,
+        /// Most environments, each with a sensor of this gel.
+        most: usize,
+    },
     /// A shape of a task can't be.
     #[error(transparent)]
     Shape(#[from] ShapeError),

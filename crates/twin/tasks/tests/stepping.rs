@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use twintac_fast::FastGel;
 use twintac_sensors::Imperfection;
-use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, Tasks};
+use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks};
 
 fn imperfection() -> Imperfection {
     Imperfection {
@@ -257,6 +257,21 @@ fn a_shape_is_felt_where_it_is() {
         driven.rewards.iter().all(|reward| reward.abs() < 1e-9),
         "nothing was said"
     );
+}
+
+#[test]
+fn as_many_environments_as_memory_has_no_room_for_are_refused() {
+    let gel = FastGel::phystac().unwrap();
+    for n in [0, 10_000_000_000_000, usize::MAX] {
+        let made = Tasks::new(
+            Kind::HoldForce,
+            &gel,
+            &imperfection(),
+            [n, 2],
+            Autoreset::Disabled,
+        );
+        assert!(matches!(made, Err(TaskError::Count { found, .. }) if found == n));
+    }
 }
 
 #[test]

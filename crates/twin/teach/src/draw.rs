@@ -6,7 +6,7 @@ use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
 use twintac_fast::finest_edge_mm;
 use twintac_sensor::Sensor;
-use twintac_shape::{Part, Pose, Shape};
+use twintac_shape::{Part, Pose, Shape, SurfaceFile};
 
 use crate::boulder;
 
@@ -56,9 +56,6 @@ pub(crate) struct Slide {
     pub(crate) turn: DQuat,
 }
 
-/// Counts how presses have been drawn and solved: those of another version are other presses, though number and seed be the same.
-pub const DRAW_VERSION: u32 = 4;
-
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
@@ -73,16 +70,46 @@ pub(crate) enum Purpose {
 /// Sizes of the sensor's own balls, as parts of what is described: a bench may have to find the size of its tip.
 const OWN_SIZES: [f64; 2] = [0.6, 1.6];
 
-/// A press with one of the sensor's own indenters, no farther from the ports than the gel is high; none for a sensor without indenters.
-pub(crate) fn own(sensor: &Sensor, random: &mut impl Rng) -> Option<Draw> {
+/// By which part of the gel places go on from press to press: two numbers whose multiples leave no
+/// hole (Roberts, 2018, "The unreasonable effectiveness of quasirandom sequences").
+const SPREAD: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2);
+
+/// How far beyond an edge a place may fall, as part of the way across, which is then put so close
+/// to it.
+const BEYOND: f64 = 0.06;
+const AT_EDGE: f64 = 0.01;
+
+/// What is drawn of presses with the sensor's own indenters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Own {
+    Lesson,
+    Exam,
+}
+
+/// The press of a number with one of the sensor's own indenters, no farther from the ports than the
+/// gel is high; none for a sensor without indenters. So many presses as there are, they are spread
+/// evenly over all of that: at random, a few would leave holes.
+pub(crate) fn own(sensor: &Sensor, own: Own, seed: u64, number: u64) -> Option<Draw> {
+    let name = match own {
+        Own::Lesson => "own lesson",
+        Own::Exam => "own exam",
+    };
+    let first = match own {
+        Own::Lesson => {
+            let mut of_all = twintac_random::stream(seed, name);
+            DVec2::new(of_all.random(), of_all.random())
+        }
+        // However few there are, one is in the middle.
+        Own::Exam => DVec2::splat(0.5),
+    };
+    let random = &mut twintac_random::stream(seed, &format!("{name} {number}"));
     let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
     let height_mm = height_mm(sensor);
     let ports_mm = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
     let first_mm = ports_mm.clone().fold(DVec2::INFINITY, DVec2::min) - height_mm;
     let last_mm = ports_mm.fold(DVec2::NEG_INFINITY, DVec2::max) + height_mm;
     let (first_mm, last_mm) = (first_mm.max(low.truncate()), last_mm.min(high.truncate()));
-    let within = DVec2::new(random.random(), random.random());
-    let place_mm = first_mm + (last_mm - first_mm) * within;
+    let place_mm = first_mm + (last_mm - first_mm) * towards_edges((first + number as f64 * SPREAD).fract());
     if sensor.indenters.is_empty() {
         return None;
     }
@@ -96,6 +123,12 @@ pub(crate) fn own(sensor: &Sensor, random: &mut impl Rng) -> Option<Draw> {
     let spin_rad = random.random_range(0.0..TAU);
     let depth_mm = deepest_mm(sensor) * random.random_range(SHALLOWEST..1.0);
     Some(upright(sensor, &shape, place_mm, spin_rad, depth_mm))
+}
+
+/// Parts of the way across, with more of them close to the edges: nothing is taught from beyond.
+fn towards_edges(part: DVec2) -> DVec2 {
+    let stretched = (1.0 + 2.0 * BEYOND) * part - BEYOND;
+    stretched.clamp(DVec2::splat(AT_EDGE), DVec2::splat(1.0 - AT_EDGE))
 }
 
 /// How deep presses go at most, mm.
@@ -253,9 +286,9 @@ fn unseen(kind: u32, scale: f64, random: &mut impl Rng) -> Shape {
             height_mm,
             edge_radius_mm,
         },
-        _ => Shape::Stl {
-            path: boulder::name(random.random_range(0..boulder::N)),
-        },
+        _ => Shape::Stl(SurfaceFile::new(boulder::name(
+            random.random_range(0..boulder::N),
+        ))),
     }
 }
 
@@ -281,5 +314,48 @@ fn whole(scale: f64, random: &mut impl Rng) -> Shape {
     };
     Shape::Union {
         parts: (0..n_parts).map(&mut part).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use twintac_sensor::SensorFile;
+
+    /// The farthest that a place on the gel is from the nearest lesson, mm.
+    fn largest_hole_mm(sensor: &Sensor, seed: u64, n: u64) -> f64 {
+        let presses: Vec<DVec2> = (0..n)
+            .map(|number| own(sensor, Own::Lesson, seed, number).unwrap().place_mm)
+            .collect();
+        let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+        let (low, size) = (low.truncate(), (high - low).truncate());
+        let places =
+            (0..=20u32).flat_map(|i| (0..=20u32).map(move |j| DVec2::new(f64::from(i), f64::from(j)) / 20.0));
+        let holes = places.map(|part| {
+            let distances = presses.iter().map(|press| press.distance(low + size * part));
+            distances.fold(f64::INFINITY, f64::min)
+        });
+        holes.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_few_own_presses_leave_no_hole() {
+        // At random, 100 leave one of 4.4 mm. The ports are so far out that presses reach all of the gel.
+        let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
+        sensor.gel.solid = twintac_shape::Solid::Block {
+            size_mm: [25.0, 25.0, 6.0],
+            center_mm: [0.0; 2],
+            edge_radius_mm: 0.0,
+        };
+        for (number, taxel) in (0u32..).zip(&mut sensor.taxels) {
+            let (column, row) = (f64::from(number % 4), f64::from(number / 4));
+            taxel.position_mm = DVec3::new(5.0 * column - 7.5, 15.0 * row - 7.5, taxel.position_mm.z);
+        }
+        for seed in 1..5 {
+            let hole_mm = largest_hole_mm(&sensor, seed, 100);
+            assert!(hole_mm < 3.0, "{hole_mm}");
+        }
+        let first = own(&sensor, Own::Exam, 1, 0).unwrap().place_mm;
+        assert!(first.length() < 1e-9, "an exam in the middle, not at {first}");
     }
 }

@@ -9,6 +9,5 @@ mod press;
 mod strange;
 
 pub use boulder::exam_surfaces;
-pub use draw::DRAW_VERSION;
 pub use press::{TeachError, Teacher};
 pub use strange::Strange;

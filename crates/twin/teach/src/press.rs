@@ -10,7 +10,7 @@ use twintac_simulate::{Gel, PortReadout, PressPlace, SimulateError, SimulateSett
 
 use crate::Strange;
 use crate::boulder::exam_surfaces;
-use crate::draw::{Draw, Purpose, Slide, draw, edges_per_height, own, upright};
+use crate::draw::{Draw, Own, Purpose, Slide, draw, edges_per_height, own, upright};
 
 /// Frames of a press on its way down.
 const N_FRAMES: u32 = 5;
@@ -47,7 +47,9 @@ pub struct Teacher {
 }
 
 impl Teacher {
-    /// A teacher who reads the floor at these places of the gel's plane, mm. `[n_places]`
+    /// A teacher who reads the floor at these places of the gel's plane, mm: over a disc as large
+    /// and as high as the port of the taxel that is there, or of the first taxel where none is.
+    /// `[n_places]`
     ///
     /// # Errors
     /// None that is known.
@@ -55,10 +57,14 @@ impl Teacher {
         // Exams press with surfaces that the sensor does not have.
         let mut sensor = sensor.clone();
         sensor.surfaces.extend(exam_surfaces()?);
-        let port = &sensor.taxels[0];
-        let places = places_mm.iter().map(|at| Taxel {
-            position_mm: at.extend(port.position_mm.z),
-            ..port.clone()
+        let places = places_mm.iter().map(|at| {
+            let mut taxels = sensor.taxels.iter();
+            let own = taxels.find(|taxel| taxel.position_mm.truncate() == *at);
+            let port = own.unwrap_or(&sensor.taxels[0]);
+            Taxel {
+                position_mm: at.extend(port.position_mm.z),
+                ..port.clone()
+            }
         });
         Ok(Self {
             places: places.collect(),
@@ -76,12 +82,13 @@ impl Teacher {
         self.press(&draw(&self.sensor, Purpose::Lesson, random))
     }
 
-    /// A lesson with one of the sensor's own indenters, upright and near its ports; balls of 0.6 to 1.6 times their described size.
+    /// A lesson with one of the sensor's own indenters, upright and no farther from its ports than
+    /// the gel is high, evenly spread; balls of 0.6 to 1.6 times their described size.
     ///
     /// # Errors
     /// A sensor that cannot be meshed, or has no indenters.
     pub fn own_lesson(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
-        self.own(seed, &format!("own lesson {number}"))
+        self.own(Own::Lesson, seed, number)
     }
 
     /// The same, to be judged on.
@@ -89,11 +96,11 @@ impl Teacher {
     /// # Errors
     /// Those of [`Self::own_lesson`].
     pub fn own_exam(&self, seed: u64, number: u64) -> Result<Lesson, TeachError> {
-        self.own(seed, &format!("own exam {number}"))
+        self.own(Own::Exam, seed, number)
     }
 
-    fn own(&self, seed: u64, name: &str) -> Result<Lesson, TeachError> {
-        match own(&self.sensor, &mut twintac_random::stream(seed, name)) {
+    fn own(&self, of: Own, seed: u64, number: u64) -> Result<Lesson, TeachError> {
+        match own(&self.sensor, of, seed, number) {
             Some(drawn) => self.press(&drawn),
             None => Err(TeachError::NoIndenter),
         }

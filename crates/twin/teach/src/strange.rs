@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec2, DVec3};
 use rand::Rng;
+use serde::Serialize;
 use twintac_random::RandomStream;
 use twintac_sensor::Sensor;
 use twintac_shape::{Part, Pose, Shape};
@@ -11,7 +12,8 @@ use twintac_shape::{Part, Pose, Shape};
 use crate::draw::{Draw, LARGEST_TILT, deepest_mm, scale, simple, upright};
 
 /// What is strange about a press.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Strange {
     /// Taught shapes, deeper than any is taught.
     Deeper,

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use anyhow::Result;
+use twintac_run::fast::sensor_of_model;
 use twintac_run::{
     AdaptationCurve, AdaptationPlan, AdaptedModel, CurvePlan, Run, SensorFile, adapt_model, adaptation_curve,
     import_files, read_recordings,
 };
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::Program;
 use crate::arguments::Adapt;
-use crate::output::print;
-use crate::progress::Bars;
+use crate::output::{percent, print};
 
 pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
     if let Some(run) = &arguments.run {
@@ -23,10 +23,15 @@ pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
     let import = arguments.import.clone().or(named);
     let files = expand(&arguments.recordings)?;
     let is_csv = |file: &Path| file.extension().is_some_and(|ending| ending == "csv");
-    let recording = match import {
+    let mut recording = match import {
         Some(import) if files.iter().all(|file| is_csv(file)) => import_files(&import, &files)?.0,
         _ => read_recordings(&files)?,
     };
+    let recorded = match &sensor {
+        Some(sensor) => sensor.clone(),
+        None => sensor_of_model(&arguments.model)?,
+    };
+    rename(&mut recording, arguments.recorded_as.as_deref(), &recorded)?;
     let plan = AdaptationPlan {
         model: &arguments.model,
         sensor: sensor.as_ref(),
@@ -35,7 +40,7 @@ pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
         seed: arguments.seed,
         out: &arguments.out,
     };
-    let found = adapt_model(&plan, &Bars::default())?;
+    let found = adapt_model(&plan, &program.caller()?)?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
     }
@@ -48,7 +53,7 @@ fn curve(arguments: &Adapt, run: &Path, program: &Program) -> Result<()> {
         presses: arguments.curve.iter().map(|count| *count as usize).collect(),
         seeds: arguments.seeds,
     };
-    let found = adaptation_curve(&arguments.model, &run, &plan, &arguments.out, &Bars::default())?;
+    let found = adaptation_curve(&arguments.model, &run, &plan, &arguments.out)?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
     }
@@ -100,11 +105,11 @@ fn adapted(found: &AdaptedModel) -> String {
     }));
     if let (Some(twin), Some(learned)) = (&found.twin, &found.as_learned) {
         lines.push(format!(
-            "nearest in contact {:6.2} %, all {:6.2} %, on {} presses that it was not adapted with; as learned {:.2} %",
-            twin.overall.nearest_in_contact_percent,
-            twin.overall.all_percent,
+            "nearest in contact {}, all {}, on {} presses that it was not adapted with; as learned {}",
+            percent(twin.overall.nearest_in_contact_percent),
+            percent(twin.overall.all_percent),
             found.judged_presses,
-            learned.nearest_in_contact_percent
+            percent(learned.nearest_in_contact_percent).trim_start()
         ));
         lines.push(found.definition.clone());
     }
@@ -119,20 +124,27 @@ fn table(found: &AdaptationCurve) -> String {
             found.sensor, found.provenance, found.judged_presses
         ),
         format!(
-            "as learned         {:6.2} %",
-            found.as_learned.nearest_in_contact_percent
+            "as learned         {}",
+            percent(found.as_learned.nearest_in_contact_percent)
         ),
     ];
     lines.extend(found.points.iter().map(|point| {
-        let error = &point.nearest_in_contact;
+        let Some(error) = &point.nearest_in_contact else {
+            return format!("{:3} presses        {}", point.presses, percent(None));
+        };
+        let over = point.over_trained_on_all;
         format!(
-            "{:3} presses        {:6.2} ± {:4.2} %   {:.2} times",
-            point.presses, error.mean_percent, error.deviation_percent, point.over_trained_on_all
+            "{:3} presses        {:6.2} ± {:4.2} %   {}",
+            point.presses,
+            error.mean_percent,
+            error.deviation_percent,
+            over.map_or_else(String::new, |over| format!("{over:.2} times"))
         )
     }));
     lines.push(format!(
-        "trained on all {:3} {:6.2} %",
-        found.teaching_presses, found.trained_on_all.nearest_in_contact_percent
+        "trained on all {:3} {}",
+        found.teaching_presses,
+        percent(found.trained_on_all.nearest_in_contact_percent)
     ));
     lines.push(found.definition.clone());
     lines.join("\n")

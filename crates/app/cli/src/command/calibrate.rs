@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 use twintac_calibrate::Fit;
 use twintac_run::calibration::{CsvPlace, Measured, calibrate, curve_of_csv, curves_of_file};
-use twintac_run::{RunSettings, SensorFile};
+use twintac_run::{SensorFile, simulate_settings};
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;
@@ -17,7 +17,7 @@ use crate::progress::Bars;
 pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let names: Vec<String> = arguments.free.iter().map(|name| name.trim().to_owned()).collect();
-    let settings = RunSettings::fine().but(arguments.settings.as_deref())?.simulate;
+    let settings = simulate_settings(SimulateSettings::fine(), arguments.settings.as_deref())?;
     let measured = measured(arguments, &sensor, &settings)?;
     let bars = Bars::default();
     let found = calibrate(&sensor, settings, measured, &names, arguments.frames, &bars)?;

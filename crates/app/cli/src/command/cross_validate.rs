@@ -35,9 +35,10 @@ fn table(found: &CrossValidation, seeds: u64) -> String {
         format!("{:<width$}  {:<14}  {:<14}", "held out", "twin", "fitted curve"),
     ];
     for row in &found.rows {
+        let twin = row.twin.as_ref().map_or_else(|| "none".to_owned(), spread);
         let kernel = row.kernel.as_ref().map_or_else(String::new, spread);
         lines.push(
-            format!("{:<width$}  {:<14}  {kernel}", row.name(), spread(&row.twin))
+            format!("{:<width$}  {twin:<14}  {kernel}", row.name())
                 .trim_end()
                 .to_owned(),
         );
@@ -46,10 +47,9 @@ fn table(found: &CrossValidation, seeds: u64) -> String {
             lines.extend(variants.map(|(variant, own)| format!("  {:<20}  {}", variant.name(), spread(own))));
         }
         lines.extend(sureness(&row.certainty));
-        if row.frames_not_simulated_percent > 0.0 {
+        if let Some(percent) = row.frames_not_simulated_percent.filter(|percent| *percent > 0.0) {
             lines.push(format!(
-                "  {:.1} % of these frames lie deeper than the simulation went",
-                row.frames_not_simulated_percent
+                "  {percent:.1} % of these frames lie deeper than the simulation went"
             ));
         }
     }

@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &Export) -> Result<()> {
     for log in expand(&arguments.logs)? {
         let exported = export(&log, arguments.out.as_deref())?;
         if let Some(recovered) = &exported.recovered {
-            say(&format!("{} was cut; {recovered}", log.display()));
+            say(&format!("{} {recovered}", log.display()));
         }
         print(&if arguments.json {
             serde_json::to_string(&exported)?

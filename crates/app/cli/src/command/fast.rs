@@ -5,12 +5,12 @@ use twintac_fast::{GroupErrors, Judgement};
 use twintac_run::SensorFile;
 use twintac_run::fast::{FAST_GEL, FastSettings, Told, train_fast};
 
+use crate::Program;
 use crate::arguments::FastTrain;
 use crate::output::print;
-use crate::progress::Bars;
 
 /// Trains, and prints how far the fast twin is from the solved gel.
-pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
+pub(crate) fn train(arguments: &FastTrain, program: &Program) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?;
     let mut settings = FastSettings::default();
     settings.n_lessons = arguments.lessons.unwrap_or(settings.n_lessons);
@@ -25,7 +25,7 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
         &arguments.out,
         &settings,
         arguments.seed,
-        &Bars::default(),
+        &program.caller()?,
     )?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
@@ -37,12 +37,12 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
         found.n_taught
     ))?;
     print(&format!(
-        "{:<28} {:>7} {:>8} {:>7} {:>7}",
-        "", "frames", "nearest", "all", "force"
+        "{:<NAME$} {:>7} {:>8} {:>7} {:>7} {:>12}",
+        "", "frames", "nearest", "all", "force", "> 10 % off"
     ))?;
     print_group("held-out presses", &found.held_out.overall)?;
     print_judgement(found.exams_name(), &found.exams)?;
-    if found.slides.overall.n_frames > 0 {
+    if found.slides.overall.is_some() {
         print_group("the same, sliding and tilting", &found.slides.overall)?;
     }
     if let Some(strange) = &found.strange {
@@ -51,25 +51,23 @@ pub(crate) fn train(arguments: &FastTrain) -> Result<()> {
     Ok(())
 }
 
+/// Width of the column of names.
+const NAME: usize = 46;
+
 fn print_strange(found: &Told) -> Result<()> {
-    let familiar = found.familiar_flagged_percent;
     print(&format!(
-        "unlike all that was taught: errors, flagged %, how often they look stranger than held-out presses, of which {familiar:.1} % are flagged"
+        "unlike all that was taught: errors, flagged %, how often they look stranger than held-out presses, of which {} % are flagged",
+        figure(found.familiar_flagged_percent, 1)
     ))?;
     for (kind, told) in &found.kinds {
-        let errors = &told.errors;
         print(&format!(
-            "{:<28} {:>7} {:>8.2} {:>7.2} {:>7.2} {:>9.1} {:>7.1}",
-            format!("  {kind}"),
-            errors.n_frames,
-            errors.nearest_percent,
-            errors.all_percent,
-            errors.force_percent,
-            told.flagged_percent,
-            told.auroc_percent
+            "{} {:>9} {:>7}",
+            group(&format!("  {kind}"), &told.errors),
+            figure(told.flagged_percent, 1),
+            figure(told.auroc_percent, 1)
         ))?;
     }
-    print(&format!("{:<61} {:>17.1}", "  all", found.auroc_percent))
+    print(&format!("  all: {}", figure(found.auroc_percent, 1)))
 }
 
 fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
@@ -81,21 +79,44 @@ fn print_judgement(name: &str, found: &Judgement) -> Result<()> {
         print_group(&format!("  {depth_mm} to {} mm deep", depth_mm + 1), errors)?;
     }
     print(&format!(
-        "{:<36} {:>8.2}",
-        "  read while nothing touches", found.untouched_percent
+        "{:<NAME$} {:>7} {:>8}",
+        "  read while nothing touches",
+        "",
+        figure(found.untouched_percent, 2)
     ))?;
     for (novelty, errors) in &found.by_novelty {
         print_group(&format!("  {novelty} contacts"), errors)?;
     }
-    for (place, errors) in &found.by_place {
-        print_group(&format!("  {place} of the way to a corner"), errors)?;
+    for (number, (place, errors)) in found.by_place.iter().enumerate() {
+        let middle = if number == 0 { "middle, " } else { "" };
+        print_group(&format!("  {middle}{place} of the way to a corner"), errors)?;
     }
-    Ok(())
+    print_group("  edge, within half the gel's height of it", &found.at_edge)
 }
 
-fn print_group(name: &str, errors: &GroupErrors) -> Result<()> {
-    print(&format!(
-        "{name:<28} {:>7} {:>8.2} {:>7.2} {:>7.2}",
-        errors.n_frames, errors.nearest_percent, errors.all_percent, errors.force_percent
-    ))
+fn print_group(name: &str, found: &Option<GroupErrors>) -> Result<()> {
+    print(&group(name, found))
+}
+
+/// A line of the table: a group without frames says so.
+fn group(name: &str, found: &Option<GroupErrors>) -> String {
+    let Some(errors) = found else {
+        return format!(
+            "{name:<NAME$} {:>7} {:>8} {:>7} {:>7} {:>12}",
+            0, "none", "none", "none", "none"
+        );
+    };
+    format!(
+        "{name:<NAME$} {:>7} {:>8.2} {:>7.2} {:>7.2} {:>12}",
+        errors.n_frames,
+        errors.nearest_percent,
+        errors.all_percent,
+        errors.force_percent,
+        figure(errors.off_by_a_tenth_percent, 0)
+    )
+}
+
+/// A figure with so many decimals; what rests on nothing is none.
+fn figure(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("none".to_owned(), |value| format!("{value:.decimals$}"))
 }

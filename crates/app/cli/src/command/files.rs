@@ -3,13 +3,22 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use twintac_recording::Recording;
 use twintac_run::SensorFile;
 
-/// The files that names and patterns stand for, sorted; each must stand for at least one.
+/// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters.
 pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for pattern in patterns {
-        let found = glob::glob(pattern).with_context(|| format!("`{pattern}` is no pattern of files"))?;
+        if Path::new(pattern).exists() {
+            files.push(PathBuf::from(pattern));
+            continue;
+        }
+        let found = glob::glob(&of_names(pattern)).with_context(|| {
+            format!(
+                "`{pattern}` is not there, and is no pattern of files; in a pattern, `[[]` stands for `[`"
+            )
+        })?;
         let before = files.len();
         for file in found {
             files.push(file?);
@@ -25,7 +34,87 @@ pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+/// The pattern in which the folders that it begins with, as far as they are there by name, stand for themselves.
+fn of_names(pattern: &str) -> String {
+    let (mut known, mut rest) = (PathBuf::new(), Path::new(pattern).components());
+    for component in Path::new(pattern).components() {
+        if !known.join(component).exists() {
+            break;
+        }
+        known.push(component);
+        rest.next();
+    }
+    let mut escaped = glob::Pattern::escape(&known.to_string_lossy());
+    if !escaped.is_empty() && !escaped.ends_with(std::path::MAIN_SEPARATOR) {
+        escaped.push(std::path::MAIN_SEPARATOR);
+    }
+    escaped + &rest.as_path().to_string_lossy()
+}
+
+/// Gives recordings the name of the sensor that they are of, where `recorded_as` says that they
+/// have another one for it.
+pub(crate) fn rename(
+    recording: &mut Recording,
+    recorded_as: Option<&str>,
+    sensor: &SensorFile,
+) -> Result<()> {
+    let Some(name) = recorded_as else {
+        return Ok(());
+    };
+    if recording.sensor != name {
+        bail!(
+            "--recorded-as is `{name}`, but the recordings call their sensor `{}`",
+            recording.sensor
+        );
+    }
+    recording.sensor.clone_from(&sensor.sensor.name);
+    Ok(())
+}
+
 /// Reads a sensor description, or without a file that of PhysTac.
 pub(crate) fn sensor_or_phystac(file: Option<&Path>) -> Result<SensorFile> {
     Ok(file.map_or_else(SensorFile::phystac, SensorFile::read)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_for_themselves_and_patterns_for_what_matches() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [
+            "[a]/x.parquet",
+            "[a]/y[1].parquet",
+            "[a]/[",
+            "a/x.parquet",
+            "a/*.parquet",
+        ] {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, "").unwrap();
+        }
+        let found = |pattern: &str| -> Result<Vec<String>, String> {
+            let given = folder.path().join(pattern).display().to_string();
+            let files = expand(&[given]).map_err(|error| format!("{error:#}"))?;
+            let name = |file: PathBuf| file.strip_prefix(folder.path()).unwrap().display().to_string();
+            Ok(files.into_iter().map(name).collect())
+        };
+        assert_eq!(found("[a]/x.parquet").unwrap(), ["[a]/x.parquet"]);
+        assert_eq!(found("[a]/y[1].parquet").unwrap(), ["[a]/y[1].parquet"]);
+        assert_eq!(found("[a]/[").unwrap(), ["[a]/["]);
+        assert_eq!(
+            found("[a]/*.parquet").unwrap(),
+            ["[a]/x.parquet", "[a]/y[1].parquet"]
+        );
+        assert_eq!(
+            found("a/*.parquet").unwrap(),
+            ["a/*.parquet"],
+            "one of this name is there"
+        );
+        assert_eq!(found("a/*[.]parquet").unwrap(), ["a/*.parquet", "a/x.parquet"]);
+        assert_eq!(found("?/x.parquet").unwrap(), ["a/x.parquet"]);
+        assert!(found("a/[").unwrap_err().contains("`[[]` stands for `[`"));
+        assert!(found("a/z*").unwrap_err().contains("no file matches"));
+    }
 }

@@ -4,21 +4,21 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::Result;
+use twintac_recording::Provenance;
 use twintac_run::simulated::SimulatedPath;
 use twintac_simulate::{Followed, FollowedFrame, Gel};
 
+use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
 /// Follows a path and prints what came of it.
 pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> Result<()> {
     let simulated = SimulatedPath::follow(gel, path, &Bars::default())?;
     let followed = &simulated.followed;
-    let mut out = std::io::stdout().lock();
     if as_json {
-        serde_json::to_writer_pretty(&mut out, &simulated)?;
-        writeln!(out)?;
+        print(&serde_json::to_string_pretty(&simulated)?)?;
     } else {
-        write_table(&mut out, followed)?;
+        print_csv(table(followed))?;
     }
     if with_profile {
         write_profile(&mut std::io::stderr().lock(), followed)?;
@@ -33,27 +33,31 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> 
     }
 }
 
-/// Comma-separated columns with their units.
-fn write_table(out: &mut dyn Write, followed: &Followed) -> Result<()> {
+/// Columns with their units, and rows.
+fn table(followed: &Followed) -> impl Iterator<Item = Vec<String>> {
+    const HEAD: [&str; 8] = [
+        "provenance",
+        "time_s",
+        "x_mm",
+        "y_mm",
+        "z_mm",
+        "force_x_n",
+        "force_y_n",
+        "force_z_n",
+    ];
     let names = followed.frames.first().map(|frame| frame.pressure_kpa.keys());
-    write!(
-        out,
-        "provenance,time_s,x_mm,y_mm,z_mm,force_x_n,force_y_n,force_z_n"
-    )?;
-    for name in names.into_iter().flatten() {
-        write!(out, ",{name}_kpa")?;
-    }
-    writeln!(out)?;
-    for frame in &followed.frames {
-        let (at, force) = (frame.position_mm, frame.force_n);
-        write!(out, "simulated,{},{},{},{}", frame.time_s, at.x, at.y, at.z)?;
-        write!(out, ",{:.6},{:.6},{:.6}", force.x, force.y, force.z)?;
-        for pressure_kpa in frame.pressure_kpa.values() {
-            write!(out, ",{pressure_kpa:.5}")?;
-        }
-        writeln!(out)?;
-    }
-    Ok(())
+    let mut head = HEAD.map(str::to_owned).to_vec();
+    head.extend(names.into_iter().flatten().map(|name| format!("{name}_kpa")));
+    std::iter::once(head).chain(followed.frames.iter().map(row))
+}
+
+fn row(frame: &FollowedFrame) -> Vec<String> {
+    let (at, force) = (frame.position_mm, frame.force_n);
+    let mut row = vec![Provenance::Simulated.to_string()];
+    row.extend([frame.time_s, at.x, at.y, at.z].map(|number| number.to_string()));
+    row.extend([force.x, force.y, force.z].map(|force_n| format!("{force_n:.6}")));
+    row.extend(frame.pressure_kpa.values().map(|kpa| format!("{kpa:.5}")));
+    row
 }
 
 /// What frames spend their time on, a line each.

@@ -7,7 +7,7 @@ use twintac_run::characterization::Recorded;
 use twintac_run::fast::{ImperfectionSources, find_imperfection, sensor_of_model};
 use twintac_run::{SensorFile, import_files};
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::arguments::FastImperfection;
 use crate::output::print;
 use crate::progress::Bars;
@@ -22,7 +22,9 @@ pub(crate) fn run(arguments: &FastImperfection) -> Result<()> {
     let recorded = if arguments.recordings.is_empty() {
         None
     } else {
-        Some(read(arguments, &sensor)?)
+        let mut recorded = read(arguments, &sensor)?;
+        rename(&mut recorded.recording, arguments.recorded_as.as_deref(), &sensor)?;
+        Some(recorded)
     };
     let command = command(arguments);
     let sources = ImperfectionSources {
@@ -78,6 +80,9 @@ fn command(arguments: &FastImperfection) -> String {
     add("--sensor", &arguments.sensor);
     add("--import", &arguments.import);
     add("--out", &arguments.out);
+    if let Some(name) = &arguments.recorded_as {
+        words += &format!(" --recorded-as {}", quoted(name));
+    }
     if !arguments.recordings.is_empty() {
         let patterns: Vec<String> = arguments
             .recordings

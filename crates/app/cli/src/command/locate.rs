@@ -1,24 +1,25 @@
 //! `twintac locate`: where and how deep a sensor is touched, from its readings, by its trained twin.
 
-use std::fmt::Write;
-
 use anyhow::Result;
+use twintac_run::fast::sensor_of_model;
 use twintac_run::{
     Located, LocatedFrame, LocatedPress, LocationErrors, Locator, Progress, import_files, read_recordings,
 };
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::arguments::Locate;
-use crate::output::print;
+use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
 /// Finds what touches in each frame, and prints it; how far off that is goes to standard error.
 pub(crate) fn run(arguments: &Locate) -> Result<()> {
     let files = expand(&arguments.recordings)?;
-    let recording = match &arguments.import {
+    let mut recording = match &arguments.import {
         Some(import) => import_files(import, &files)?.0,
         None => read_recordings(&files)?,
     };
+    let recorded_as = arguments.recorded_as.as_deref();
+    rename(&mut recording, recorded_as, &sensor_of_model(&arguments.model)?)?;
     let settings = Locator::settings(arguments.settings.as_deref())?;
     let bars = Bars::default();
     let locator = Locator::open(&arguments.model, &arguments.indenter, settings, &bars)?;
@@ -30,34 +31,46 @@ pub(crate) fn run(arguments: &Locate) -> Result<()> {
     if arguments.json || arguments.errors {
         print(&serde_json::to_string_pretty(&located)?)
     } else {
-        print(table(&located)?.trim_end())
+        print_csv(table(&located))
     }
 }
 
-/// Comma-separated columns with their units. What was not found is empty.
-fn table(located: &Located) -> Result<String> {
-    let mut out = "provenance,press,taught,time_s,indenter,x_mm,y_mm,depth_mm,x_deviation_mm,y_deviation_mm,depth_deviation_mm,force_n,misfit,\
-                   true_x_mm,true_y_mm,true_depth_mm\n"
-        .to_owned();
-    for press in &located.presses {
-        for frame in &press.frames {
-            row(&mut out, located, press, frame)?;
-        }
-    }
-    Ok(out)
+/// Columns with their units, and rows. What was not found is empty.
+fn table(located: &Located) -> impl Iterator<Item = Vec<String>> {
+    const HEAD: [&str; 16] = [
+        "provenance",
+        "press",
+        "taught",
+        "time_s",
+        "indenter",
+        "x_mm",
+        "y_mm",
+        "depth_mm",
+        "x_deviation_mm",
+        "y_deviation_mm",
+        "depth_deviation_mm",
+        "force_n",
+        "misfit",
+        "true_x_mm",
+        "true_y_mm",
+        "true_depth_mm",
+    ];
+    let rows = located.presses.iter().flat_map(|press| {
+        let frames = press.frames.iter();
+        frames.map(|frame| row(located, press, frame))
+    });
+    std::iter::once(HEAD.map(str::to_owned).to_vec()).chain(rows)
 }
 
-fn row(out: &mut String, located: &Located, press: &LocatedPress, frame: &LocatedFrame) -> Result<()> {
+fn row(located: &Located, press: &LocatedPress, frame: &LocatedFrame) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.4}"));
     let axis = |values: Option<[f64; 2]>, axis: usize| number(values.map(|values| values[axis]));
-    writeln!(
-        out,
-        "{},{},{},{:.4},{},{},{},{},{},{},{},{},{},{:.4},{:.4},{}",
-        located.provenance,
-        press.name,
-        press.taught,
-        frame.time_s,
-        frame.indenter.as_deref().unwrap_or_default(),
+    vec![
+        located.provenance.to_string(),
+        press.name.clone(),
+        press.taught.to_string(),
+        number(Some(frame.time_s)),
+        frame.indenter.clone().unwrap_or_default(),
         axis(frame.place_mm, 0),
         axis(frame.place_mm, 1),
         number(frame.depth_mm),
@@ -66,32 +79,35 @@ fn row(out: &mut String, located: &Located, press: &LocatedPress, frame: &Locate
         number(frame.depth_deviation_mm),
         number(frame.force_n),
         number(frame.misfit),
-        frame.true_place_mm[0],
-        frame.true_place_mm[1],
+        number(Some(frame.true_place_mm[0])),
+        number(Some(frame.true_place_mm[1])),
         number(frame.true_depth_mm),
-    )?;
-    Ok(())
+    ]
 }
 
 /// How far off places and depths are, in a line for presses that taught the twin and one for those that did not.
 fn summary(located: &Located) -> String {
+    let told = |value: Option<f64>, decimals: usize| match value {
+        Some(value) => format!("{value:.decimals$}"),
+        None => "none".to_owned(),
+    };
     let line = |name: &str, errors: &Option<LocationErrors>| {
         let Some(errors) = errors else {
             return String::new();
         };
         format!(
-            "{name}: {} presses, {} frames; place off by {:.2} mm (90 of 100: {:.2}), depth by {:.1} % of the deepest ({:.1}), at the deepest by {:.1} % ({:.1}); \
-             within two deviations {:.0} and {:.0} %\n",
+            "{name}: {} presses, {} frames; place off by {} mm (90 of 100: {}), depth by {} % of the deepest ({}), at the deepest by {} % ({}); \
+             within two deviations {} and {} %\n",
             errors.presses,
             errors.frames,
-            errors.place_mm.median,
-            errors.place_mm.of_90_percent,
-            errors.depth_percent.median,
-            errors.depth_percent.of_90_percent,
-            errors.depth_at_peak_percent.median,
-            errors.depth_at_peak_percent.of_90_percent,
-            errors.place_within_two_deviations_percent,
-            errors.depth_within_two_deviations_percent,
+            told(errors.place_mm.median, 2),
+            told(errors.place_mm.of_90_percent, 2),
+            told(errors.depth_percent.median, 1),
+            told(errors.depth_percent.of_90_percent, 1),
+            told(errors.depth_at_peak_percent.median, 1),
+            told(errors.depth_at_peak_percent.of_90_percent, 1),
+            told(errors.place_within_two_deviations_percent, 0),
+            told(errors.depth_within_two_deviations_percent, 0),
         )
     };
     format!(

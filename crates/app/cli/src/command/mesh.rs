@@ -10,7 +10,7 @@ use crate::output::print;
 /// Meshes a gel or checks a mesh, and prints its quality as JSON.
 pub(crate) fn run(arguments: &Mesh) -> Result<()> {
     let quality = match &arguments.check {
-        Some(path) => check_mesh(path)?,
+        Some(path) => check_mesh(path, arguments.unit)?,
         None => {
             let path = arguments.sensor.as_ref();
             let path = path.context("give a sensor description with --sensor")?;

@@ -51,7 +51,7 @@ pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
         Command::CrossValidate(arguments) => cross_validate::run(&arguments, program),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Locate(arguments) => locate::run(&arguments),
-        Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments),
+        Command::Fast(FastCommand::Train(arguments)) => fast::train(&arguments, program),
         Command::Fast(FastCommand::Imperfection(arguments)) => imperfection::run(&arguments),
         Command::Report(arguments) => stages::report(&arguments, program),
     }

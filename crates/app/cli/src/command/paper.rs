@@ -7,7 +7,7 @@ use twintac_run::paper::{Effort, Paper, PaperMetrics};
 
 use crate::Program;
 use crate::arguments::Reproduce;
-use crate::output::print;
+use crate::output::{percent, print};
 
 pub(super) fn run(arguments: &Reproduce, program: &Program) -> Result<()> {
     let effort = if arguments.quick {
@@ -30,13 +30,14 @@ fn text(found: &PaperMetrics) -> String {
     let mut lines = vec![
         format!("{} data, seed {}", found.provenance, found.seed),
         format!(
-            "twin                  {:6.2} % on {} presses that it never saw",
-            twin.twin.overall.nearest_in_contact_percent, twin.held_out_presses
+            "twin                  {} on {} presses that it never saw",
+            percent(twin.twin.overall.nearest_in_contact_percent),
+            twin.held_out_presses
         ),
     ];
     if let Some(paper) = twin.variants.get("paper") {
-        let percent = paper.nearest_in_contact_percent;
-        lines.push(format!("the paper's network   {percent:6.2} %"));
+        let error = percent(paper.nearest_in_contact_percent);
+        lines.push(format!("the paper's network   {error}"));
     }
     if let Some(sensitivity) = found.sensor.sensitivity_kpa_per_n {
         lines.push(format!("sensitivity           {sensitivity:6.2} kPa/N"));

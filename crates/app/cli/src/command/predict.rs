@@ -1,12 +1,10 @@
 //! `twintac predict`: what a sensor would read, by its trained twin.
 
-use std::fmt::Write;
-
 use anyhow::{Context, Result, bail};
 use twintac_run::{Predicted, Predictor};
 
 use crate::arguments::Predict;
-use crate::output::print;
+use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
 /// Predicts along a path or a protocol, and prints what comes of it.
@@ -26,7 +24,7 @@ pub(crate) fn run(arguments: &Predict) -> Result<()> {
     if arguments.json {
         print(&serde_json::to_string_pretty(&predicted)?)?;
     } else {
-        print(table(&predicted)?.trim_end())?;
+        print_csv(table(&predicted))?;
     }
     if let Some(failure) = &predicted.failure {
         bail!("the path could not be followed to its end: {failure}; the frames printed are good");
@@ -34,51 +32,53 @@ pub(crate) fn run(arguments: &Predict) -> Result<()> {
     Ok(())
 }
 
-/// Comma-separated columns with their units. A twin that knows how sure it is has the bounds of the 90 % intervals after the readings, and whether the contact is
-/// unlike what taught.
-fn table(predicted: &Predicted) -> Result<String> {
-    let mut out = String::new();
-    write!(out, "provenance,press,indenter,time_s,x_mm,y_mm,depth_mm,force_n")?;
-    for taxel in &predicted.taxels {
-        write!(out, ",{taxel}_kpa")?;
-    }
+/// Columns with their units, and rows. A twin that knows how sure it is has the bounds of the 90 % intervals after the readings, and whether the contact
+/// is unlike what taught.
+fn table(predicted: &Predicted) -> Vec<Vec<String>> {
+    let columns = [
+        "provenance",
+        "press",
+        "indenter",
+        "time_s",
+        "x_mm",
+        "y_mm",
+        "depth_mm",
+        "force_n",
+    ];
+    let mut head: Vec<String> = columns.map(str::to_owned).to_vec();
+    head.extend(predicted.taxels.iter().map(|taxel| format!("{taxel}_kpa")));
     let is_sure = predicted.presses.iter().all(|press| press.certainty.is_some());
     if is_sure {
         for taxel in &predicted.taxels {
-            write!(out, ",{taxel}_low_kpa,{taxel}_high_kpa")?;
+            head.extend([format!("{taxel}_low_kpa"), format!("{taxel}_high_kpa")]);
         }
-        write!(out, ",unlikeness,is_unlike")?;
+        head.extend(["unlikeness", "is_unlike"].map(str::to_owned));
     }
-    writeln!(out)?;
+    let mut rows = vec![head];
     for press in &predicted.presses {
         for (frame, readings_kpa) in press.readings_kpa.iter().enumerate() {
             let [x_mm, y_mm] = press.place_mm[frame];
-            write!(
-                out,
-                "{},{},{},{:.4},{x_mm:.4},{y_mm:.4},{:.4},{:.5}",
-                predicted.provenance,
-                press.name,
-                press.indenter,
-                press.time_s[frame],
-                press.depth_mm[frame],
-                press.force_n[frame]
-            )?;
-            for reading_kpa in readings_kpa {
-                write!(out, ",{reading_kpa:.5}")?;
-            }
+            let mut row = vec![
+                predicted.provenance.to_string(),
+                press.name.clone(),
+                press.indenter.clone(),
+                format!("{:.4}", press.time_s[frame]),
+                format!("{x_mm:.4}"),
+                format!("{y_mm:.4}"),
+                format!("{:.4}", press.depth_mm[frame]),
+                format!("{:.5}", press.force_n[frame]),
+            ];
+            row.extend(readings_kpa.iter().map(|reading_kpa| format!("{reading_kpa:.5}")));
             if let (Some(sure), true) = (&press.certainty, is_sure) {
                 for (reading_kpa, half_kpa) in readings_kpa.iter().zip(&sure.half_width_kpa[frame]) {
-                    write!(
-                        out,
-                        ",{:.5},{:.5}",
-                        reading_kpa - half_kpa,
-                        reading_kpa + half_kpa
-                    )?;
+                    row.push(format!("{:.5}", reading_kpa - half_kpa));
+                    row.push(format!("{:.5}", reading_kpa + half_kpa));
                 }
-                write!(out, ",{:.3},{}", sure.unlikeness[frame], sure.is_unlike[frame])?;
+                row.push(format!("{:.3}", sure.unlikeness[frame]));
+                row.push(sure.is_unlike[frame].to_string());
             }
-            writeln!(out)?;
+            rows.push(row);
         }
     }
-    Ok(out)
+    rows
 }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use twintac_run::simulated::simulate_presses;
-use twintac_run::{Planned, Run, RunSettings, SensorFile};
-use twintac_simulate::Gel;
+use twintac_run::{Planned, Run, SensorFile, simulate_settings};
+use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::Program;
 use crate::arguments::Simulate;
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Simulate, program: &Program) -> Result<()> {
         anyhow::bail!("give --run, or --sensor with --protocol or --path");
     };
     let sensor = SensorFile::read(sensor)?.sensor;
-    let settings = RunSettings::fine().but(arguments.settings.as_deref())?.simulate;
+    let settings = simulate_settings(SimulateSettings::fine(), arguments.settings.as_deref())?;
     if let Some(path) = &arguments.path {
         let gel = Gel::new(Arc::clone(&sensor), settings);
         return super::follow::run(&gel, path, arguments.json, arguments.profile);

@@ -1,12 +1,13 @@
 //! The stages as commands of their own.
 
 use anyhow::{Context, Result};
+use twintac_run::fast::sensor_of_model;
 use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files, read_recordings};
 
-use super::files::expand;
+use super::files::{expand, rename};
 use crate::Program;
 use crate::arguments::{Align, Evaluate, Report, Train};
-use crate::output::print;
+use crate::output::{percent, print};
 use crate::progress::Bars;
 
 /// Everything after the recordings; prints the headline.
@@ -40,10 +41,12 @@ pub(crate) fn evaluate(arguments: &Evaluate, program: &Program) -> Result<()> {
     let model = arguments.model.as_ref();
     let model = model.context("give a model with --model, or a run with --run")?;
     let files = expand(&arguments.recordings)?;
-    let recording = match &arguments.import {
+    let mut recording = match &arguments.import {
         Some(import) => import_files(import, &files)?.0,
         None => read_recordings(&files)?,
     };
+    let recorded_as = arguments.recorded_as.as_deref();
+    rename(&mut recording, recorded_as, &sensor_of_model(model)?)?;
     let found = evaluate_elsewhere(model, &recording, &Bars::default())?;
     if arguments.json {
         return print(&serde_json::to_string_pretty(&found)?);
@@ -90,8 +93,9 @@ fn headline(metrics: &Metrics) -> String {
     ];
     lines.extend(rows.iter().map(|(name, figures)| {
         format!(
-            "{name:<width$}  {:6.2} %  {:6.2} %",
-            figures.nearest_in_contact_percent, figures.all_percent
+            "{name:<width$}  {}  {}",
+            percent(figures.nearest_in_contact_percent),
+            percent(figures.all_percent)
         )
     }));
     let beyond = metrics.twin.frames_not_simulated;
@@ -113,12 +117,13 @@ fn unseen(found: &UnseenEvaluation) -> String {
             found.presses, found.provenance, found.variant
         ),
         format!(
-            "nearest in contact {:6.2} %, all {:6.2} %",
-            figures.nearest_in_contact_percent, figures.all_percent
+            "nearest in contact {}, all {}",
+            percent(figures.nearest_in_contact_percent),
+            percent(figures.all_percent)
         ),
         format!(
-            "all as at training: nearest in contact {:6.2} %",
-            found.uncalibrated.nearest_in_contact_percent
+            "all as at training: nearest in contact {}",
+            percent(found.uncalibrated.nearest_in_contact_percent)
         ),
     ];
     for contact in &found.contact {

@@ -1,8 +1,9 @@
 //! `twintac stream`: touch as it happens.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use twintac_live::{Format, Known, Live, StopAfter, Tally, dashboard, stream_rows};
 
 use super::files::sensor_or_phystac;
@@ -25,7 +26,10 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
     }
     let format = match arguments.format {
         None => {
-            return dashboard::run(&mut live.source, live.about, &arguments.out)
+            // A terminal that is closed and a program that is ended leave the terminal as it was.
+            static STOP: AtomicBool = AtomicBool::new(false);
+            ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed)).context("listening to signals")?;
+            return dashboard::run(&mut live.source, live.about, &arguments.out, &STOP)
                 .map(|tally| sum_up(&tally))
                 .map_err(Into::into);
         }

@@ -13,7 +13,8 @@ use crate::cross_validation::Spread;
 use crate::files::{write_file, write_json};
 use crate::metrics::{Figures, names};
 use crate::progress::Work;
-use crate::{Progress, Run, RunError};
+use crate::stages::training::HELD_OUT;
+use crate::{Run, RunError};
 
 /// Which numbers of presses to adapt with, and how often.
 #[derive(Clone, Debug)]
@@ -54,10 +55,10 @@ pub struct AdaptationCurve {
 pub struct AdaptationPoint {
     /// Number of presses.
     pub presses: usize,
-    /// Error of the nearest taxel in contact, over the seeds.
-    pub nearest_in_contact: Spread,
+    /// Error of the nearest taxel in contact, over the seeds; `None` if no frame is in contact.
+    pub nearest_in_contact: Option<Spread>,
     /// The mean over that of the twin that was trained on all.
-    pub over_trained_on_all: f64,
+    pub over_trained_on_all: Option<f64>,
     /// Each seed's errors, and its presses.
     pub seeds: Vec<SeedOfPoint>,
 }
@@ -84,11 +85,10 @@ pub fn adaptation_curve(
     run: &Run,
     plan: &CurvePlan,
     out: &Path,
-    progress: &dyn Progress,
 ) -> Result<AdaptationCurve, RunError> {
     let model = Model::load(model_folder)?;
     let (recording, metrics) = (run.recording()?, run.metrics()?);
-    let split = Model::load(&run.stage("training").join("held-out"))?.record.split;
+    let split = Model::load(&run.training()?.file(HELD_OUT))?.record.split;
     let teachers = [&split.train[..], &split.validation].concat();
     if let Some(most) = plan.presses.iter().find(|count| **count > teachers.len()) {
         return Err(RunError::Input(format!(
@@ -96,16 +96,19 @@ pub fn adaptation_curve(
             teachers.len()
         )));
     }
-    let tables = out.join("depth_tables");
     let gel = NewGel::open(
         (&model, model_folder),
         Some(run.sensor()),
         &recording,
-        &tables,
-        progress,
+        out,
+        run.caller(),
     )?;
     let as_learned = gel.judge_as_learned(&split.test)?;
-    let work = Work::start(progress, "adapting", plan.presses.len() * plan.seeds as usize);
+    let work = Work::start(
+        run.progress(),
+        "adapting",
+        plan.presses.len() * plan.seeds as usize,
+    );
     let one = |n_presses: usize, seed: u64| -> Result<SeedOfPoint, RunError> {
         let used = gel.choose(&teachers, n_presses, seed)?;
         let evaluation = gel.judge(&gel.adapt(&used)?, &split.test)?;
@@ -125,13 +128,15 @@ pub fn adaptation_curve(
         let seeds: Vec<SeedOfPoint> = seeds.collect::<Result<_, _>>()?;
         let errors: Vec<f64> = seeds
             .iter()
-            .map(|seed| seed.figures.nearest_in_contact_percent)
+            .filter_map(|seed| seed.figures.nearest_in_contact_percent)
             .collect();
         let nearest_in_contact = Spread::of(&errors);
         Ok(AdaptationPoint {
             presses,
             nearest_in_contact,
-            over_trained_on_all: nearest_in_contact.mean_percent / trained_on_all.nearest_in_contact_percent,
+            over_trained_on_all: nearest_in_contact
+                .zip(trained_on_all.nearest_in_contact_percent)
+                .map(|(adapted, on_all)| adapted.mean_percent / on_all),
             seeds,
         })
     };
@@ -159,26 +164,27 @@ impl AdaptationCurve {
     /// The plot of it: error over the number of presses, with the smallest and the largest of the seeds, and the twin that was trained on all.
     #[must_use]
     pub fn scene(&self) -> Scene {
-        let series = |name: &str, value: &dyn Fn(&AdaptationPoint) -> f64, ink: Ink, dashed: bool| Series {
-            name: name.to_owned(),
-            points: self
-                .points
-                .iter()
-                .map(|point| [point.presses as f64, value(point)])
-                .collect(),
-            ink,
-            width_px: if dashed { 1.0 } else { 2.0 },
-            dashed,
-        };
+        let series =
+            |name: &str, value: &dyn Fn(&AdaptationPoint) -> Option<f64>, ink: Ink, dashed: bool| Series {
+                name: name.to_owned(),
+                points: self
+                    .points
+                    .iter()
+                    .filter_map(|point| Some([point.presses as f64, value(point)?]))
+                    .collect(),
+                ink,
+                width_px: if dashed { 1.0 } else { 2.0 },
+                dashed,
+            };
         let of_seeds = |point: &AdaptationPoint| -> Vec<f64> {
             let seeds = point.seeds.iter();
             seeds
-                .map(|seed| seed.figures.nearest_in_contact_percent)
+                .filter_map(|seed| seed.figures.nearest_in_contact_percent)
                 .collect()
         };
         let on_all = self.trained_on_all.nearest_in_contact_percent;
-        let best = |point: &AdaptationPoint| of_seeds(point).into_iter().fold(f64::INFINITY, f64::min);
-        let worst = |point: &AdaptationPoint| of_seeds(point).into_iter().fold(0.0, f64::max);
+        let best = |point: &AdaptationPoint| of_seeds(point).into_iter().reduce(f64::min);
+        let worst = |point: &AdaptationPoint| of_seeds(point).into_iter().reduce(f64::max);
         let trained = format!("trained on all {} presses", self.teaching_presses);
         Panels {
             title: format!(
@@ -192,7 +198,7 @@ impl AdaptationCurve {
                 series: vec![
                     series(
                         "adapted",
-                        &|point| point.nearest_in_contact.mean_percent,
+                        &|point| point.nearest_in_contact.map(|error| error.mean_percent),
                         Ink::Twin,
                         false,
                     ),

@@ -10,7 +10,7 @@ use super::new_gel::NewGel;
 use crate::files::write_json;
 use crate::metrics::{Figures, TwinFigures, names};
 use crate::press_checksum::press_checksum;
-use crate::{Progress, RunError, SensorFile};
+use crate::{Caller, RunError, SensorFile};
 
 /// What to adapt a model with.
 #[derive(Clone, Debug)]
@@ -66,11 +66,10 @@ pub struct AdaptedModel {
 /// # Errors
 /// A model that cannot be read, that reads other taxels, that has no gains, or that some of the presses taught; a place that cannot be pressed;
 /// a file that cannot be written.
-pub fn adapt_model(plan: &AdaptationPlan<'_>, progress: &dyn Progress) -> Result<AdaptedModel, RunError> {
+pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<AdaptedModel, RunError> {
     let model = Model::load(plan.model)?;
     let (recording, record) = (plan.recording, &model.record);
-    let tables = plan.out.join("depth_tables");
-    let gel = NewGel::open((&model, plan.model), plan.sensor, recording, &tables, progress)?;
+    let gel = NewGel::open((&model, plan.model), plan.sensor, recording, plan.out, caller)?;
     let all: Vec<usize> = (0..recording.presses.len()).collect();
     let used = gel.choose(&all, plan.presses, plan.seed)?;
     let adapted = gel.adapt(&used)?;
@@ -82,10 +81,17 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, progress: &dyn Progress) -> Result
     let as_learned = (!rest.is_empty())
         .then(|| gel.judge_as_learned(&rest))
         .transpose()?;
+    let folder = plan.out.join("model");
+    let (sensor, surfaces) = match plan.sensor {
+        Some(sensor) => {
+            let kept = sensor.kept_as(&folder.join("twin.json"))?;
+            (kept.text.clone(), kept.surfaces().clone())
+        }
+        None => (record.sensor.clone(), model.surfaces.clone()),
+    };
     let origin = Origin {
-        sensor: plan
-            .sensor
-            .map_or_else(|| record.sensor.clone(), |sensor| sensor.text.clone()),
+        sensor,
+        surfaces,
         simulation: record.simulation.clone(),
         bench: adapted.bench.clone(),
         settings: record.settings.clone(),
@@ -102,7 +108,6 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, progress: &dyn Progress) -> Result
         },
         certainty: None,
     };
-    let folder = plan.out.join("model");
     let definition = taught.twin.definition.clone();
     Model::new(adapted.twin.clone(), origin, taught.twin, judged.as_ref()).save(&folder)?;
     let found = AdaptedModel {

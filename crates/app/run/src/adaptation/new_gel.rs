@@ -9,12 +9,14 @@ use digitac::{
 };
 use twintac_depth_table::DepthTable;
 use twintac_recording::Recording;
+use twintac_store::Owner;
 
+use crate::depth_tables::DepthTableStore;
 use crate::doubtful::left_out;
 use crate::model::{gel_like, gel_of};
 use crate::settings::ports_mm;
-use crate::unseen::{Pressed, refuse_known, refuse_other_taxels, simulate};
-use crate::{Progress, RunError, SensorFile};
+use crate::unseen::{Pressed, refuse_known, refuse_other_sensor, simulate};
+use crate::{Caller, RunError, SensorFile};
 
 /// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
 const SOFTEST: f64 = 0.7;
@@ -28,17 +30,19 @@ pub(super) struct NewGel<'a> {
     pub(super) left_out: BTreeSet<usize>,
     places: Places,
     tables: Vec<DepthTable>,
+    /// Nobody else works in the folder meanwhile.
+    _owner: Owner,
 }
 
 impl<'a> NewGel<'a> {
-    /// Simulates the places of a recording; tables over depth are kept in `tables_folder`. `sensor` describes the gel where it is not as the
+    /// Simulates the places of a recording; tables over depth are kept in `depth_tables` of the folder `out`. `sensor` describes the gel where it is not as the
     /// model's description says.
     pub(super) fn open(
         (model, model_folder): (&'a Model, &Path),
         sensor: Option<&SensorFile>,
         recording: &'a Recording,
-        tables_folder: &Path,
-        progress: &dyn Progress,
+        out: &Path,
+        caller: &Caller,
     ) -> Result<Self, RunError> {
         let record = &model.record;
         if record.variant == Variant::Paper {
@@ -47,12 +51,12 @@ impl<'a> NewGel<'a> {
                 model_folder.display()
             )));
         }
-        refuse_other_taxels(recording, record)?;
-        refuse_known(recording, record)?;
         let gel = match sensor {
             Some(sensor) => gel_like(model, model_folder, sensor)?,
             None => gel_of(model, model_folder)?,
         };
+        refuse_other_sensor(recording, gel.sensor())?;
+        refuse_known(recording, record)?;
         let bench = record.bench.clone().with_ports_at(&ports_mm(gel.sensor()));
         let softer = BenchEstimate {
             stiffness: Some(Estimate {
@@ -61,14 +65,19 @@ impl<'a> NewGel<'a> {
             }),
             ..bench.clone()
         };
-        let (places, tables) = simulate(&gel, recording, &softer, tables_folder, progress)?;
+        let (left_out, progress) = (left_out(gel.sensor()), &*caller.progress);
+        // A folder is made only for what is not refused.
+        let owner = Owner::of(out)?;
+        let store = DepthTableStore::of(gel, progress)?.kept_in(&out.join("depth_tables"), &caller.program);
+        let (places, tables) = simulate(&store, recording, &softer, progress)?;
         Ok(Self {
             recording,
             twin: &model.twin,
             bench,
-            left_out: left_out(gel.sensor()),
+            left_out,
             places,
             tables,
+            _owner: owner,
         })
     }
 

@@ -51,9 +51,9 @@ impl OpenBench {
         settings: &PressSettings,
         faults: Vec<ScheduledFault>,
     ) -> Result<Self, RunError> {
-        let sensor = &run.sensor.sensor;
+        let sensor = &run.sensor().sensor;
         let lab = Lab::new(Arc::clone(sensor), reality.clone())?;
-        let tables = run.live_tables(&lab, reality, plans)?;
+        let tables = run.live_tables(reality, plans)?;
         let placement = &settings.placement;
         let (gel, selector) = lab.live(&tables, placement.base_from_gel, placement.tool_from_indenter);
 
@@ -96,6 +96,7 @@ impl OpenBench {
             provenance: Provenance::Emulated,
             notes: connected.notes,
             robot: addresses.commands,
+            reality: Some(reality.clone()),
             selector: Some(selector),
             _emulated: Some(devices),
         })

@@ -12,7 +12,7 @@ use std::time::Duration;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use phystac::{Clock, PhysTac, Transfer};
-use twintac_lab::Selector;
+use twintac_lab::{Reality, Selector};
 use twintac_live::{Known, TAXELS, power_on};
 use twintac_press::{Bench, Streams};
 use twintac_recording::Provenance;
@@ -36,6 +36,8 @@ pub struct OpenBench {
     notes: Vec<String>,
     /// Where the robot listens.
     robot: SocketAddr,
+    /// The emulated bench's imperfections.
+    reality: Option<Reality>,
     /// Puts indenters on, where nobody has to.
     selector: Option<Selector>,
     /// What keeps emulated devices running.

@@ -4,16 +4,27 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::atomic::AtomicBool;
 
-use twintac_lab::Selector;
+use serde::Serialize;
+use twintac_lab::{Reality, Selector};
 use twintac_log::Description;
-use twintac_press::{Mounting, Operator, PressSettings, RunSummary, Runner, sensor_limits};
+use twintac_press::{Mounting, Operator, Placement, PressSettings, RunSummary, Runner, sensor_limits};
 use twintac_protocol::PressPlan;
 use twintac_rig::xarm::Client;
 use twintac_shape::Pose;
+use twintac_store::{Keyed, MadeFrom};
 
 use super::OpenBench;
 use crate::progress::Work;
-use crate::{Run, RunError};
+use crate::{Run, RunError, SensorFile};
+
+/// What presses of one folder have in common, besides how they are planned.
+#[derive(Serialize)]
+struct LogsOf<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    /// Of the emulated bench; nothing of a real one.
+    reality: Option<&'a Reality>,
+    placement: &'a Placement,
+}
 
 impl Run {
     /// Carries presses out on a bench, those that are not done yet, and makes the run's recordings of them. `mount` has a person mount an
@@ -30,9 +41,15 @@ impl Run {
         interrupt: &AtomicBool,
         mount: &mut dyn FnMut(&str) -> Mounting,
     ) -> Result<RunSummary, RunError> {
-        let limits = sensor_limits(&self.sensor.sensor)?;
-        let runner = Runner::new(settings, limits, self.description(bench))?;
+        let limits = sensor_limits(&self.sensor().sensor)?;
         let logs = self.logs_folder();
+        let made_from = LogsOf {
+            sensor: self.keyed_sensor(),
+            reality: bench.reality.as_ref(),
+            placement: &settings.placement,
+        };
+        MadeFrom::without_program(&made_from)?.claim(&logs)?;
+        let runner = Runner::new(settings, limits, self.description(bench))?;
         let mut attendant = Attendant {
             work: Work::start(self.progress(), "pressing", plans.len()),
             n_begun: 0,
@@ -55,11 +72,11 @@ impl Run {
 
     /// What the logs are about.
     fn description(&self, bench: &OpenBench) -> Description {
-        let sensor = &self.sensor.sensor;
+        let sensor = &self.sensor().sensor;
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Description {
             sensor: sensor.name.clone(),
-            sensor_toml: self.sensor.text.clone(),
+            sensor_toml: self.sensor().text.clone(),
             provenance: bench.provenance,
             taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
             transfer: Some(twintac_live::confirmed_transfer(&bench.transfer)),

@@ -47,6 +47,7 @@ impl OpenBench {
             provenance: Provenance::Real,
             notes: connected.notes,
             robot: addresses.commands,
+            reality: None,
             selector: None,
             _emulated: None,
         })

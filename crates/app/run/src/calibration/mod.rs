@@ -114,6 +114,6 @@ impl Calibration {
         write_file(&folder.join("calibration.svg"), svg(&plot).as_bytes())?;
         write_file(&folder.join("calibration.png"), &png(&plot, PNG_SCALE)?)?;
         write_file(&folder.join("material.toml"), self.material_toml()?.as_bytes())?;
-        write_json(&folder.join("calibration.json"), self)
+        Ok(write_json(&folder.join("calibration.json"), self)?)
     }
 }

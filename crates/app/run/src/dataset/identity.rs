@@ -4,20 +4,22 @@ use std::path::Path;
 
 use digitac::{Model, Variant};
 use serde::Serialize;
-use sha2::{Digest, Sha256};
+use sha2::{Digest as _, Sha256};
 use twintac_fast::FastGel;
 use twintac_protocol::Protocol;
 use twintac_recording::Provenance;
 use twintac_sensor::SensorFile;
 use twintac_sensors::Imperfection;
 use twintac_simulate::{Gel, SimulateSettings};
+use twintac_store::{Digest, Keyed, StoreError};
 
 use super::plan::{DatasetPlan, FastSource};
+use crate::RunError;
 use crate::fast::tables::FastTables;
-use crate::files::{read_text, sha256};
+use crate::files::read_text;
 use crate::model::{gel_like, gel_of};
 use crate::protocol::target;
-use crate::{RunError, RunSettings};
+use crate::settings::simulate_settings;
 
 /// All that a plan names.
 pub(super) struct Inputs {
@@ -26,8 +28,7 @@ pub(super) struct Inputs {
     pub(super) gel: Gel,
     /// How finely it is solved.
     simulate: SimulateSettings,
-    pub(super) fast: Option<FastTables>,
-    fast_sha256: Option<String>,
+    pub(super) fast: Option<Keyed<FastTables>>,
     pub(super) twin: Option<Model>,
     twin_sha256: Option<String>,
     pub(super) imperfection: Option<Imperfection>,
@@ -46,7 +47,7 @@ struct Identity<'a> {
     /// `solved`, or `fast`.
     gel: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    fast_gel_sha256: Option<&'a str>,
+    fast_gel_sha256: Option<Digest>,
     /// `ports`, or `twin`.
     readings: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -75,7 +76,7 @@ impl Inputs {
                     Some(sensor) => sensor,
                     None => SensorFile::phystac()?,
                 };
-                let simulate = RunSettings::read(plan.settings.as_deref())?.simulate;
+                let simulate = simulate_settings(SimulateSettings::default(), plan.settings.as_deref())?;
                 let gel = Gel::new(std::sync::Arc::clone(&sensor.sensor), simulate.clone());
                 (sensor, gel, simulate)
             }
@@ -85,13 +86,8 @@ impl Inputs {
             Some(file) => read_protocol(file)?,
         };
         protocol.plan_in_turn(&target(&sensor.sensor), plan.seed, 0..1)?; // names what the sensor does not have
-        let (fast, fast_sha256) = match &plan.fast {
-            None => (None, None),
-            Some(source) => {
-                let (fast, hash) = fast_gel(source, &sensor)?;
-                (Some(fast), Some(hash))
-            }
-        };
+        let fast = plan.fast.as_ref().map(|source| fast_gel(source, &sensor));
+        let fast = fast.transpose()?;
         let is_paper = twin
             .as_ref()
             .is_some_and(|model| model.twin.variant() == Variant::Paper);
@@ -114,7 +110,6 @@ impl Inputs {
             gel,
             simulate,
             fast,
-            fast_sha256,
             twin,
             imperfection,
         })
@@ -136,7 +131,7 @@ impl Inputs {
             n_presses,
             seed,
             gel: if self.fast.is_some() { "fast" } else { "solved" },
-            fast_gel_sha256: self.fast_sha256.as_deref(),
+            fast_gel_sha256: self.fast.as_ref().map(Keyed::digest),
             readings: if self.twin.is_some() { "twin" } else { "ports" },
             twin_sha256: self.twin_sha256.as_deref(),
             imperfection: self.imperfection.as_ref(),
@@ -174,30 +169,27 @@ fn of_twin(
         )));
     }
     let settings = serde_json::from_value(model.record.simulation.clone());
-    let simulate = settings.map_err(|source| RunError::Damaged {
+    let simulate = settings.map_err(|source| StoreError::Damaged {
         path: folder.join("twin.json"),
         source,
     })?;
     Ok((sensor, gel, simulate))
 }
 
-fn fast_gel(source: &FastSource, sensor: &SensorFile) -> Result<(FastTables, String), RunError> {
+fn fast_gel(source: &FastSource, sensor: &SensorFile) -> Result<Keyed<FastTables>, RunError> {
     match source {
         FastSource::BuiltIn => {
-            let fast = match sensor.sensor.name.as_str() {
-                "phystac-tip" => FastGel::phystac_tip()?,
-                _ => FastGel::phystac()?,
+            let tip = FastGel::phystac_tip()?;
+            let fast = match tip.check(&sensor.sensor) {
+                Ok(()) => tip,
+                Err(_) if sensor.sensor.name == tip.sensor() => tip, // and is refused by its own name
+                Err(_) => FastGel::phystac()?,
             };
-            let hash = sha256(&fast.to_bytes()?);
-            Ok((
-                FastTables::of(fast, &sensor.sensor, "the fast gel that is built in")?,
-                hash,
-            ))
+            let bytes = fast.to_bytes()?;
+            let tables = FastTables::of(fast, &sensor.sensor, "the fast gel that is built in")?;
+            Ok(Keyed::of_bytes(tables, &bytes))
         }
-        FastSource::File(file) => {
-            let bytes = std::fs::read(file).map_err(RunError::file("reading", file))?;
-            Ok((FastTables::read(file, &sensor.sensor)?, sha256(&bytes)))
-        }
+        FastSource::File(file) => Ok(FastTables::read(file, &sensor.sensor)?.0),
     }
 }
 

@@ -146,7 +146,12 @@ pub fn merge_dataset(
     let mut writer: Option<RecordingWriter> = None;
     for shard in shards(folder)? {
         work.go_on()?;
-        let part = Recording::read_parquet(&files(folder, shard).0)?;
+        let (parquet, manifest) = files(folder, shard);
+        if read_json::<Manifest>(&manifest)?.presses.is_empty() {
+            work.step("");
+            continue;
+        }
+        let part = Recording::read_parquet(&parquet)?;
         let into = match &mut writer {
             Some(writer) => writer,
             None => writer.insert(RecordingWriter::create(
@@ -162,9 +167,11 @@ pub fn merge_dataset(
         work.step("");
     }
     drop(work);
-    if let Some(writer) = writer {
-        writer.finish()?;
-    }
+    let writer = writer.ok_or_else(|| {
+        let folder = folder.display();
+        RunError::Input(format!("no press of the data set in {folder} could be simulated"))
+    })?;
+    writer.finish()?;
     clear(folder)?;
     whole.merged = Some(path);
     Ok(whole)

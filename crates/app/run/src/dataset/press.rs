@@ -1,7 +1,5 @@
 //! One press of a data set.
 
-use std::path::PathBuf;
-
 use digitac::{Model, simulated_recording, unread_press};
 use rand::RngCore;
 use twintac_depth_table::{DepthCurves, DepthTableRequest, DepthTableSource};
@@ -26,7 +24,7 @@ pub(super) fn press(inputs: &Inputs, plan: &PressPlan, seed: u64) -> Result<Pres
         // The gel itself, and no lattice over several presses.
         None => &inputs.gel,
         Some(fast) => {
-            store = DepthTableStore::new(&inputs.gel, PathBuf::new(), &Silent).with_fast(Some(fast));
+            store = DepthTableStore::of(inputs.gel.clone(), &Silent)?.with_fast(Some(fast));
             &store
         }
     };

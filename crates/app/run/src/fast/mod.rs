@@ -12,14 +12,13 @@ use serde::{Deserialize, Serialize};
 use twintac_fast::{FastGel, Judgement, TrainSettings, lesson_places_mm};
 use twintac_plot::png;
 use twintac_recording::Provenance;
-use twintac_sensor::{Sensor, SensorFile};
-use twintac_shape::Surfaces;
-use twintac_teach::{DRAW_VERSION, TeachError, Teacher, exam_surfaces};
+use twintac_sensor::SensorFile;
+use twintac_store::{Keyed, Owner, Store, write_file, write_json};
+use twintac_teach::{TeachError, Teacher, exam_surfaces};
 
-use crate::files::{read_json, sha256, write_file, write_json};
 use crate::progress::Work;
-use crate::{Progress, RunError};
-use presses::presses;
+use crate::{Caller, RunError};
+use presses::{PressKind, Solved};
 use strange::strange_presses;
 
 pub use imperfection::{FoundImperfection, ImperfectionSources, find_imperfection, sensor_of_model};
@@ -28,8 +27,13 @@ pub use strange::{Told, ToldKind};
 /// File of the fast twin in its folder.
 pub const FAST_GEL: &str = "fast.safetensors";
 
-/// One lesson of so many is not taught but judged on.
+/// One lesson of so many is not taught but judged on, and one of so many where lessons are few: how
+/// far off the gel is where few lessons pressed is known from them.
 const ONE_HELD_OUT_OF: usize = 20;
+const ONE_HELD_OUT_OF_FEW: usize = 5;
+
+/// Fewer lessons than that are few.
+const FEW_LESSONS: usize = 500;
 
 /// Held out is what has edges at most so much longer than the shortest of all.
 const HELD_OUT_LONGER: f64 = 1.2;
@@ -86,75 +90,68 @@ pub struct FastResult {
     pub strange: Option<Told>,
 }
 
-/// What the lessons of a folder are of.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct LessonsOf {
-    /// Digest of what presses depend on: gel, shell, and ports.
-    gel_sha256: String,
-    seed: u64,
-    own_indenters: bool,
-    /// How they were drawn.
-    draw_version: u32,
-}
-
 /// Teaches and judges a fast twin in a folder. Presses that are there already are not solved again.
 ///
 /// # Errors
-/// A folder with lessons of another gel or seed, a gel that can't be pressed, files that cannot be written.
+/// A folder in which another process works, a gel that can't be pressed, files that cannot be written.
 pub fn train_fast(
     sensor: &SensorFile,
     folder: &Path,
     settings: &FastSettings,
     seed: u64,
-    progress: &dyn Progress,
+    caller: &Caller,
 ) -> Result<FastResult, RunError> {
-    check_folder(&sensor.sensor, folder, seed, settings.own_indenters)?;
+    let _owner = Owner::of(folder)?;
+    let progress = &*caller.progress;
     let places_mm = lesson_places_mm(&sensor.sensor);
     let teacher = Teacher::new(&sensor.sensor, &places_mm)?;
+    let teacher = Keyed::from_inputs(teacher, &*sensor.sensor)?;
+    let solved = Solved {
+        teacher: &teacher,
+        seed,
+        store: &Store::new(&folder.join("presses"), &caller.program),
+        progress,
+    };
     let is_own = settings.own_indenters;
-    let exams = presses(
-        "exams",
-        settings.n_exams,
-        folder,
-        progress,
-        &|number| match is_own {
-            true => teacher.own_exam(seed, number),
-            false => teacher.exam(seed, number),
-        },
-    )?;
+    let exam = if is_own {
+        PressKind::OwnExam
+    } else {
+        PressKind::Exam
+    };
+    let exams = solved.presses(exam, settings.n_exams)?;
     let n_slides = if is_own { 0 } else { settings.n_slides };
-    let slides = presses("slides", n_slides, folder, progress, &|number| {
-        teacher.slide(seed, number)
-    })?;
+    let slides = solved.presses(PressKind::Slide, n_slides)?;
     let n_strange = if is_own { 0 } else { settings.n_strange };
-    let strange = strange_presses(&teacher, n_strange, folder, seed, progress)?;
-    let lessons = presses(
-        "lessons",
-        settings.n_lessons,
-        folder,
-        progress,
-        &|number| match is_own {
-            true => teacher.own_lesson(seed, number),
-            false => teacher.lesson(seed, number),
-        },
-    )?;
+    let strange = strange_presses(&solved, n_strange)?;
+    let lesson = if is_own {
+        PressKind::OwnLesson
+    } else {
+        PressKind::Lesson
+    };
+    let lessons = solved.presses(lesson, settings.n_lessons)?;
     let (mut taught, mut held_out) = (Vec::new(), Vec::new());
     let edges_mm = lessons.iter().map(|lesson| lesson.edge_mm);
+    let one_held_out_of = match lessons.len() < FEW_LESSONS {
+        true => ONE_HELD_OUT_OF_FEW,
+        false => ONE_HELD_OUT_OF,
+    };
     let longest_held_out_mm = HELD_OUT_LONGER * edges_mm.fold(f64::INFINITY, f64::min);
     for (number, lesson) in lessons.into_iter().enumerate() {
         // On a coarse mesh the solved gel reads too little: nobody is judged by it.
-        let is_held_out = number % ONE_HELD_OUT_OF == 0 && lesson.edge_mm < longest_held_out_mm;
+        let is_held_out = number % one_held_out_of == 0 && lesson.edge_mm < longest_held_out_mm;
         if is_held_out { &mut held_out } else { &mut taught }.push(lesson);
     }
     let n_reports = settings.train.n_steps / twintac_fast::REPORT_STEPS;
     let work = Work::start(progress, "training", n_reports);
-    let gel = FastGel::train(&sensor.sensor, &taught, &settings.train, seed, &mut |state| {
+    let lessons = (&taught[..], &held_out[..]);
+    let gel = FastGel::train(&sensor.sensor, lessons, &settings.train, seed, &mut |state| {
         let [pressure, wrench] = [state.pressure, state.wrench].map(|error| 100.0 * error);
         work.step(&format!("pressure {pressure:.2} %, force {wrench:.2} %"));
     })?;
     drop(work);
     write_file(&folder.join(FAST_GEL), &gel.to_bytes()?)?;
-    let surfaces = exam_surfaces().map_err(TeachError::from)?;
+    let mut surfaces = exam_surfaces().map_err(TeachError::from)?;
+    surfaces.extend(sensor.sensor.surfaces.clone());
     let result = FastResult {
         strange: (n_strange > 0)
             .then(|| Told::of(&gel, &held_out, &strange))
@@ -163,50 +160,11 @@ pub fn train_fast(
         provenance: Provenance::Simulated,
         own_indenters: is_own,
         n_taught: taught.len(),
-        held_out: gel.judge(&held_out, &Surfaces::new())?,
+        held_out: gel.judge(&held_out, &surfaces)?,
         exams: gel.judge(&exams, &surfaces)?,
         slides: gel.judge(&slides, &surfaces)?,
     };
     write_json(&folder.join("judgement.json"), &result)?;
     write_file(&folder.join("judgement.png"), &png(&result.plot().scene(), 2.0)?)?;
     Ok(result)
-}
-
-/// Refuses a folder whose lessons are of something else.
-fn check_folder(sensor: &Sensor, folder: &Path, seed: u64, own_indenters: bool) -> Result<(), RunError> {
-    let gel = format!(
-        "{:?} {:?} {:?} {:?} {:?}",
-        sensor.gel,
-        sensor.shell,
-        sensor.inclusions,
-        sensor.limits,
-        lesson_places_mm(sensor)
-    );
-    let of = LessonsOf {
-        gel_sha256: sha256(gel.as_bytes()),
-        seed,
-        own_indenters,
-        draw_version: DRAW_VERSION,
-    };
-    let path = folder.join("lessons.json");
-    if path.exists() {
-        let found: LessonsOf = read_json(&path)?;
-        if found != of {
-            let what = if found.seed != of.seed {
-                "seed"
-            } else if found.gel_sha256 != of.gel_sha256 {
-                "gel"
-            } else if found.own_indenters != of.own_indenters {
-                "choice of --own-indenters"
-            } else {
-                "version of this program"
-            };
-            return Err(RunError::Input(format!(
-                "{} holds presses of another {what}: give another folder with --out",
-                folder.display()
-            )));
-        }
-        return Ok(());
-    }
-    write_json(&path, &of)
 }

@@ -17,34 +17,31 @@ impl FastResult {
 
     /// Errors of the taxel that reads most: of exams, by shape and by depth, and of slides.
     pub(super) fn plot(&self) -> Bars {
-        let bar = |name: String, errors: &GroupErrors, ink: Ink| Bar {
-            name,
-            value: errors.nearest_percent,
-            uncertainty: None,
-            text: format!(
-                "{:.1} %, force {:.1} %",
-                errors.nearest_percent, errors.force_percent
-            ),
-            ink,
+        let mut bars = Vec::new();
+        // A group without frames has no errors to draw.
+        let mut bar = |name: String, errors: &Option<GroupErrors>, ink: Ink| {
+            bars.extend(errors.map(|errors| Bar {
+                name,
+                value: errors.nearest_percent,
+                uncertainty: None,
+                text: format!(
+                    "{:.1} %, force {:.1} %",
+                    errors.nearest_percent, errors.force_percent
+                ),
+                ink,
+            }));
         };
-        let mut bars = vec![
-            bar(
-                "like lessons, not taught".into(),
-                &self.held_out.overall,
-                Ink::Muted,
-            ),
-            bar(self.exams_name().into(), &self.exams.overall, Ink::Twin),
-        ];
+        let like_lessons = "like lessons, not taught";
+        bar(like_lessons.into(), &self.held_out.overall, Ink::Muted);
+        bar(self.exams_name().into(), &self.exams.overall, Ink::Twin);
         for (shape, errors) in &self.exams.by_shape {
-            bars.push(bar(shape.clone(), errors, Ink::Twin));
+            bar(shape.clone(), errors, Ink::Twin);
         }
         for (depth_mm, errors) in &self.exams.by_depth_mm {
             let name = format!("{depth_mm} to {} mm deep", depth_mm + 1);
-            bars.push(bar(name, errors, Ink::Twin));
+            bar(name, errors, Ink::Twin);
         }
-        if self.slides.overall.n_frames > 0 {
-            bars.push(bar("sliding and tilting".into(), &self.slides.overall, Ink::Twin));
-        }
+        bar("sliding and tilting".into(), &self.slides.overall, Ink::Twin);
         Bars {
             title: format!(
                 "{}: fast gel against solved gel, {} data",

@@ -1,52 +1,45 @@
 //! Whether a fast gel tells contacts that it was not taught from those that it was.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use digitac::area_under_curve;
 use serde::{Deserialize, Serialize};
 use twintac_fast::{Body, FastGel, FastReader, GroupErrors, Lesson};
 use twintac_shape::{ShapeError, Surfaces};
-use twintac_teach::{Strange, Teacher};
+use twintac_teach::Strange;
 
-use super::presses::presses;
-use crate::{Progress, RunError};
+use super::presses::{PressKind, Solved};
+use crate::RunError;
 
 /// How well contacts unlike all that was taught are told from presses like lessons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Told {
-    /// Part of the moments of presses like lessons whose novelty is above 1, %.
-    pub familiar_flagged_percent: f64,
+    /// Part of the moments of presses like lessons whose novelty is above 1, %; `None` without any.
+    pub familiar_flagged_percent: Option<f64>,
     /// Each kind of strange contact.
     pub kinds: BTreeMap<String, ToldKind>,
-    /// How often any of them has a higher novelty than a familiar one, %: the area under the receiver operating characteristic.
-    pub auroc_percent: f64,
+    /// How often any of them has a higher novelty than a familiar one, %: the area under the
+    /// receiver operating characteristic. `None` without any.
+    pub auroc_percent: Option<f64>,
 }
 
-/// How well one kind is told.
+/// How well one kind is told; `None` where no moment is of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ToldKind {
     /// Part of the moments whose novelty is above 1, %.
-    pub flagged_percent: f64,
+    pub flagged_percent: Option<f64>,
     /// How often such a contact has a higher novelty than a familiar one, %.
-    pub auroc_percent: f64,
+    pub auroc_percent: Option<f64>,
     /// Errors there.
-    pub errors: GroupErrors,
+    pub errors: Option<GroupErrors>,
 }
 
 /// Presses unlike all that is taught, kind by kind; so many of each.
 pub(super) fn strange_presses(
-    teacher: &Teacher,
+    solved: &Solved<'_>,
     n_of_kind: u64,
-    folder: &Path,
-    seed: u64,
-    progress: &dyn Progress,
 ) -> Result<Vec<(Strange, Vec<Lesson>)>, RunError> {
-    let of_kind = |kind: Strange| {
-        let solve = |number| teacher.strange(kind, seed, number);
-        let name = format!("strange/{}", kind.name());
-        Ok((kind, presses(&name, n_of_kind, folder, progress, &solve)?))
-    };
+    let of_kind = |kind: Strange| Ok((kind, solved.presses(PressKind::Strange(kind), n_of_kind)?));
     Strange::ALL.into_iter().map(of_kind).collect()
 }
 
@@ -62,7 +55,7 @@ impl Told {
     ) -> Result<Self, ShapeError> {
         let mut reader = gel.reader();
         let known = novelties(&mut reader, familiar)?;
-        let auroc_percent = |strange: &[f64]| 100.0 * area_under_curve(&known, strange).unwrap_or(0.0);
+        let auroc_percent = |strange: &[f64]| area_under_curve(&known, strange).map(|area| 100.0 * area);
         let (mut kinds, mut all) = (BTreeMap::new(), Vec::new());
         for (kind, presses) in strange {
             let novelties = novelties(&mut reader, presses)?;
@@ -93,7 +86,7 @@ fn novelties(reader: &mut FastReader, presses: &[Lesson]) -> Result<Vec<f64>, Sh
     Ok(all)
 }
 
-fn flagged(novelties: &[f64]) -> f64 {
+fn flagged(novelties: &[f64]) -> Option<f64> {
     let n = novelties.iter().filter(|novelty| **novelty > 1.0).count();
-    100.0 * n as f64 / novelties.len().max(1) as f64
+    (!novelties.is_empty()).then(|| 100.0 * n as f64 / novelties.len() as f64)
 }

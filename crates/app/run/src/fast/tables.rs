@@ -9,6 +9,7 @@ use twintac_fast::{Body, FastGel, FastReader};
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, ShapeError};
 use twintac_simulate::{Gel, PressPlace};
+use twintac_store::Keyed;
 
 use crate::RunError;
 
@@ -30,33 +31,25 @@ struct Reading {
 }
 
 impl FastTables {
-    /// The fast gel of a file.
+    /// The fast gel of a file, and the file's bytes.
     ///
     /// # Errors
-    /// A file that cannot be read or is something else, and a fast gel whose ports are elsewhere than the sensor's.
-    pub(crate) fn read(path: &Path, sensor: &Sensor) -> Result<Self, RunError> {
+    /// A file that cannot be read or is something else, and the fast gel of another gel.
+    pub(crate) fn read(path: &Path, sensor: &Sensor) -> Result<(Keyed<Self>, Vec<u8>), RunError> {
         let bytes = std::fs::read(path).map_err(RunError::file("reading", path))?;
         let fast = FastGel::from_bytes(&bytes)
             .map_err(|error| RunError::Input(format!("{}: {error}", path.display())))?;
-        Self::of(fast, sensor, &path.display().to_string())
+        let tables = Self::of(fast, sensor, &path.display().to_string())?;
+        Ok((Keyed::of_bytes(tables, &bytes), bytes))
     }
 
     /// A fast gel, which is called so in errors.
     ///
     /// # Errors
-    /// A fast gel whose ports are elsewhere than the sensor's.
+    /// The fast gel of another gel.
     pub(crate) fn of(fast: FastGel, sensor: &Sensor, name: &str) -> Result<Self, RunError> {
-        let is_at = |(taxel, port_mm): (&twintac_sensor::Taxel, &glam::DVec2)| {
-            taxel.position_mm.truncate().distance(*port_mm) < 1e-6
-        };
-        let ports_mm = fast.ports_mm();
-        if sensor.taxels.len() != ports_mm.len() || !sensor.taxels.iter().zip(ports_mm).all(is_at) {
-            return Err(RunError::Input(format!(
-                "{name} is of the sensor `{}`, whose ports are elsewhere than those of `{}`: make one with `twintac fast train`",
-                fast.sensor(),
-                sensor.name
-            )));
-        }
+        fast.check(sensor)
+            .map_err(|mismatch| RunError::Input(format!("{name}: {mismatch}")))?;
         Ok(Self {
             fast,
             bodies: Mutex::default(),

@@ -27,10 +27,10 @@ pub struct LocationErrors {
     pub depth_percent: Quantiles,
     /// The same in the deepest frame of each press.
     pub depth_at_peak_percent: Quantiles,
-    /// Places in frames that lie within two stated deviations, along each axis that is looked for, %.
-    pub place_within_two_deviations_percent: f64,
+    /// Places in frames that lie within two stated deviations, along each axis that is looked for, %; `None` if nothing was found.
+    pub place_within_two_deviations_percent: Option<f64>,
     /// Depths in frames that lie within two stated deviations, %.
-    pub depth_within_two_deviations_percent: f64,
+    pub depth_within_two_deviations_percent: Option<f64>,
     /// The presses that are felt.
     pub of_presses: Vec<PressErrors>,
 }
@@ -46,21 +46,21 @@ pub struct PressErrors {
     pub deepest_mm: f64,
     /// Largest reading of its frames that count, kPa.
     pub largest_kpa: f64,
-    /// Median distance of the place, mm.
-    pub place_error_mm: f64,
+    /// Median distance of the place, mm; `None` if nothing was found.
+    pub place_error_mm: Option<f64>,
     /// Median error of the depth, % of the deepest.
-    pub depth_error_percent: f64,
+    pub depth_error_percent: Option<f64>,
     /// Error of the place along x and of the depth in the deepest frame, mm; found less true. `None` if nothing was found.
     pub at_peak_mm: Option<[f64; 2]>,
 }
 
-/// The middle of errors, and what 90 of 100 do not exceed.
+/// The middle of errors, and what 90 of 100 do not exceed; `None` of no errors.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Quantiles {
     /// Median.
-    pub median: f64,
+    pub median: Option<f64>,
     /// What 90 of 100 do not exceed.
-    pub of_90_percent: f64,
+    pub of_90_percent: Option<f64>,
 }
 
 impl Quantiles {
@@ -68,10 +68,7 @@ impl Quantiles {
         errors.sort_by(f64::total_cmp);
         let at = |part: f64| {
             let last = errors.len().saturating_sub(1) as f64;
-            errors
-                .get((part * last).round() as usize)
-                .copied()
-                .unwrap_or(f64::NAN)
+            errors.get((part * last).round() as usize).copied()
         };
         Self {
             median: at(0.5),
@@ -152,7 +149,7 @@ impl LocationErrors {
         }
         let share = |is_within: &dyn Fn(&FrameError) -> bool| {
             let n_within = all.iter().filter(|(_, error)| is_within(error)).count();
-            100.0 * n_within as f64 / all.len().max(1) as f64
+            (!all.is_empty()).then(|| 100.0 * n_within as f64 / all.len() as f64)
         };
         (n_felt > 0).then(|| Self {
             presses: n_felt,
@@ -212,24 +209,24 @@ mod tests {
         ];
         let errors = LocationErrors::of(&presses, false).unwrap();
         assert_eq!([errors.presses, errors.frames, errors.frames_missed], [1, 3, 1]);
-        assert!((errors.place_mm.of_90_percent - 0.3).abs() < 1e-9, "{errors:?}");
-        assert!((errors.place_at_peak_mm.median - 0.3).abs() < 1e-9, "{errors:?}");
-        assert!(
-            (errors.depth_percent.of_90_percent - 15.0).abs() < 1e-9,
-            "{errors:?}"
-        );
-        assert!(
-            (errors.place_within_two_deviations_percent - 50.0).abs() < 1e-9,
-            "{errors:?}"
-        );
-        assert!(
-            (errors.depth_within_two_deviations_percent - 50.0).abs() < 1e-9,
-            "{errors:?}"
-        );
+        let near = |found: Option<f64>, expected: f64| {
+            assert!((found.unwrap() - expected).abs() < 1e-9, "{errors:?}");
+        };
+        near(errors.place_mm.of_90_percent, 0.3);
+        near(errors.place_at_peak_mm.median, 0.3);
+        near(errors.depth_percent.of_90_percent, 15.0);
+        near(errors.place_within_two_deviations_percent, 50.0);
+        near(errors.depth_within_two_deviations_percent, 50.0);
         let [x_mm, depth_mm] = errors.of_presses[0].at_peak_mm.unwrap();
         assert!((x_mm - 0.3).abs() < 1e-9 && (depth_mm + 0.3).abs() < 1e-9);
         let taught = LocationErrors::of(&presses, true).unwrap();
-        assert!(taught.place_mm.median.abs() < 1e-12);
+        assert!(taught.place_mm.median.unwrap().abs() < 1e-12);
         assert!(LocationErrors::of(&presses[..1], true).is_none());
+        // Felt in the gel, and nothing found: errors over nothing are none.
+        let missed = [press(false, vec![frame(1.0, 50.0, None)])];
+        let errors = LocationErrors::of(&missed, false).unwrap();
+        assert_eq!([errors.frames, errors.frames_missed], [1, 1]);
+        let none = [errors.place_mm.median, errors.place_within_two_deviations_percent];
+        assert_eq!(none, [None; 2]);
     }
 }

@@ -12,8 +12,11 @@ use std::time::Instant;
 
 use digitac::{BenchEstimate, Model, Variant, WithoutMemory};
 use serde::Serialize;
+use twintac_config::{Checked, Problem};
 use twintac_depth_table::DepthTableSource;
-use twintac_inverse::{Contact, Inverse, InverseError, InverseSettings, TableModel, Tracker};
+use twintac_inverse::{
+    Contact, Inverse, InverseError, InverseSettings, LARGEST_READING_KPA, TableModel, Tracker,
+};
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_simulate::Gel;
 
@@ -23,7 +26,7 @@ pub use frames::{LocatedFrame, LocatedPress};
 use crate::doubtful::left_out;
 use crate::model::gel_of;
 use crate::press_checksum::press_checksum;
-use crate::unseen::refuse_other_taxels;
+use crate::unseen::refuse_other_sensor;
 use crate::{Progress, RunError};
 
 /// Time within which the zero follows a sensor that nothing touches, s.
@@ -68,7 +71,7 @@ impl Locator {
     /// What the inverse of a trained twin assumes, but for what a file (TOML) says otherwise, if there is one.
     ///
     /// # Errors
-    /// A file that cannot be read, a field that there is not.
+    /// A file that cannot be read, a field that there is not, a value that makes no sense.
     pub fn settings(path: Option<&Path>) -> Result<InverseSettings, RunError> {
         let settings = InverseSettings {
             noise_kpa: 0.03,
@@ -78,7 +81,7 @@ impl Locator {
             ..InverseSettings::default()
         };
         path.map_or(Ok(settings), |path| {
-            Ok(twintac_config::read_over(path, &settings)?.value)
+            Ok(twintac_config::read_over(path, &settings)?.checked()?)
         })
     }
 
@@ -106,7 +109,12 @@ impl Locator {
             named => named.to_vec(),
         };
         let refused = |problem: InverseError| RunError::Input(problem.to_string());
-        settings.check().map_err(refused)?;
+        settings.checked()?;
+        if settings.deepest_mm > gel.height_mm() {
+            let problem = format!("is {}", settings.deepest_mm);
+            let hint = format!("give no more than the gel's height, {:.2}", gel.height_mm());
+            return Err(Problem::new("deepest_mm", problem, hint).into());
+        }
         let tables = table::tables(&model, &gel, (&indenters, &taxels), settings.deepest_mm, progress)?;
         let inverse = Inverse::new(TableModel::new(tables), settings).map_err(refused)?;
         Ok(Self {
@@ -122,10 +130,10 @@ impl Locator {
     /// untouched. For a reading that is not usable, the taxel's last usable one stands.
     ///
     /// # Errors
-    /// Recordings of other taxels; poses beside the gel.
+    /// Recordings of another sensor; poses beside the gel.
     pub fn locate(&self, recording: &Recording) -> Result<Located, RunError> {
         let record = &self.model.record;
-        refuse_other_taxels(recording, record)?;
+        refuse_other_sensor(recording, self.gel.sensor())?;
         let taught: Vec<bool> = recording
             .presses
             .iter()
@@ -144,7 +152,8 @@ impl Locator {
             let start = Instant::now();
             let frames = (0..press.time_s.len())
                 .map(|frame| self.frame(following, press, frame, &truth))
-                .collect();
+                .collect::<Result<_, InverseError>>()
+                .map_err(|problem| RunError::Input(format!("{}: {problem}", press.name)))?;
             busy_s += start.elapsed().as_secs_f64();
             presses.push(LocatedPress {
                 name: press.name.clone(),
@@ -198,14 +207,14 @@ impl Locator {
         press: &Press,
         frame: usize,
         truth: &Truth,
-    ) -> LocatedFrame {
+    ) -> Result<LocatedFrame, InverseError> {
         let time_s = press.time_s[frame];
         let since_s = following.before_s.map_or(0.0, |before_s| time_s - before_s);
         following.before_s = Some(time_s);
-        let contact = following.update(since_s, &press.taxels_kpa[frame], &press.valid[frame]);
+        let contact = following.update(since_s, &press.taxels_kpa[frame], &press.valid[frame])?;
         let contact = contact.cloned();
         let found = contact.as_ref();
-        LocatedFrame {
+        Ok(LocatedFrame {
             time_s,
             indenter: found.map(|contact| self.indenters[contact.shape].clone()),
             place_mm: found.map(|contact| contact.place_mm.to_array()),
@@ -217,7 +226,7 @@ impl Locator {
             true_place_mm: press.gel_from_indenter[frame].position_mm.truncate().to_array(),
             true_depth_mm: truth.depth_mm(press, frame),
             largest_kpa: following.read_kpa.iter().copied().fold(0.0, f64::max),
-        }
+        })
     }
 }
 
@@ -237,9 +246,27 @@ pub struct LocatorTracker {
 impl LocatorTracker {
     /// Takes a frame, `since_s` after the one before: readings above the untouched sensor, kPa, and whether each is usable; `[n_taxels]` both. For one that is not,
     /// the taxel's last usable one stands. Returns what touches, or nothing if the readings are within noise.
-    pub fn update(&mut self, since_s: f64, readings_kpa: &[f64], valid: &[bool]) -> Option<&Contact> {
+    ///
+    /// # Errors
+    /// Another number of readings; a time that is not finite or negative. All is then as before the frame.
+    pub fn update(
+        &mut self,
+        since_s: f64,
+        readings_kpa: &[f64],
+        valid: &[bool],
+    ) -> Result<Option<&Contact>, InverseError> {
+        let n_taxels = self.usable_kpa.len();
+        if [readings_kpa.len(), valid.len()] != [n_taxels; 2] {
+            let problem = format!("has {} readings", readings_kpa.len());
+            let hint = format!("give one of each of {n_taxels} taxels");
+            return Err(InverseError::Frame(Problem::new("readings_kpa", problem, hint)));
+        }
+        if !(since_s >= 0.0 && since_s.is_finite()) {
+            let problem = Problem::new("since_s", format!("is {since_s}"), "give 0 or more");
+            return Err(InverseError::Frame(problem));
+        }
         for ((usable, reading), valid) in self.usable_kpa.iter_mut().zip(readings_kpa).zip(valid) {
-            if *valid && reading.is_finite() {
+            if *valid && reading.abs() <= LARGEST_READING_KPA {
                 *usable = *reading;
             }
         }
@@ -248,11 +275,11 @@ impl LocatorTracker {
         for (read, taxel) in self.read_kpa.iter_mut().zip(&self.taxels) {
             *read = self.readings_kpa[*taxel];
         }
-        let contact = self.tracker.update(since_s, &self.read_kpa);
+        let contact = self.tracker.update(since_s, &self.read_kpa)?;
         if contact.is_none() {
             self.sensor.settle((since_s / ZERO_S).min(1.0));
         }
-        contact
+        Ok(contact)
     }
 }
 

@@ -33,15 +33,11 @@ pub(super) fn tables(
     deepest_mm: f64,
     progress: &dyn Progress,
 ) -> Result<Vec<ReadingTable>, RunError> {
-    let folder = tempfile::tempdir().map_err(RunError::file(
-        "making",
-        std::path::Path::new("a temporary folder for simulations"),
-    ))?;
     let [low, high] = places(gel, taxels);
     let is_plane = (high - low).min_element() > 0.0;
     let lattice = Lattice::covering(low, high, SPACINGS[usize::from(is_plane)] * gel.height_mm());
     let _work = Work::start(progress, "simulating", 0);
-    let store = DepthTableStore::new(gel, folder.path().to_owned(), progress);
+    let store = DepthTableStore::of(gel.clone(), progress)?;
     indenters
         .iter()
         .map(|indenter| {

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use twintac_store::Finished;
+
 use super::experiments::Paper;
 use super::level::Level;
 use crate::built_in::reality;
-use crate::{Planned, Run, RunError, SensorFile};
+use crate::{Metrics, Planned, Run, RunError, SensorFile};
 
 impl Paper {
     /// The paper's presses, as the bench records them.
@@ -20,12 +22,17 @@ impl Paper {
         Ok(run)
     }
 
-    /// Twins of the presses, on the gel of a sensor that lies so.
-    pub(super) fn data(&self, presses: &Run, sensor: SensorFile, level: &Level) -> Result<Run, RunError> {
+    /// Twins of the presses, on the gel of a sensor that lies so; how well the first of them does, and the paper's.
+    pub(super) fn data(
+        &self,
+        presses: &Run,
+        sensor: SensorFile,
+        level: &Level,
+    ) -> Result<(Run, Metrics, Finished), RunError> {
         let run = self.run_with(sensor, "data", &presses.record().source)?;
-        run.take(presses, level, |recording| level.recording(recording))?;
-        run.finish()?;
-        run.train_paper_twin()?;
-        Ok(run)
+        run.take(presses, level)?;
+        let metrics = run.finish()?;
+        let paper_twin = run.train_paper_twin()?;
+        Ok((run, metrics, paper_twin))
     }
 }

@@ -2,10 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use twintac_store::{Finished, Owner, Stage, Stages};
+
 use super::effort::Effort;
-use crate::cache::{self, Inputs};
 use crate::error::At;
 use crate::{Caller, Progress, Run, RunError, SensorFile};
+
+/// What makes all stages.
+pub(super) const PAPER_COMMAND: &str = "twintac reproduce --paper";
 
 /// The paper's experiments, in a folder. What is there is not made again.
 #[derive(Clone, Debug)]
@@ -15,16 +19,17 @@ pub struct Paper {
     pub(super) seed: u64,
     pub(super) sensor: SensorFile,
     pub(super) caller: Caller,
+    owner: Owner,
 }
 
 impl Paper {
     /// Starts, or takes up what a folder holds.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// The folder cannot be written, or another process works in it.
     pub fn start(folder: &Path, effort: Effort, seed: u64, caller: Caller) -> Result<Self, RunError> {
-        std::fs::create_dir_all(folder).map_err(RunError::file("creating", folder))?;
         Ok(Self {
+            owner: Owner::of(folder)?,
             folder: folder.to_owned(),
             effort,
             seed,
@@ -55,18 +60,18 @@ impl Paper {
         &*self.caller.progress
     }
 
-    pub(super) fn inputs(&self) -> Inputs {
-        Inputs::new(&self.caller.program)
-    }
-
-    pub(super) fn run_stage(
-        &self,
-        name: &str,
-        inputs: Inputs,
-        work: impl FnOnce(&Path) -> Result<(), RunError>,
-    ) -> Result<(), RunError> {
-        let outcome = cache::run(&self.folder.join(name), inputs, work).at(|| format!("stage `{name}`"))?;
-        self.progress().stage(name, outcome);
-        Ok(())
+    pub(super) fn run_stage<S>(&self, stage: &S) -> Result<Finished, RunError>
+    where
+        S: Stage<Follower = dyn Progress, Error = RunError>,
+    {
+        let _turn = self.owner.turn();
+        let stages = Stages {
+            root: &self.folder,
+            program: &self.caller.program,
+        };
+        let made = stages.run(stage, &*self.caller.progress);
+        let (outcome, finished) = made.at(|| format!("stage `{}`", S::NAME))?;
+        self.progress().stage(S::NAME, outcome);
+        Ok(finished)
     }
 }

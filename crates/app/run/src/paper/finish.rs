@@ -1,10 +1,11 @@
 //! All experiments, one after the other.
 
+use twintac_store::write_json;
+
 use super::experiments::Paper;
 use super::metrics::PaperMetrics;
 use super::page;
 use crate::RunError;
-use crate::files::write_json;
 
 impl Paper {
     /// Makes all of it, and writes `report.html` and `metrics.json`.
@@ -15,13 +16,12 @@ impl Paper {
         let presses = self.presses()?;
         let level = self.level(&presses)?;
         let (fitted, material) = self.material(&level)?;
-        let data = self.data(&presses, fitted, &level)?;
-        let twin = data.evaluate()?;
+        let (data, twin, paper_twin) = self.data(&presses, fitted, &level)?;
         self.pairs(&data)?;
         let maps = self.maps(&data, &level)?;
         let sensor = self.characterize()?;
-        self.trials()?;
-        self.simulated(&data, &level)?;
+        let trials = self.trials()?.recordings()?;
+        let simulated = self.simulated(&data, paper_twin, &level)?;
         let metrics = PaperMetrics {
             provenance: twin.provenance,
             effort: self.effort,
@@ -31,7 +31,7 @@ impl Paper {
             twin,
             sensor,
             maps,
-            shapes: self.classify()?,
+            shapes: self.classify(trials, simulated)?,
         };
         page::page(&metrics, &self.sensor.sensor, &self.caller.command).write(&self.report_path())?;
         write_json(&self.folder.join("metrics.json"), &metrics)?;

@@ -11,6 +11,7 @@ use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape};
 
 use super::experiments::Paper;
+use crate::stages::recordings::Change;
 use crate::{Run, RunError};
 
 /// Forces between which a ball's force over depth follows Hertz closely, and noise does not count, N.
@@ -79,22 +80,24 @@ impl Level {
         }
     }
 
-    /// A recording whose poses are in the gel's frame.
-    pub(super) fn recording(&self, mut recording: Recording) -> Recording {
-        for press in &mut recording.presses {
-            for pose in &mut press.gel_from_indenter {
-                *pose = self.pose(pose);
-            }
-        }
-        recording
-    }
-
     /// A planned press as the gel feels it: turned. How far it is then moved along the gel, less than a hundredth of the way, is left out.
     pub(super) fn plan(&self, plan: &PressPlan) -> PressPlan {
         PressPlan {
             rotation: self.rotation() * plan.rotation,
             ..plan.clone()
         }
+    }
+}
+
+impl Change for Level {
+    /// A recording whose poses are in the gel's frame.
+    fn changed(&self, mut recording: Recording) -> Recording {
+        for press in &mut recording.presses {
+            for pose in &mut press.gel_from_indenter {
+                *pose = self.pose(pose);
+            }
+        }
+        recording
     }
 }
 
@@ -190,7 +193,7 @@ mod tests {
             "{level:?}"
         );
 
-        let again = Level::found(&level.recording(recording.clone()), &sensor).unwrap();
+        let again = Level::found(&level.changed(recording.clone()), &sensor).unwrap();
         assert!(again.tilt_rad.iter().all(|tilt| tilt.abs() < 2e-4), "{again:?}");
 
         recording.presses.truncate(2);

@@ -6,15 +6,17 @@ use digitac::{Model, simulated_recording};
 use serde::{Deserialize, Serialize};
 use twintac_protocol::PressPlan;
 use twintac_recording::{Press, Recording};
+use twintac_store::{Finished, Stage, read_json, write_json};
 
-use super::experiments::Paper;
+use super::experiments::{PAPER_COMMAND, Paper};
 use super::level::Level;
 use crate::built_in::{MAPS_PROTOCOL, reality};
 use crate::depth_tables::DepthTableStore;
-use crate::files::{read_json, write_json};
 use crate::model::gel_of;
 use crate::progress::Work;
-use crate::{Planned, Run, RunError};
+use crate::stages::recordings::read_recording;
+use crate::stages::training::COMPLETE;
+use crate::{Planned, Progress, Run, RunError};
 
 /// A shape at its deepest, as the sensor reads it and as the twin does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +31,34 @@ pub struct ShapeMap {
     pub difference_percent: f64,
 }
 
+/// What sensor and twin read of the shapes.
+#[derive(Serialize)]
+struct Mapping<'a> {
+    felt: &'a [PressPlan],
+    rate_hz: f64,
+    training: Finished,
+    recordings: Finished,
+}
+
+impl Stage for Mapping<'_> {
+    const NAME: &'static str = "maps";
+    const MADE_BY: &'static str = PAPER_COMMAND;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let _work = Work::start(progress, "simulating five shapes", 0);
+        let model_folder = self.training.file(COMPLETE);
+        let model = Model::load(&model_folder)?;
+        let store = DepthTableStore::of(gel_of(&model, &model_folder)?, progress)?
+            .kept_in(&folder.join("depth_tables"), Self::NAME);
+        let bench = &model.record.bench;
+        let twin = simulated_recording(&model.twin, bench, &store, self.felt, self.rate_hz)?;
+        let maps = compared(&read_recording(&self.recordings)?, &twin);
+        Ok(write_json(&folder.join("maps.json"), &maps)?)
+    }
+}
+
 impl Paper {
     /// Presses five shapes at the gel's middle, on the bench and in the twin.
     pub(super) fn maps(&self, data: &Run, level: &Level) -> Result<Vec<ShapeMap>, RunError> {
@@ -37,23 +67,13 @@ impl Paper {
         let run = self.run("five-shapes", "five presses on the emulated bench")?;
         run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
         let felt: Vec<PressPlan> = planned.presses.iter().map(|plan| level.plan(plan)).collect();
-        let model_folder = data.model_folder();
-        let inputs = self
-            .inputs()
-            .settings("plans", &felt)?
-            .file(&model_folder.join("weights.safetensors"))?
-            .file(&model_folder.join("twin.json"))?
-            .stage(&run.stage("recordings"))?;
-        self.run_stage("maps", inputs, |folder| {
-            let _work = Work::start(self.progress(), "simulating five shapes", 0);
-            let model = Model::load(&model_folder)?;
-            let gel = gel_of(&model, &model_folder)?;
-            let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress());
-            let (bench, rate_hz) = (&model.record.bench, sensor.readout.rate_hz);
-            let twin = simulated_recording(&model.twin, bench, &store, &felt, rate_hz)?;
-            write_json(&folder.join("maps.json"), &compared(&run.recording()?, &twin))
+        let finished = self.run_stage(&Mapping {
+            felt: &felt,
+            rate_hz: sensor.readout.rate_hz,
+            training: data.training()?,
+            recordings: run.recordings()?,
         })?;
-        read_json(&self.folder.join("maps/maps.json"))
+        Ok(read_json(&finished.file("maps.json"))?)
     }
 }
 

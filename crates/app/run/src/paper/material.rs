@@ -4,13 +4,15 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use twintac_simulate::{Gel, SimulateSettings};
+use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
 
-use super::experiments::Paper;
+use super::experiments::{PAPER_COMMAND, Paper};
 use super::level::Level;
 use crate::built_in::{MATERIAL_PROTOCOL, reality};
 use crate::calibration::{calibrate, force_curves};
-use crate::files::{read_json, read_text, write_json};
-use crate::{Planned, RunError, SensorFile};
+use crate::files::read_text;
+use crate::stages::recordings::{Change, read_recording};
+use crate::{Planned, Progress, RunError, SensorFile};
 
 /// What is fitted. Forces tell no more of a gel than how stiff it is, how that grows with strain, how it gives way when it is confined, and how much it sticks.
 const FREE: [&str; 5] = [
@@ -41,6 +43,60 @@ pub struct GelMaterial {
     pub presses: usize,
 }
 
+/// How presses are simulated for the fit. Every step of it presses all curves again, with derivatives: coarser than the tables.
+fn fit_settings() -> SimulateSettings {
+    SimulateSettings {
+        edges_per_height: 5.0,
+        edges_per_contact_radius: 4.0,
+        ..SimulateSettings::default()
+    }
+}
+
+/// The fit of the gel's material.
+#[derive(Serialize)]
+struct Fitting<'a> {
+    start: &'a Keyed<SensorFile>,
+    settings: SimulateSettings,
+    level: &'a Level,
+    recordings: Finished,
+}
+
+impl Stage for Fitting<'_> {
+    const NAME: &'static str = "material";
+    const MADE_BY: &'static str = PAPER_COMMAND;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let recording = self.level.changed(read_recording(&self.recordings)?);
+        let gel = Gel::new(self.start.sensor.clone(), self.settings.clone());
+        let curves = force_curves(&recording, &gel)?;
+        let free = FREE.map(str::to_owned);
+        let found = calibrate(
+            self.start,
+            self.settings.clone(),
+            curves,
+            &free,
+            MOST_FRAMES,
+            progress,
+        )?;
+        let value = |name: &str| {
+            let unknown = found.fit.unknowns.iter().find(|unknown| unknown.name == name);
+            unknown.map_or(f64::NAN, |unknown| unknown.value)
+        };
+        let material = GelMaterial {
+            c10_kpa: value("c10_kpa"),
+            c20_kpa: value("c20_kpa"),
+            poissons_ratio: value("poissons_ratio"),
+            friction: value("friction"),
+            residual_percent: found.fit.noise_percent,
+            presses: recording.presses.len(),
+        };
+        found.write(folder, self.start)?;
+        Ok(write_json(&folder.join("found.json"), &material)?)
+    }
+}
+
 impl Paper {
     /// Presses every shape once, and fits the gel's material and its friction to the forces. The sensor with that gel, and what was found.
     pub(super) fn material(&self, level: &Level) -> Result<(SensorFile, GelMaterial), RunError> {
@@ -55,53 +111,15 @@ impl Paper {
         )?;
         run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
         let start = described.with_material(&yeoh(described))?;
-        let settings = settings();
-        let inputs = self
-            .inputs()
-            .settings("start", &start.text)?
-            .settings("simulate", &settings)?
-            .settings("level", level)?
-            .stage(&run.stage("recordings"))?;
-        self.run_stage("material", inputs, |folder| {
-            let gel = Gel::new(start.sensor.clone(), settings.clone());
-            let curves = force_curves(&level.recording(run.recording()?), &gel)?;
-            let free = FREE.map(str::to_owned);
-            let found = calibrate(
-                &start,
-                settings.clone(),
-                curves,
-                &free,
-                MOST_FRAMES,
-                self.progress(),
-            )?;
-            let value = |name: &str| {
-                let unknown = found.fit.unknowns.iter().find(|unknown| unknown.name == name);
-                unknown.map_or(f64::NAN, |unknown| unknown.value)
-            };
-            let material = GelMaterial {
-                c10_kpa: value("c10_kpa"),
-                c20_kpa: value("c20_kpa"),
-                poissons_ratio: value("poissons_ratio"),
-                friction: value("friction"),
-                residual_percent: found.fit.noise_percent,
-                presses: n_presses,
-            };
-            found.write(folder, &start)?;
-            write_json(&folder.join("found.json"), &material)
+        let finished = self.run_stage(&Fitting {
+            start: &Keyed::of_bytes(start.clone(), start.text.as_bytes()),
+            settings: fit_settings(),
+            level,
+            recordings: run.recordings()?,
         })?;
-        let folder = self.folder.join("material");
-        let material: GelMaterial = read_json(&folder.join("found.json"))?;
-        let fitted = described.with_material(&read_text(&folder.join("material.toml"))?)?;
+        let material: GelMaterial = read_json(&finished.file("found.json"))?;
+        let fitted = described.with_material(&read_text(&finished.file("material.toml"))?)?;
         Ok((fitted.with_friction(material.friction)?, material))
-    }
-}
-
-/// How presses are simulated. Every step of the fit presses all curves again, with derivatives: coarser than the tables.
-fn settings() -> SimulateSettings {
-    SimulateSettings {
-        edges_per_height: 5.0,
-        edges_per_contact_radius: 4.0,
-        ..SimulateSettings::default()
     }
 }
 
@@ -156,7 +174,7 @@ mod tests {
     fn gel() -> Gel {
         let described = SensorFile::phystac().unwrap();
         let start = described.with_material(&yeoh(&described)).unwrap();
-        Gel::new(start.sensor.clone(), settings())
+        Gel::new(start.sensor.clone(), fit_settings())
     }
 
     /// A press of so many depths, mm, over time, s; what was measured does not count here.

@@ -25,6 +25,11 @@ impl Simulated {
             Self::PaperTwin => "paper-twin",
         }
     }
+
+    /// The file of the trials.
+    pub(super) fn file(self) -> String {
+        format!("{}.parquet", self.name())
+    }
 }
 
 /// A way to train: what a classifier sees, and of how many trials.

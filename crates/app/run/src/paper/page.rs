@@ -47,13 +47,14 @@ fn twin(metrics: &PaperMetrics) -> Vec<Block> {
         found
             .variants
             .get(name)
-            .map(|figures| figures.nearest_in_contact_percent)
+            .and_then(|figures| figures.nearest_in_contact_percent)
     };
-    let baseline = |figures: &Option<crate::Figures>| figures.as_ref().map(|f| f.nearest_in_contact_percent);
+    let baseline =
+        |figures: &Option<crate::Figures>| figures.as_ref().and_then(|f| f.nearest_in_contact_percent);
     let compared = [
         (
             "this twin",
-            Some(found.twin.overall.nearest_in_contact_percent),
+            found.twin.overall.nearest_in_contact_percent,
             Ink::Twin,
         ),
         ("paper's network, here", nearest("paper"), Ink::Series(1)),

@@ -1,36 +1,67 @@
 //! The paper's data as one array that NumPy and pandas read, with a card that says what it is.
 
-use digitac::{PairedPress, Split};
+use std::path::Path;
 
-use super::experiments::Paper;
+use digitac::PairedPress;
+use serde::Serialize;
+use twintac_store::{Finished, Stage, write_file};
+
+use super::experiments::{PAPER_COMMAND, Paper};
 use super::structured_array::{Column, array, float};
-use crate::files::{read_json, sha256, write_file};
-use crate::{Run, RunError};
+use crate::files::sha256;
+use crate::stages::pairs::read_pairs;
+use crate::stages::simulation::Simulation;
+use crate::{Progress, Run, RunError};
+
+/// The frames of the bench beside the simulated ones.
+#[derive(Serialize)]
+struct Frames<'a> {
+    taxels: Vec<&'a String>,
+    shapes: Vec<String>,
+    pairs: Finished,
+    simulation: Finished,
+}
+
+impl Stage for Frames<'_> {
+    const NAME: &'static str = "pairs";
+    const MADE_BY: &'static str = PAPER_COMMAND;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let presses = read_pairs(&self.pairs)?;
+        let split = Simulation::read(&self.simulation)?.split;
+        let part = |press: usize| {
+            let judges = u8::from(split.test.contains(&press));
+            let chooses = u8::from(split.validation.contains(&press));
+            2 * judges + chooses
+        };
+        let parts: Vec<u8> = (0..presses.len()).map(part).collect();
+        let taxels: Vec<String> = self.taxels.iter().copied().cloned().collect();
+        let array = array(&presses, &columns(&taxels, self.shapes.clone(), parts));
+        let n_frames = presses.iter().map(|press| press.features.n_frames()).sum();
+        let card = card(n_frames, presses.len(), &self.shapes, &taxels, &sha256(&array));
+        write_file(&folder.join("frames.npy"), &array)?;
+        Ok(write_file(&folder.join("CARD.md"), card.as_bytes())?)
+    }
+}
 
 impl Paper {
     /// Writes `frames.npy` and `CARD.md`: each frame of the bench beside what is simulated of it.
     pub(super) fn pairs(&self, data: &Run) -> Result<(), RunError> {
-        let inputs = self
-            .inputs()
-            .stage(&data.stage("pairs"))?
-            .stage(&data.stage("simulation"))?;
-        self.run_stage("pairs", inputs, |folder| {
-            let presses = data.pairs()?;
-            let split: Split = read_json(&data.stage("simulation").join("split.json"))?;
-            let part = |press: usize| {
-                let judges = u8::from(split.test.contains(&press));
-                let chooses = u8::from(split.validation.contains(&press));
-                2 * judges + chooses
-            };
-            let parts: Vec<u8> = (0..presses.len()).map(part).collect();
-            let taxels: Vec<String> = self.sensor.sensor.taxels.iter().map(|t| t.name.clone()).collect();
-            let shapes = self.shape_names();
-            let array = array(&presses, &columns(&taxels, shapes.clone(), parts));
-            let n_frames = presses.iter().map(|press| press.features.n_frames()).sum();
-            let card = card(n_frames, presses.len(), &shapes, &taxels, &sha256(&array));
-            write_file(&folder.join("frames.npy"), &array)?;
-            write_file(&folder.join("CARD.md"), card.as_bytes())
+        self.run_stage(&Frames {
+            taxels: self
+                .sensor
+                .sensor
+                .taxels
+                .iter()
+                .map(|taxel| &taxel.name)
+                .collect(),
+            shapes: self.shape_names(),
+            pairs: data.pairs()?,
+            simulation: data.simulation()?,
         })
+        .map(drop)
     }
 }
 

@@ -1,19 +1,21 @@
 //! Telling shapes by touch with few real presses and many simulated ones (the paper's section IV-C).
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use twintac_classify::{Classifier, Confusion, Progress, Sampling, Series, TrainSettings, Trial};
+use twintac_classify::{Classifier, Confusion, Sampling, Series, TrainSettings, Trial};
 use twintac_random::stream;
 use twintac_recording::Recording;
+use twintac_store::{Finished, Keyed, Recipe, Stage, Store, read_json, write_json};
 
-use super::experiments::Paper;
+use super::experiments::{PAPER_COMMAND, Paper};
 use super::mixture::{Mixture, Simulated};
-use crate::RunError;
-use crate::files::{read_json, write_json};
 use crate::progress::Work;
+use crate::stages::recordings::read_recording;
+use crate::{Progress, RunError};
 
 /// Few trials of the bench among many simulated ones are shown so often that there are no more than this many of those for each.
 const SIMULATED_PER_REAL: usize = 5;
@@ -34,6 +36,7 @@ pub struct ShapesResult {
 }
 
 /// A training to do.
+#[derive(Clone, Copy, Serialize)]
 struct Job {
     mixture: Mixture,
     seed: u64,
@@ -52,6 +55,118 @@ impl Job {
     }
 }
 
+/// All trainings.
+#[derive(Serialize)]
+struct Telling {
+    classes: Vec<String>,
+    settings: TrainSettings,
+    jobs: Vec<Job>,
+    /// Of the bench.
+    trials: Finished,
+    /// Of the twins.
+    simulated: Finished,
+}
+
+impl Stage for Telling {
+    const NAME: &'static str = "shapes";
+    const MADE_BY: &'static str = PAPER_COMMAND;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let by_load = self.sampled(Sampling::Load)?;
+        let by_time = self.sampled(Sampling::Time)?;
+        let work = Work::start(progress, "learning shapes", SAYINGS * self.jobs.len());
+        let store = Store::new(&folder.join("trainings"), Self::NAME);
+        let confusions: Vec<Confusion> = self
+            .jobs
+            .par_iter()
+            .with_max_len(1)
+            .map(|job| {
+                let n_said = AtomicUsize::new(0);
+                let kept = store.get(&Training {
+                    trials: match job.mixture.sampling {
+                        Sampling::Load => &by_load,
+                        Sampling::Time => &by_time,
+                    },
+                    n_classes: self.classes.len(),
+                    settings: &self.settings,
+                    job: *job,
+                    said: Said {
+                        work: &work,
+                        n_said: &n_said,
+                    },
+                })?;
+                (n_said.into_inner()..SAYINGS).for_each(|_| work.step(""));
+                Ok(kept.value)
+            })
+            .collect::<Result<_, RunError>>()?;
+        Ok(write_json(
+            &folder.join("result.json"),
+            &results(&self.jobs, confusions),
+        )?)
+    }
+}
+
+impl Telling {
+    /// The trials as series of one sampling.
+    fn sampled(&self, sampling: Sampling) -> Result<Keyed<Trials>, RunError> {
+        let read = |recording: Recording| trials_of(&recording, &self.classes, sampling);
+        let simulated = |simulated: Simulated| {
+            Ok::<_, RunError>(Recording::read_parquet(&self.simulated.file(&simulated.file()))?)
+        };
+        let trials = Trials {
+            real: read(read_recording(&self.trials)?),
+            twin: read(simulated(Simulated::Twin)?),
+            paper_twin: read(simulated(Simulated::PaperTwin)?),
+        };
+        let from = (&self.trials, &self.simulated, &self.classes, sampling);
+        Ok(Keyed::from_inputs(trials, &from)?)
+    }
+}
+
+/// One training and its test.
+#[derive(Serialize)]
+struct Training<'a> {
+    trials: &'a Keyed<Trials>,
+    n_classes: usize,
+    settings: &'a TrainSettings,
+    job: Job,
+    /// It hears, and nothing depends on it.
+    #[serde(skip)]
+    said: Said<'a>,
+}
+
+/// What was said of a training.
+struct Said<'a> {
+    work: &'a Work<'a>,
+    n_said: &'a AtomicUsize,
+}
+
+impl Recipe for Training<'_> {
+    type Value = Confusion;
+    type Error = RunError;
+
+    fn label(&self) -> String {
+        self.job.name()
+    }
+
+    fn make(&self) -> Result<Confusion, RunError> {
+        let (train, test) = self.trials.divide(self.n_classes, &self.job);
+        let (name, Said { work, n_said }) = (self.job.name(), &self.said);
+        let mut say = |progress: twintac_classify::Progress| {
+            let due = SAYINGS * progress.epoch / progress.of;
+            for _ in n_said.load(Ordering::Relaxed)..due {
+                work.step(&format!("{name}: loss {:.3}", progress.loss));
+            }
+            n_said.store(due, Ordering::Relaxed);
+        };
+        let seed = self.job.seed;
+        let classifier = Classifier::train(&train, self.n_classes, self.settings, seed, &mut say)?;
+        Ok(classifier.judge(&test))
+    }
+}
+
 /// The trials of the bench and of the twins, sampled one way.
 struct Trials {
     real: Vec<Trial>,
@@ -60,16 +175,6 @@ struct Trials {
 }
 
 impl Trials {
-    fn read(paper: &Paper, sampling: Sampling) -> Result<Self, RunError> {
-        let classes = paper.shape_names();
-        let read = |file: &str| trials_of(&paper.folder.join(file), &classes, sampling);
-        Ok(Self {
-            real: read("trials/recordings/presses.parquet")?,
-            twin: read("simulated/twin.parquet")?,
-            paper_twin: read("simulated/paper-twin.parquet")?,
-        })
-    }
-
     /// What to learn from, and what to test with. The bench's trials of each shape are halved anew for each seed: so many of the first half to learn
     /// from, all of the second to test with. The simulated ones are drawn anew as well.
     fn divide(&self, n_classes: usize, job: &Job) -> (Vec<Trial>, Vec<Trial>) {
@@ -104,62 +209,19 @@ impl Trials {
 
 impl Paper {
     /// Trains on real and simulated trials in every mixture, and tests on real ones.
-    pub(super) fn classify(&self) -> Result<Vec<ShapesResult>, RunError> {
-        let settings = self.effort.classifier();
-        let inputs = self
-            .inputs()
-            .settings("settings", &settings)?
-            .settings("effort", &self.effort)?
-            .stage(&self.folder.join("trials/recordings"))?
-            .stage(&self.folder.join("simulated"))?;
-        self.run_stage("shapes", inputs, |folder| {
-            let by_load = Trials::read(self, Sampling::Load)?;
-            let by_time = Trials::read(self, Sampling::Time)?;
-            let jobs = self.jobs();
-            let work = Work::start(self.progress(), "learning shapes", SAYINGS * jobs.len());
-            let confusions: Vec<Confusion> = jobs
-                .par_iter()
-                .with_max_len(1)
-                .map(|job| {
-                    let path = folder.join("trainings").join(job.name()).with_extension("json");
-                    if let Ok(confusion) = read_json(&path) {
-                        (0..SAYINGS).for_each(|_| work.step(""));
-                        return Ok(confusion);
-                    }
-                    let seen = match job.mixture.sampling {
-                        Sampling::Load => &by_load,
-                        Sampling::Time => &by_time,
-                    };
-                    let confusion = self.train(job, seen, &settings, &work)?;
-                    write_json(&path, &confusion)?;
-                    Ok(confusion)
-                })
-                .collect::<Result<_, RunError>>()?;
-            write_json(&folder.join("result.json"), &results(&jobs, confusions))
-        })?;
-        read_json(&self.folder.join("shapes/result.json"))
-    }
-
-    fn train(
+    pub(super) fn classify(
         &self,
-        job: &Job,
-        trials: &Trials,
-        settings: &TrainSettings,
-        work: &Work<'_>,
-    ) -> Result<Confusion, RunError> {
-        let n_classes = self.shape_names().len();
-        let (train, test) = trials.divide(n_classes, job);
-        let name = job.name();
-        let mut said = 0;
-        let mut say = |progress: Progress| {
-            let due = SAYINGS * progress.epoch / progress.of;
-            for _ in said..due {
-                work.step(&format!("{name}: loss {:.3}", progress.loss));
-            }
-            said = due;
-        };
-        let classifier = Classifier::train(&train, n_classes, settings, job.seed, &mut say)?;
-        Ok(classifier.judge(&test))
+        trials: Finished,
+        simulated: Finished,
+    ) -> Result<Vec<ShapesResult>, RunError> {
+        let finished = self.run_stage(&Telling {
+            classes: self.shape_names(),
+            settings: self.effort.classifier(),
+            jobs: self.jobs(),
+            trials,
+            simulated,
+        })?;
+        Ok(read_json(&finished.file("result.json"))?)
     }
 
     /// The shapes in the order of their classes.
@@ -177,16 +239,21 @@ impl Paper {
     }
 }
 
-/// The trials of a recording's presses, those of each shape in their order. A press that is not felt is left out.
-fn trials_of(file: &Path, classes: &[String], sampling: Sampling) -> Result<Vec<Trial>, RunError> {
-    let recording = Recording::read_parquet(file)?;
+/// The trials of a recording's presses, those of each shape in their order. A press that is not felt is left out, and one with missing readings.
+fn trials_of(recording: &Recording, classes: &[String], sampling: Sampling) -> Vec<Trial> {
     let trial = |press: &twintac_recording::Press| {
         Some(Trial {
             class: classes.iter().position(|class| *class == press.indenter)?,
-            series: Series::of(&press.taxels_kpa, sampling)?,
+            series: Series::of(whole(press)?, sampling)?,
         })
     };
-    Ok(recording.presses.iter().filter_map(trial).collect())
+    recording.presses.iter().filter_map(trial).collect()
+}
+
+/// The readings of a press that misses none.
+fn whole(press: &twintac_recording::Press) -> Option<&[Vec<f64>]> {
+    let is_whole = press.taxels_kpa.iter().flatten().all(|kpa| kpa.is_finite());
+    is_whole.then_some(&press.taxels_kpa)
 }
 
 fn results(jobs: &[Job], confusions: Vec<Confusion>) -> Vec<ShapesResult> {
@@ -195,12 +262,12 @@ fn results(jobs: &[Job], confusions: Vec<Confusion>) -> Vec<ShapesResult> {
         let accuracy = confusion.accuracy_percent();
         match results.last_mut().filter(|last| last.mixture == job.mixture) {
             Some(last) => {
-                last.accuracy_percent.push(accuracy);
+                last.accuracy_percent.extend(accuracy);
                 last.confusion.add(&confusion);
             }
             None => results.push(ShapesResult {
                 mixture: job.mixture,
-                accuracy_percent: vec![accuracy],
+                accuracy_percent: accuracy.into_iter().collect(),
                 confusion,
             }),
         }

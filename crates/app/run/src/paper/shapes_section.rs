@@ -204,6 +204,9 @@ fn mean(result: &ShapesResult) -> f64 {
 
 fn text(result: &ShapesResult) -> String {
     let (mean, n) = (mean(result), result.accuracy_percent.len());
+    if n == 0 {
+        return "none".to_owned();
+    }
     if n < 2 {
         return format!("{} %", fixed(mean, 1));
     }

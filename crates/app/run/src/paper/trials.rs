@@ -3,16 +3,19 @@
 use std::path::Path;
 
 use digitac::{Model, simulated_recording};
+use serde::Serialize;
 use twintac_protocol::{PressPlan, Protocol};
+use twintac_store::{Finished, Stage};
 
-use super::experiments::Paper;
+use super::experiments::{PAPER_COMMAND, Paper};
 use super::level::Level;
 use super::mixture::Simulated;
 use crate::built_in::{SHAPES_PROTOCOL, reality};
 use crate::depth_tables::DepthTableStore;
 use crate::model::gel_of;
 use crate::progress::Work;
-use crate::{Planned, Run, RunError};
+use crate::stages::training::COMPLETE;
+use crate::{Planned, Progress, Run, RunError};
 
 /// The simulated presses are drawn with another seed than the real ones.
 const SIMULATED_SEED: u64 = 1_000_000;
@@ -32,33 +35,53 @@ impl Paper {
         Planned::of(&protocol.with_random_places(n_trials), &self.sensor.sensor, seed)
     }
 
-    /// Presses that the twins of a run would feel.
-    pub(super) fn simulated(&self, data: &Run, level: &Level) -> Result<(), RunError> {
+    /// Presses that the twins of a run would feel; `paper_twin` is the stage of the paper's.
+    pub(super) fn simulated(
+        &self,
+        data: &Run,
+        paper_twin: Finished,
+        level: &Level,
+    ) -> Result<Finished, RunError> {
         let planned = self.shapes(self.effort.simulated_trials(), self.seed + SIMULATED_SEED)?;
         let felt: Vec<PressPlan> = planned.presses.iter().map(|plan| level.plan(plan)).collect();
-        let models = [
-            (Simulated::Twin, data.model_folder()),
-            (Simulated::PaperTwin, data.paper_twin_folder()),
-        ];
-        let mut inputs = self.inputs().settings("plans", &felt)?;
-        for (_, folder) in &models {
-            inputs = inputs
-                .file(&folder.join("weights.safetensors"))?
-                .file(&folder.join("twin.json"))?;
-        }
-        self.run_stage("simulated", inputs, |folder| {
-            let _work = Work::start(self.progress(), "simulating trials", 0);
-            for (simulated, model_folder) in &models {
-                let model = Model::load(model_folder)?;
-                let gel = gel_of(&model, model_folder)?;
-                let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress());
-                let rate_hz = gel.sensor().readout.rate_hz;
-                let bench = &model.record.bench;
-                let mut recording = simulated_recording(&model.twin, bench, &store, &felt, rate_hz)?;
-                recording.sensor.clone_from(&gel.sensor().name);
-                recording.write_parquet(&folder.join(simulated.name()).with_extension("parquet"))?;
-            }
-            Ok(())
+        self.run_stage(&SimulatedTrials {
+            felt: &felt,
+            training: data.training()?,
+            paper_twin,
         })
+    }
+}
+
+/// What the twins feel of the trials.
+#[derive(Serialize)]
+struct SimulatedTrials<'a> {
+    felt: &'a [PressPlan],
+    training: Finished,
+    paper_twin: Finished,
+}
+
+impl Stage for SimulatedTrials<'_> {
+    const NAME: &'static str = "simulated";
+    const MADE_BY: &'static str = PAPER_COMMAND;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let _work = Work::start(progress, "simulating trials", 0);
+        for (simulated, twins) in [
+            (Simulated::Twin, &self.training),
+            (Simulated::PaperTwin, &self.paper_twin),
+        ] {
+            let model_folder = twins.file(COMPLETE);
+            let model = Model::load(&model_folder)?;
+            let gel = gel_of(&model, &model_folder)?;
+            let (name, rate_hz) = (gel.sensor().name.clone(), gel.sensor().readout.rate_hz);
+            let store = DepthTableStore::of(gel, progress)?.kept_in(&folder.join("depth_tables"), Self::NAME);
+            let bench = &model.record.bench;
+            let mut recording = simulated_recording(&model.twin, bench, &store, self.felt, rate_hz)?;
+            recording.sensor = name;
+            recording.write_parquet(&folder.join(simulated.file()))?;
+        }
+        Ok(())
     }
 }

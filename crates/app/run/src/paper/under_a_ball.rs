@@ -1,13 +1,16 @@
 //! The sensor under a ball (the paper's section IV-A).
 
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 use twintac_characterize::{Characterization, KnownStep};
+use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
 
-use super::experiments::Paper;
+use super::experiments::{PAPER_COMMAND, Paper};
 use crate::built_in::{CHARACTERIZE_PROTOCOL, reality};
 use crate::characterization::Recorded;
-use crate::files::{read_json, write_json};
-use crate::{Planned, RunError};
+use crate::stages::recordings::read_recording;
+use crate::{Planned, Progress, RunError, SensorFile};
 
 /// The figures of the paper's characterization; `None` where the presses do not give one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,14 +50,35 @@ impl Paper {
         let planned = Planned::parse(protocol.name, protocol.text, sensor, self.seed)?;
         let run = self.run("under-a-ball", "presses and weights on the emulated bench")?;
         run.emulate(&reality(None)?, &planned)?;
-        let recordings = run.stage("recordings");
-        let inputs = self.inputs().stage(&recordings)?;
-        self.run_stage("characterization", inputs, |folder| {
-            let recorded = Recorded::read(&[recordings.join("presses.parquet")], self.progress())?;
-            let found = recorded.characterize(sensor)?;
-            recorded.write(&found, sensor, folder)?;
-            write_json(&folder.join("figures.json"), &SensorFigures::of(&found))
+        let finished = self.run_stage(&Characterizing {
+            sensor: &Keyed::of_bytes(self.sensor.clone(), self.sensor.text.as_bytes()),
+            recordings: run.recordings()?,
         })?;
-        read_json(&self.folder.join("characterization/figures.json"))
+        Ok(read_json(&finished.file("figures.json"))?)
+    }
+}
+
+/// What the sensor does under the ball.
+#[derive(Serialize)]
+struct Characterizing<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    recordings: Finished,
+}
+
+impl Stage for Characterizing<'_> {
+    const NAME: &'static str = "characterization";
+    const MADE_BY: &'static str = PAPER_COMMAND;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let sensor = &self.sensor.sensor;
+        let recorded = Recorded::from(read_recording(&self.recordings)?);
+        let found = recorded.characterize(sensor)?;
+        recorded.write(&found, sensor, folder)?;
+        Ok(write_json(
+            &folder.join("figures.json"),
+            &SensorFigures::of(&found),
+        )?)
     }
 }

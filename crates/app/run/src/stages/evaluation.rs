@@ -1,19 +1,19 @@
 //! Stage `evaluation`: the twin on presses that it never saw.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
-use digitac::{
-    Baselines, CertaintyScore, Evaluation, Model, PairedPress, Repeatability, Scale, evaluate, repeatability,
-    score_certainty,
-};
+use digitac::{Baselines, Evaluation, Model, Repeatability, Scale, evaluate, repeatability, score_certainty};
 use serde::{Deserialize, Serialize};
+use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
 
-use super::training::VariantRecord;
-use crate::error::At;
-use crate::files::{read_json, write_json};
-use crate::metrics::{self, Figures, Metrics, TwinFigures, baselines, names};
+use super::pairs::read_pairs;
+use super::simulation::{Simulation, contacts};
+use super::training::{HELD_OUT, VariantRecord};
+use crate::doubtful::left_out;
+use crate::metrics::{self, Figures, Metrics, TwinFigures, names};
 use crate::settings::ports_mm;
-use crate::{Run, RunError};
+use crate::{Progress, Run, RunError, RunSettings, SensorFile};
 
 /// What the evaluation stage left: `evaluation.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -24,112 +24,108 @@ pub(crate) struct HeldOut {
     pub(crate) repeatability: Option<Repeatability>,
 }
 
+#[derive(Serialize)]
+struct Evaluating<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    settings: &'a RunSettings,
+    seed: u64,
+    recordings: Finished,
+    simulation: Finished,
+    pairs: Finished,
+    training: Finished,
+}
+
+impl Stage for Evaluating<'_> {
+    const NAME: &'static str = "evaluation";
+    const MADE_BY: &'static str = "twintac evaluate";
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let sensor = &self.sensor.sensor;
+        let presses = read_pairs(&self.pairs)?;
+        let model = Model::load(&self.training.file(HELD_OUT))?;
+        let split = &model.record.split;
+        let teachers = [&split.train[..], &split.validation].concat();
+        let left_out = left_out(sensor);
+        let baselines = Baselines::fit(&presses, &teachers, &ports_mm(sensor), &left_out)?;
+        let scale = Scale::of(&presses, left_out.clone());
+        let evaluation = evaluate(&model.twin, &presses, &split.test, &scale, Some(&baselines));
+        let every_taxel = (!left_out.is_empty()).then(|| {
+            let scale = Scale::of(&presses, BTreeSet::new());
+            let all = evaluate(&model.twin, &presses, &split.test, &scale, None);
+            Figures::from(&all.twin.overall)
+        });
+        let repeatability = repeatability(&presses, &scale);
+        let certainty = match &model.record.certainty {
+            Some(certainty) => {
+                let simulation = Simulation::read(&self.simulation)?;
+                let contacts = contacts(&simulation.places, self.sensor, self.settings)?;
+                let (twin, places) = ((&model.twin, certainty), (&simulation.places, &contacts[..]));
+                Some(score_certainty(twin, &presses, places, &split.test, &scale))
+            }
+            None => None,
+        };
+        let variants: Vec<VariantRecord> = read_json(&self.training.file("variants.json"))?;
+        let metrics = Metrics {
+            sensor: sensor.name.clone(),
+            provenance: model.record.provenance,
+            definition: evaluation.twin.definition.clone(),
+            taxels_left_out: names(left_out, &evaluation.taxels),
+            variant: evaluation.variant.to_string(),
+            held_out_presses: evaluation.presses.len(),
+            twin: TwinFigures::new(&evaluation.twin, &evaluation.taxels),
+            twin_all_taxels: every_taxel,
+            baselines: metrics::baselines(&evaluation),
+            repeatability: metrics::repeatability(repeatability.as_ref()),
+            variants: variants
+                .iter()
+                .map(|v| (v.variant.to_string(), Figures::from(&v.test.overall)))
+                .collect(),
+            certainty,
+            seed: self.seed,
+        };
+        let held_out = HeldOut {
+            evaluation,
+            repeatability,
+        };
+        write_json(&folder.join("evaluation.json"), &held_out)?;
+        Ok(write_json(&folder.join("metrics.json"), &metrics)?)
+    }
+}
+
 impl Run {
     /// Judges the twin that was trained without the test presses on these, and says how well it did.
     ///
     /// # Errors
     /// No twin is trained yet.
     pub fn evaluate(&self) -> Result<Metrics, RunError> {
-        let inputs = self
-            .inputs()
-            .file(&self.folder.join("sensor.toml"))?
-            .stage(&self.stage("simulation"))?
-            .stage(&self.stage("pairs"))?
-            .stage(&self.stage("training"))?;
-        self.run_stage("evaluation", inputs, |folder| {
-            let presses = self.pairs()?;
-            let model = Model::load(&self.stage("training").join("held-out"))?;
-            let split = &model.record.split;
-            let teachers = [&split.train[..], &split.validation].concat();
-            let baselines = Baselines::fit(
-                &presses,
-                &teachers,
-                &ports_mm(&self.sensor.sensor),
-                &self.left_out(),
-            )?;
-            let scale = Scale::of(&presses, self.left_out());
-            let evaluation = evaluate(&model.twin, &presses, &split.test, &scale, Some(&baselines));
-            let every_taxel = (!self.left_out().is_empty()).then(|| {
-                let scale = Scale::of(&presses, BTreeSet::new());
-                Figures::from(
-                    &evaluate(&model.twin, &presses, &split.test, &scale, None)
-                        .twin
-                        .overall,
-                )
-            });
-            let repeatability = repeatability(&presses, &scale);
-            let certainty = self.certainty(&model, &presses, &scale)?;
-            let mut metrics = self.figures(&model, &evaluation, every_taxel, repeatability.as_ref())?;
-            metrics.certainty = certainty;
-            write_json(
-                &folder.join("evaluation.json"),
-                &HeldOut {
-                    evaluation,
-                    repeatability,
-                },
-            )?;
-            write_json(&folder.join("metrics.json"), &metrics)
-        })?;
-        self.metrics()
+        let finished = self.run_stage(&self.evaluating()?)?;
+        Ok(read_json(&finished.file("metrics.json"))?)
     }
 
-    /// Whether the twin's intervals hold on the presses that it never saw.
-    fn certainty(
-        &self,
-        model: &Model,
-        presses: &[PairedPress],
-        scale: &Scale,
-    ) -> Result<Option<CertaintyScore>, RunError> {
-        let Some(certainty) = &model.record.certainty else {
-            return Ok(None);
-        };
-        let simulation = self.simulation(&self.recording()?)?;
-        let contacts = self.contacts(&simulation.places)?;
-        let (twin, places) = ((&model.twin, certainty), (&simulation.places, &contacts[..]));
-        let test = &model.record.split.test;
-        Ok(Some(score_certainty(twin, presses, places, test, scale)))
+    fn evaluating(&self) -> Result<Evaluating<'_>, RunError> {
+        Ok(Evaluating {
+            sensor: self.keyed_sensor(),
+            settings: self.settings(),
+            seed: self.record().seed,
+            recordings: self.recordings()?,
+            simulation: self.simulation()?,
+            pairs: self.pairs()?,
+            training: self.training()?,
+        })
+    }
+
+    /// The evaluation, as it would be made now.
+    pub(crate) fn evaluation(&self) -> Result<Finished, RunError> {
+        Ok(self.stages().current(&self.evaluating()?)?)
     }
 
     /// The figures of the run: what `metrics.json` holds.
     ///
     /// # Errors
-    /// The run is not evaluated yet.
+    /// The run is not evaluated yet, or not as it is now.
     pub fn metrics(&self) -> Result<Metrics, RunError> {
-        let path = self.stage("evaluation").join("metrics.json");
-        read_json(&path).at(|| "run `twintac evaluate` first".to_owned())
-    }
-
-    fn figures(
-        &self,
-        model: &Model,
-        evaluation: &Evaluation,
-        every_taxel: Option<Figures>,
-        repeatability: Option<&Repeatability>,
-    ) -> Result<Metrics, RunError> {
-        let variants: Vec<VariantRecord> = read_json(&self.stage("training").join("variants.json"))?;
-        Ok(Metrics {
-            sensor: self.record.sensor.clone(),
-            provenance: model.record.provenance,
-            definition: evaluation.twin.definition.clone(),
-            taxels_left_out: names(self.left_out(), &evaluation.taxels),
-            variant: evaluation.variant.to_string(),
-            held_out_presses: evaluation.presses.len(),
-            twin: TwinFigures::new(&evaluation.twin, &evaluation.taxels),
-            twin_all_taxels: every_taxel,
-            baselines: baselines(evaluation),
-            repeatability: metrics::repeatability(repeatability),
-            variants: variants
-                .iter()
-                .map(|v| (v.variant.to_string(), Figures::from(&v.test.overall)))
-                .collect(),
-            certainty: None,
-            seed: self.record.seed,
-        })
-    }
-
-    /// What the evaluation stage left.
-    pub(crate) fn held_out(&self) -> Result<HeldOut, RunError> {
-        let path = self.stage("evaluation").join("evaluation.json");
-        read_json(&path).at(|| "run `twintac evaluate` first".to_owned())
+        Ok(read_json(&self.evaluation()?.file("metrics.json"))?)
     }
 }

@@ -1,7 +1,8 @@
-//! The stages of a run, a file each.
+//! The stages of a run, a file each. What a stage depends on are the fields of its struct.
 
-mod evaluation;
-mod pairs;
+pub(crate) mod evaluation;
+mod meshing;
+pub(crate) mod pairs;
 pub(crate) mod recordings;
-mod simulation;
+pub(crate) mod simulation;
 pub(crate) mod training;

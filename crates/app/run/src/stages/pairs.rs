@@ -1,10 +1,48 @@
 //! Stage `pairs`: measured and simulated frames on one clock.
 
-use digitac::{PairedPress, pair};
+use std::path::Path;
 
-use crate::error::At;
-use crate::files::{read_json, write_json};
-use crate::{Run, RunError};
+use digitac::{PairSettings, PairedPress, pair};
+use serde::Serialize;
+use twintac_store::{Finished, Stage, read_json, write_json};
+
+use super::recordings::read_recording;
+use super::simulation::Simulation;
+use crate::{Progress, Run, RunError};
+
+#[derive(Serialize)]
+struct Pairing<'a> {
+    settings: &'a PairSettings,
+    recordings: Finished,
+    simulation: Finished,
+}
+
+impl Stage for Pairing<'_> {
+    const NAME: &'static str = "pairs";
+    const MADE_BY: &'static str = "twintac align";
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let recording = read_recording(&self.recordings)?;
+        let simulation = Simulation::read(&self.simulation)?;
+        let Simulation {
+            places,
+            tables,
+            bench,
+            ..
+        } = &simulation;
+        let pairs = pair(&recording, places, tables, bench, self.settings)?;
+        write_json(&folder.join("paired.json"), &pairs)?;
+        twintac_report::warp_plot(&pairs).write(&folder.join("warps.svg"))?;
+        Ok(())
+    }
+}
+
+/// The paired presses that the stage left.
+pub(crate) fn read_pairs(stage: &Finished) -> Result<Vec<PairedPress>, RunError> {
+    Ok(read_json(&stage.file("paired.json"))?)
+}
 
 impl Run {
     /// Aligns every press with its simulation, and pairs their frames.
@@ -12,29 +50,19 @@ impl Run {
     /// # Errors
     /// The recordings or their simulations are not there yet.
     pub fn pair(&self) -> Result<(), RunError> {
-        let inputs = self
-            .inputs()
-            .settings("pair", &self.record.settings.pair)?
-            .stage(&self.stage("recordings"))?
-            .stage(&self.stage("simulation"))?;
-        self.run_stage("pairs", inputs, |folder| {
-            let recording = self.recording()?;
-            let simulation = self.simulation(&recording)?;
-            let pairs = pair(
-                &recording,
-                &simulation.places,
-                &simulation.tables,
-                &simulation.bench,
-                &self.record.settings.pair,
-            )?;
-            write_json(&folder.join("paired.json"), &pairs)?;
-            twintac_report::warp_plot(&pairs).write(&folder.join("warps.svg"))?;
-            Ok(())
+        self.run_stage(&self.pairing()?).map(drop)
+    }
+
+    fn pairing(&self) -> Result<Pairing<'_>, RunError> {
+        Ok(Pairing {
+            settings: &self.record().settings.pair,
+            recordings: self.recordings()?,
+            simulation: self.simulation()?,
         })
     }
 
-    /// The paired presses.
-    pub(crate) fn pairs(&self) -> Result<Vec<PairedPress>, RunError> {
-        read_json(&self.stage("pairs").join("paired.json")).at(|| "run `twintac align` first".to_owned())
+    /// The stage of paired presses, as it would be made now.
+    pub(crate) fn pairs(&self) -> Result<Finished, RunError> {
+        Ok(self.stages().current(&self.pairing()?)?)
     }
 }

@@ -5,34 +5,273 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use serde::de::DeserializeOwned;
-use twintac_lab::{Lab, LabError, LiveTable, Reality};
+use twintac_lab::{Lab, LiveTable, Reality};
 use twintac_log::ReadOptions;
-use twintac_protocol::PressPlan;
-use twintac_recording::{Import, ImportSummary, Recording};
+use twintac_protocol::{LoadPlan, PressPlan};
+use twintac_recording::{Import, ImportSummary, Press, Recording};
+use twintac_sensor::Sensor;
+use twintac_store::{Digest, Finished, Keyed, Recipe, Stage, Store, StoreError, read_json, write_json};
 
 use crate::error::At;
-use crate::files::{read_json, read_text, write_json};
+use crate::files::read_text;
 use crate::progress::Work;
-use crate::{Planned, Progress, Run, RunError};
+use crate::{Planned, Progress, Run, RunError, SensorFile};
+
+/// What the stage is called, and how people make it.
+const RECORDINGS: (&str, &str) = ("recordings", "twintac import` or `twintac record");
+
+/// The file of the presses.
+const PRESSES: &str = "presses.parquet";
+
+/// The presses that the stage left.
+pub(crate) fn read_recording(stage: &Finished) -> Result<Recording, RunError> {
+    Ok(Recording::read_parquet(&stage.file(PRESSES))?)
+}
+
+/// A file that is read. Its name is that of a mounting. Where it lies does not count: the digest tells what is in it.
+#[derive(Serialize)]
+struct LabFile<'a> {
+    name: String,
+    sha256: Digest,
+    #[serde(skip)]
+    path: &'a PathBuf,
+}
+
+/// Presses from files of any laboratory.
+#[derive(Serialize)]
+struct Importing<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    import: Keyed<Import>,
+    files: Vec<LabFile<'a>>,
+}
+
+impl Stage for Importing<'_> {
+    const NAME: &'static str = RECORDINGS.0;
+    const MADE_BY: &'static str = RECORDINGS.1;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let files: Vec<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
+        let (recording, summary) = self.import.read_all(&files)?;
+        check_sensor(&self.sensor.sensor, &recording)?;
+        recording.write_parquet(&folder.join(PRESSES))?;
+        Ok(write_json(&folder.join("summary.json"), &summary)?)
+    }
+}
+
+/// Presses and weights on the emulated bench at once.
+#[derive(Serialize)]
+struct Emulating<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    reality: &'a Reality,
+    plans: &'a [PressPlan],
+    loads: &'a [LoadPlan],
+}
+
+impl Stage for Emulating<'_> {
+    const NAME: &'static str = RECORDINGS.0;
+    const MADE_BY: &'static str = RECORDINGS.1;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let lab = keyed_lab(self.sensor, self.reality)?;
+        let store = Store::new(&folder.join("presses"), Self::NAME);
+        let presses = |plan| EmulatedPress { lab: &lab, plan };
+        let mut presses = all(progress, "recording", &store, self.plans.iter().map(presses))?;
+        let weighing = |load| EmulatedLoad { lab: &lab, load };
+        presses.extend(all(
+            progress,
+            "weighing",
+            &store,
+            self.loads.iter().map(weighing),
+        )?);
+        lab.recording(presses).write_parquet(&folder.join(PRESSES))?;
+        write_json(&folder.join("plans.json"), &self.plans)?;
+        if !self.loads.is_empty() {
+            write_json(&folder.join("loads.json"), &self.loads)?;
+        }
+        Ok(())
+    }
+}
+
+/// The laboratory follows from the sensor and the reality.
+fn keyed_lab(sensor: &Keyed<SensorFile>, reality: &Reality) -> Result<Keyed<Lab>, RunError> {
+    let lab = Lab::new(Arc::clone(&sensor.sensor), reality.clone())?;
+    Ok(Keyed::from_inputs(lab, &(sensor, reality))?)
+}
+
+#[derive(Serialize)]
+struct EmulatedPress<'a> {
+    lab: &'a Keyed<Lab>,
+    plan: &'a PressPlan,
+}
+
+impl Recipe for EmulatedPress<'_> {
+    type Value = Press;
+    type Error = RunError;
+
+    fn label(&self) -> String {
+        self.plan.name.clone()
+    }
+
+    fn make(&self) -> Result<Press, RunError> {
+        Ok(self.lab.press(self.plan)?)
+    }
+}
+
+#[derive(Serialize)]
+struct EmulatedLoad<'a> {
+    lab: &'a Keyed<Lab>,
+    load: &'a LoadPlan,
+}
+
+impl Recipe for EmulatedLoad<'_> {
+    type Value = Press;
+    type Error = RunError;
+
+    fn label(&self) -> String {
+        self.load.name.clone()
+    }
+
+    fn make(&self) -> Result<Press, RunError> {
+        Ok(self.lab.load(self.load)?)
+    }
+}
+
+/// What the emulated gel answers at the places of planned presses.
+#[derive(Serialize)]
+struct LiveTables<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    reality: &'a Reality,
+    plans: &'a [PressPlan],
+}
+
+/// The tables that the stage left, in the order of the plans.
+const TABLES: &str = "tables.json";
+
+impl Stage for LiveTables<'_> {
+    const NAME: &'static str = "lab";
+    const MADE_BY: &'static str = RECORDINGS.1;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let lab = keyed_lab(self.sensor, self.reality)?;
+        let store = Store::new(&folder.join("places"), Self::NAME);
+        let recipes = self.plans.iter().map(|plan| LiveTableAt { lab: &lab, plan });
+        let tables = all(progress, "computing", &store, recipes)?;
+        Ok(write_json(&folder.join(TABLES), &tables)?)
+    }
+}
+
+#[derive(Serialize)]
+struct LiveTableAt<'a> {
+    lab: &'a Keyed<Lab>,
+    plan: &'a PressPlan,
+}
+
+impl Recipe for LiveTableAt<'_> {
+    type Value = LiveTable;
+    type Error = RunError;
+
+    fn label(&self) -> String {
+        self.plan.name.clone()
+    }
+
+    fn make(&self) -> Result<LiveTable, RunError> {
+        Ok(self.lab.live_table(self.plan)?)
+    }
+}
+
+/// Presses from the logs of a bench.
+#[derive(Serialize)]
+struct Collecting<'a> {
+    sensor: &'a Keyed<SensorFile>,
+    plans: &'a [PressPlan],
+    logs: Vec<LabFile<'a>>,
+}
+
+impl Stage for Collecting<'_> {
+    const NAME: &'static str = RECORDINGS.0;
+    const MADE_BY: &'static str = RECORDINGS.1;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let mut recording: Option<Recording> = None;
+        let mut remarks = Vec::new();
+        for LabFile { path, name, .. } in &self.logs {
+            let mut read = twintac_log::read_presses(path, &ReadOptions::default())?;
+            for press in &mut read.recording.presses {
+                // Every press has a log of its own; what they share is how the indenter was mounted.
+                press.mounting.clone_from(&press.indenter);
+            }
+            remarks.extend(read.remarks.into_iter().map(|remark| (name.clone(), remark)));
+            match &mut recording {
+                None => recording = Some(read.recording),
+                Some(recording) => recording
+                    .append(read.recording)
+                    .at(|| path.display().to_string())?,
+            }
+        }
+        let recording = recording.ok_or_else(|| RunError::Input("no press is done".to_owned()))?;
+        check_sensor(&self.sensor.sensor, &recording)?;
+        recording.write_parquet(&folder.join(PRESSES))?;
+        write_json(&folder.join("plans.json"), &self.plans)?;
+        Ok(write_json(&folder.join("remarks.json"), &remarks)?)
+    }
+}
+
+/// How the recordings of another run are changed. Its fields are all that the change depends on.
+pub(crate) trait Change: Serialize {
+    fn changed(&self, recording: Recording) -> Recording;
+}
+
+/// The recordings of another run, changed.
+#[derive(Serialize)]
+struct Taking<'a, C> {
+    sensor: &'a Keyed<SensorFile>,
+    recordings: Finished,
+    change: &'a C,
+}
+
+impl<C: Change> Stage for Taking<'_, C> {
+    const NAME: &'static str = RECORDINGS.0;
+    const MADE_BY: &'static str = RECORDINGS.1;
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+        let changed = self.change.changed(read_recording(&self.recordings)?);
+        Ok(changed.write_parquet(&folder.join(PRESSES))?)
+    }
+}
 
 impl Run {
+    /// The presses, as recorded.
+    ///
+    /// # Errors
+    /// There are none yet, they are of another sensor than the run, or they cannot be read.
+    pub fn recording(&self) -> Result<Recording, RunError> {
+        read_recording(&self.recordings()?)
+    }
+
     /// Makes the run's recordings of files of any laboratory, which the description `import` says how to read. All of them must belong to
     /// the run's sensor.
     ///
     /// # Errors
     /// A file that cannot be read as described, or that is of another sensor.
     pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<(), RunError> {
-        let mut inputs = self.inputs().file(import)?;
-        for file in files {
-            inputs = inputs.file(file)?;
-        }
-        self.run_stage("recordings", inputs, |folder| {
-            let (recording, summary) = import_files(import, files)?;
-            self.check_sensor(&recording)?;
-            recording.write_parquet(&folder.join("presses.parquet"))?;
-            write_json(&folder.join("summary.json"), &summary)
+        let text = read_text(import)?;
+        let description = Import::parse(&import.display().to_string(), &text)?;
+        self.run_stage(&Importing {
+            sensor: self.keyed_sensor(),
+            import: Keyed::of_bytes(description, text.as_bytes()),
+            files: lab_files(files)?,
         })
+        .map(drop)
     }
 
     /// Computes what the emulated bench would record of planned presses and weights, without devices and without waiting. Each is kept as
@@ -41,92 +280,40 @@ impl Run {
     /// # Errors
     /// A press that the gel cannot carry out.
     pub fn emulate(&self, reality: &Reality, planned: &Planned) -> Result<(), RunError> {
-        let Planned {
-            presses: plans,
-            loads,
-        } = planned;
-        let inputs = self
-            .inputs()
-            .settings("reality", reality)?
-            .settings("plans", &plans)?
-            .settings("loads", &loads)?
-            .file(&self.folder.join("sensor.toml"))?;
-        self.run_stage("recordings", inputs, |folder| {
-            let lab = Lab::new(Arc::clone(&self.sensor.sensor), reality.clone())?;
-            let keep = folder.join("presses");
-            let mut presses = kept(
-                self.progress(),
-                "recording",
-                plans,
-                |plan| &plan.name,
-                &keep,
-                |plan| lab.press(plan),
-            )?;
-            presses.extend(kept(
-                self.progress(),
-                "weighing",
-                loads,
-                |load| &load.name,
-                &keep,
-                |load| lab.load(load),
-            )?);
-            let recording = lab.recording(presses);
-            recording.write_parquet(&folder.join("presses.parquet"))?;
-            write_json(&folder.join("plans.json"), &plans)?;
-            if loads.is_empty() {
-                return Ok(());
-            }
-            write_json(&folder.join("loads.json"), &loads)
+        self.run_stage(&Emulating {
+            sensor: self.keyed_sensor(),
+            reality,
+            plans: &planned.presses,
+            loads: &planned.loads,
         })
+        .map(drop)
     }
 
-    /// Takes the recordings of another run, changed; `how` is what the change depends on.
+    /// Takes the recordings of another run, changed.
     ///
     /// # Errors
     /// The other run has no recordings; a file that cannot be written.
-    pub(crate) fn take(
-        &self,
-        other: &Self,
-        how: &impl Serialize,
-        change: impl FnOnce(Recording) -> Recording,
-    ) -> Result<(), RunError> {
-        let inputs = self.inputs().settings("change", how)?;
-        self.run_stage(
-            "recordings",
-            inputs.stage(&other.stage("recordings"))?,
-            |folder| {
-                let changed = change(other.recording()?);
-                Ok(changed.write_parquet(&folder.join("presses.parquet"))?)
-            },
-        )
+    pub(crate) fn take(&self, other: &Self, change: &impl Change) -> Result<(), RunError> {
+        self.run_stage(&Taking {
+            sensor: self.keyed_sensor(),
+            recordings: other.recordings()?,
+            change,
+        })
+        .map(drop)
     }
 
     /// What the emulated gel answers at the places of the plans, each kept as soon as it is computed.
     pub(crate) fn live_tables(
         &self,
-        lab: &Lab,
         reality: &Reality,
         plans: &[PressPlan],
     ) -> Result<Vec<LiveTable>, RunError> {
-        let inputs = self
-            .inputs()
-            .settings("reality", reality)?
-            .settings("plans", &plans)?
-            .file(&self.folder.join("sensor.toml"))?;
-        self.run_stage("lab", inputs, |folder| {
-            kept(
-                self.progress(),
-                "computing",
-                plans,
-                |plan| &plan.name,
-                folder,
-                |plan| lab.live_table(plan),
-            )
-            .map(|_| ())
+        let finished = self.run_stage(&LiveTables {
+            sensor: self.keyed_sensor(),
+            reality,
+            plans,
         })?;
-        let folder = self.stage("lab");
-        let table = |plan: &PressPlan| read_json(&kept_in(&folder, &plan.name));
-        plans.iter().map(table).collect()
+        Ok(read_json(&finished.file(TABLES))?)
     }
 
     /// Makes the run's recordings of the logs of its presses, as far as they are done.
@@ -135,52 +322,85 @@ impl Run {
     /// Logs that cannot be read or are of another sensor; none at all.
     pub fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<(), RunError> {
         let files = twintac_press::done_logs(logs, plans)?;
-        let mut inputs = self.inputs();
-        for file in &files {
-            inputs = inputs.file(file)?;
-        }
-        self.run_stage("recordings", inputs, |folder| {
-            let mut recording: Option<Recording> = None;
-            let mut remarks = Vec::new();
-            for file in &files {
-                let mut read = twintac_log::read_presses(file, &ReadOptions::default())?;
-                for press in &mut read.recording.presses {
-                    // Every press has a log of its own; what they share is how the indenter was mounted.
-                    press.mounting.clone_from(&press.indenter);
-                }
-                remarks.extend(read.remarks.into_iter().map(|remark| (file.clone(), remark)));
-                match &mut recording {
-                    None => recording = Some(read.recording),
-                    Some(recording) => recording
-                        .append(read.recording)
-                        .at(|| file.display().to_string())?,
-                }
-            }
-            let recording = recording.ok_or_else(|| RunError::Input("no press is done".to_owned()))?;
-            self.check_sensor(&recording)?;
-            recording.write_parquet(&folder.join("presses.parquet"))?;
-            write_json(&folder.join("plans.json"), &plans)?;
-            write_json(&folder.join("remarks.json"), &remarks)
+        self.run_stage(&Collecting {
+            sensor: self.keyed_sensor(),
+            plans,
+            logs: lab_files(&files)?,
         })
+        .map(drop)
     }
 
-    fn check_sensor(&self, recording: &Recording) -> Result<(), RunError> {
-        let sensor = &self.sensor.sensor;
-        if recording.sensor != sensor.name {
-            return Err(RunError::Input(format!(
-                "the recordings are of sensor `{}`, the description is of `{}`",
-                recording.sensor, sensor.name
-            )));
+    /// The recordings, of the sensor as it is described now.
+    pub(crate) fn recordings(&self) -> Result<Finished, RunError> {
+        let (name, made_by) = RECORDINGS;
+        let finished = self.stages().finished(name, made_by).map_err(StoreError::from)?;
+        let sensor = Digest::of_value(self.keyed_sensor()).ok();
+        if finished.made_from().part("sensor") == sensor {
+            return Ok(finished);
         }
-        let taxels: Vec<&String> = sensor.taxels.iter().map(|taxel| &taxel.name).collect();
-        if !recording.taxels.iter().eq(taxels.iter().copied()) {
-            return Err(RunError::Input(format!(
-                "the recordings have taxels {:?}, the description has {taxels:?}",
-                recording.taxels
-            )));
-        }
-        Ok(())
+        Err(RunError::Input(format!(
+            "{}: the recordings were made for another description of the sensor; make them again with `{made_by}`",
+            self.folder().display()
+        )))
     }
+}
+
+fn lab_files(files: &[PathBuf]) -> Result<Vec<LabFile<'_>>, RunError> {
+    let files = files.iter().map(|path| {
+        Ok(LabFile {
+            name: path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            sha256: Digest::of_file(path)?,
+            path,
+        })
+    });
+    files.collect()
+}
+
+fn check_sensor(sensor: &Sensor, recording: &Recording) -> Result<(), RunError> {
+    if recording.sensor != sensor.name {
+        return Err(RunError::Input(format!(
+            "the recordings are of sensor `{}`, the description is of `{}`",
+            recording.sensor, sensor.name
+        )));
+    }
+    let taxels: Vec<&String> = sensor.taxels.iter().map(|taxel| &taxel.name).collect();
+    if !recording.taxels.iter().eq(taxels.iter().copied()) {
+        return Err(RunError::Input(format!(
+            "the recordings have taxels {:?}, the description has {taxels:?}",
+            recording.taxels
+        )));
+    }
+    Ok(())
+}
+
+/// All values, made over all cores.
+fn all<R>(
+    progress: &dyn Progress,
+    work: &str,
+    store: &Store,
+    recipes: impl ExactSizeIterator<Item = R>,
+) -> Result<Vec<R::Value>, RunError>
+where
+    R: Recipe<Error = RunError> + Sync + Send,
+    R::Value: Send,
+{
+    let work = Work::start(progress, work, recipes.len());
+    let recipes: Vec<R> = recipes.collect();
+    recipes
+        .par_iter()
+        .with_max_len(1)
+        .map(|recipe| {
+            work.go_on()?;
+            let kept = store.get(recipe)?;
+            kept.made_again.iter().for_each(|why| progress.note(why));
+            work.step("");
+            Ok(kept.value)
+        })
+        .collect()
 }
 
 /// Reads files of a laboratory as the description `import` says.
@@ -212,38 +432,4 @@ pub fn read_recordings(files: &[PathBuf]) -> Result<Recording, RunError> {
         }
     }
     all.ok_or_else(|| RunError::Input("there are no recordings".to_owned()))
-}
-
-/// Makes something of each of `plans` over all cores; what `folder` already holds is not made again.
-fn kept<P: Sync, T: Serialize + DeserializeOwned + Send>(
-    progress: &dyn Progress,
-    work: &str,
-    plans: &[P],
-    name: impl Fn(&P) -> &String + Sync,
-    folder: &Path,
-    make: impl Fn(&P) -> Result<T, LabError> + Sync,
-) -> Result<Vec<T>, RunError> {
-    let work = Work::start(progress, work, plans.len());
-    plans
-        .par_iter()
-        .with_max_len(1)
-        .map(|plan| -> Result<T, RunError> {
-            work.go_on()?;
-            let path = kept_in(folder, name(plan));
-            let made = match read_json(&path) {
-                Ok(made) => made,
-                Err(_) => {
-                    let made = make(plan)?;
-                    write_json(&path, &made)?;
-                    made
-                }
-            };
-            work.step("");
-            Ok(made)
-        })
-        .collect()
-}
-
-fn kept_in(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{}.json", name.replace('#', "-")))
 }

@@ -1,16 +1,78 @@
-//! Stages `mesh` and `simulation`: the gel, the bench's unknowns, and a table over depth for each place.
+//! Stage `simulation`: the bench's unknowns, and a table over depth for each place.
 
-use digitac::{BenchEstimate, Places, Split, fit_bench, refine_bench};
+use std::path::Path;
+
+use digitac::{BenchEstimate, Contact, Places, Split, fit_bench, refine_bench};
+use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::Recording;
+use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
 
+use super::recordings::read_recording;
 use crate::depth_tables::DepthTableStore;
-use crate::fast::FAST_GEL;
-use crate::files::{read_json, write_json};
-use crate::mesh::{Fineness, MeshedGel};
-use crate::progress::{Silent, Work};
-use crate::settings::is_static;
-use crate::{Run, RunError, RunSettings};
+use crate::fast::tables::FastTables;
+use crate::progress::Work;
+use crate::run::gel_of;
+use crate::settings::ResolvedSettings;
+use crate::{Progress, Run, RunError, RunSettings, SensorFile};
+
+/// What stages after the recordings depend on.
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct Setup<'a> {
+    pub(crate) sensor: &'a Keyed<SensorFile>,
+    /// Each of its tables is an input.
+    #[serde(flatten)]
+    pub(crate) settings: &'a RunSettings,
+    pub(crate) seed: u64,
+    pub(crate) fast: Option<&'a Keyed<FastTables>>,
+}
+
+impl Setup<'_> {
+    /// The settings for the sensor, its presses and the seed: what stages compute from.
+    pub(crate) fn resolved(&self, recording: &Recording) -> Result<ResolvedSettings, RunError> {
+        let sensor = &self.sensor.sensor;
+        let is_fast = self.fast.is_some();
+        Ok(self.settings.resolve(sensor, recording, self.seed, is_fast)?)
+    }
+}
+
+#[derive(Serialize)]
+struct Simulating<'a> {
+    #[serde(flatten)]
+    setup: Setup<'a>,
+    recordings: Finished,
+}
+
+impl Stage for Simulating<'_> {
+    const NAME: &'static str = "simulation";
+    const MADE_BY: &'static str = "twintac align";
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let setup = &self.setup;
+        let recording = read_recording(&self.recordings)?;
+        let gel = gel_of(setup.sensor, setup.settings);
+        let _work = Work::start(progress, "simulating", 0);
+        let store = DepthTableStore::of(gel, progress)?
+            .kept_in(&folder.join("depth_tables"), Self::NAME)
+            .with_fast(setup.fast.map(|fast| &**fast));
+        let settings = setup.resolved(&recording)?;
+        let places = Places::of(&recording, &store, &settings.places)?;
+        let split = Split::new(&recording, &settings.split, settings.seed)?;
+        let teachers = [&split.train[..], &split.validation].concat();
+        let (how, taxels) = (&settings.bench, &settings.taxels);
+        let bench = fit_bench(&recording, &places, &teachers, &store, how, taxels)?;
+        let places = places.at_bench(&bench);
+        let tables = store.depth_tables(&places.requests)?;
+        let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, how, taxels)?;
+        write_json(&folder.join("split.json"), &split)?;
+        write_json(&folder.join("bench.json"), &bench)?;
+        write_json(&folder.join("places.json"), &places)?;
+        write_json(&folder.join("tables.json"), &tables)?;
+        Ok(())
+    }
+}
 
 /// What the simulation stage left.
 pub(crate) struct Simulation {
@@ -24,84 +86,56 @@ pub(crate) struct Simulation {
     pub(crate) tables: Vec<DepthTable>,
 }
 
-impl Run {
-    /// Meshes the gel as it stands, for people to look at; presses refine it where they touch.
-    ///
-    /// # Errors
-    /// A gel that cannot be meshed; a folder that cannot be written.
-    pub fn mesh(&self) -> Result<(), RunError> {
-        let settings = &self.record.settings.simulate;
-        let inputs = self
-            .inputs()
-            .settings("simulate", settings)?
-            .file(&self.folder.join("sensor.toml"))?;
-        self.run_stage("mesh", inputs, |folder| {
-            let gel = self.gel();
-            let edge_mm = gel.height_mm() / settings.edges_per_height;
-            MeshedGel::of(gel.sensor(), Fineness::EdgeMm(edge_mm))?.write(folder)
+impl Simulation {
+    pub(crate) fn read(stage: &Finished) -> Result<Self, RunError> {
+        Ok(Self {
+            split: read_json(&stage.file("split.json"))?,
+            bench: read_json(&stage.file("bench.json"))?,
+            places: read_json(&stage.file("places.json"))?,
+            tables: read_json(&stage.file("tables.json"))?,
         })
     }
+}
 
+/// Where and with what the places are touched; `[n_places]`.
+pub(crate) fn contacts(
+    places: &Places,
+    sensor: &SensorFile,
+    settings: &RunSettings,
+) -> Result<Vec<Contact>, RunError> {
+    Ok(Contact::of_places(places, &gel_of(sensor, settings))?)
+}
+
+impl Run {
     /// Fits what is unknown about the bench to training presses, and simulates the gel at every place that was pressed.
     ///
     /// # Errors
     /// There are no recordings yet; a place that cannot be pressed.
     pub fn simulate(&self) -> Result<(), RunError> {
-        let mut inputs = self
-            .inputs()
-            .settings("settings", &self.record.settings)?
-            .settings("seed", &self.record.seed)?
-            .file(&self.folder.join("sensor.toml"))?
-            .stage(&self.stage("recordings"))?;
-        let fast = self.fast()?;
-        if fast.is_some() {
-            inputs = inputs.file(&self.folder.join(FAST_GEL))?;
+        self.run_stage(&self.simulating()?).map(drop)
+    }
+
+    pub(crate) fn setup(&self) -> Setup<'_> {
+        Setup {
+            sensor: self.keyed_sensor(),
+            settings: self.settings(),
+            seed: self.record().seed,
+            fast: self.fast(),
         }
-        self.run_stage("simulation", inputs, |folder| {
-            let recording = self.recording()?;
-            let gel = self.gel();
-            let _work = Work::start(self.progress(), "simulating", 0);
-            let store = DepthTableStore::new(&gel, folder.join("depth_tables"), self.progress())
-                .with_fast(fast.as_ref());
-            let places = Places::of(&recording, &store, &self.record.settings.places)?;
-            let settings = self.resolved(&recording, &places);
-            let split = Split::new(&recording, &settings.split)?;
-            let teachers = [&split.train[..], &split.validation].concat();
-            let bench = fit_bench(&recording, &places, &teachers, &store, &settings.bench)?;
-            let places = places.at_bench(&bench);
-            let tables = store.depth_tables(&places.requests)?;
-            let bench = refine_bench(&recording, &places, &tables, &teachers, &bench, &settings.bench)?;
-            write_json(&folder.join("split.json"), &split)?;
-            write_json(&folder.join("bench.json"), &bench)?;
-            write_json(&folder.join("places.json"), &tables)?;
-            Ok(())
+    }
+
+    fn simulating(&self) -> Result<Simulating<'_>, RunError> {
+        Ok(Simulating {
+            setup: Setup {
+                settings: self.simulation_settings(),
+                ..self.setup()
+            },
+            recordings: self.recordings()?,
         })
     }
 
-    /// What the simulation stage left.
-    pub(crate) fn simulation(&self, recording: &Recording) -> Result<Simulation, RunError> {
-        let folder = self.stage("simulation");
-        let bench: BenchEstimate = read_json(&folder.join("bench.json"))?;
-        let gel = self.gel();
-        let store = DepthTableStore::new(&gel, folder.join("depth_tables"), &Silent);
-        let places = Places::of(recording, &store, &self.record.settings.places)?.at_bench(&bench);
-        Ok(Simulation {
-            split: read_json(&folder.join("split.json"))?,
-            bench,
-            places,
-            tables: read_json(&folder.join("places.json"))?,
-        })
-    }
-
-    /// The settings with what depends on sensor and presses filled in.
-    pub(crate) fn resolved(&self, recording: &Recording, places: &Places) -> RunSettings {
-        let n_places = if is_static(recording) {
-            places.requests.len()
-        } else {
-            0
-        };
-        self.record
-            .settings
-            .resolve(&self.sensor.sensor, recording, n_places, self.record.seed)
+    /// The simulation stage, as it would be made now.
+    pub(crate) fn simulation(&self) -> Result<Finished, RunError> {
+        Ok(self.stages().current(&self.simulating()?)?)
     }
 }

@@ -1,23 +1,24 @@
 //! Stage `training`: every variant of the twin, the one that validation presses choose, and that one again on all presses.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use digitac::{
-    BenchSettings, Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale,
-    Score, Split, TrainSettings, Trained, Variant, calibrate,
+    Certainty, Contact, Epoch, Lessons, Model, Origin, PairedPress, Progress as Step, Scale, Score, Split,
+    TrainSettings, Trained, TrainedWith, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
 use twintac_recording::Recording;
+use twintac_store::{Finished, Stage, StoreError, write_json};
 
-use super::simulation::Simulation;
-use crate::files::write_json;
+use super::pairs::read_pairs;
+use super::recordings::read_recording;
+use super::simulation::{Setup, Simulation, contacts};
+use crate::doubtful::left_out;
 use crate::press_checksum::press_checksum;
 use crate::progress::Work;
-use crate::{Run, RunError};
-
-/// Stage that has the paper's twin.
-const PAPER_TWIN: &str = "paper-twin";
+use crate::settings::ResolvedSettings;
+use crate::{Progress, Run, RunError};
 
 /// How each variant did: `variants.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -34,6 +35,88 @@ pub(crate) struct VariantRecord {
     pub(crate) history: Vec<Epoch>,
 }
 
+/// The twin that never saw the test presses, in the stage's folder.
+pub(crate) const HELD_OUT: &str = "held-out";
+
+/// The twin of all presses, in the stage's folder.
+pub(crate) const COMPLETE: &str = "complete";
+
+/// What twins are trained with.
+#[derive(Clone, Serialize)]
+struct Teaching<'a> {
+    #[serde(flatten)]
+    setup: Setup<'a>,
+    recordings: Finished,
+    simulation: Finished,
+    pairs: Finished,
+}
+
+#[derive(Serialize)]
+struct TrainingStage<'a> {
+    #[serde(flatten)]
+    teaching: Teaching<'a>,
+}
+
+impl Stage for TrainingStage<'_> {
+    const NAME: &'static str = "training";
+    const MADE_BY: &'static str = "twintac train";
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let training = Training::open(&self.teaching)?;
+        let work = Work::start(progress, "training", training.n_epochs());
+        let split = &training.simulation.split;
+        let trained = training.train(split, &training.settings.train, &work)?;
+        let chosen = digitac::choose(&trained)?;
+        write_json(
+            &folder.join("variants.json"),
+            &training.variants(&trained, chosen),
+        )?;
+        let lessons = training.lessons();
+        let certainty = calibrate(&lessons, split, chosen.twin.variant())?;
+        training.keep(chosen, split.clone(), certainty.clone(), &folder.join(HELD_OUT))?;
+
+        let everything = training.everything();
+        let again = TrainSettings {
+            variants: Some(vec![chosen.twin.variant()]),
+            ..training.settings.train.clone()
+        };
+        let complete = training.train(&everything, &again, &work)?;
+        let complete = complete.first().ok_or_else(nothing_trained)?;
+        let teachers = [&everything.train[..], &everything.validation].concat();
+        let certainty = certainty.map(|certainty| certainty.taught_by(&lessons, &teachers));
+        training.keep(complete, everything, certainty, &folder.join(COMPLETE))
+    }
+}
+
+/// The paper's twin of all presses.
+#[derive(Serialize)]
+struct PaperTwin<'a> {
+    #[serde(flatten)]
+    teaching: Teaching<'a>,
+}
+
+impl Stage for PaperTwin<'_> {
+    const NAME: &'static str = "paper-twin";
+    const MADE_BY: &'static str = "twintac reproduce --paper";
+    type Follower = dyn Progress;
+    type Error = RunError;
+
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+        let training = Training::open(&self.teaching)?;
+        let work = Work::start(progress, "training", training.settings.train.epochs);
+        let settings = TrainSettings {
+            variants: Some(vec![Variant::Paper]),
+            ..training.settings.train.clone()
+        };
+        let everything = training.everything();
+        let trained = training.train(&everything, &settings, &work)?;
+        let paper = trained.first().ok_or_else(nothing_trained)?;
+        training.keep(paper, everything, None, &folder.join(COMPLETE))
+    }
+}
+
 impl Run {
     /// Trains every variant of the twin without the test presses, then the one that did best on validation presses with them. That one is
     /// left in [`model_folder`](Self::model_folder).
@@ -41,114 +124,85 @@ impl Run {
     /// # Errors
     /// The pairs are not there yet.
     pub fn train(&self) -> Result<(), RunError> {
-        let inputs = self
-            .inputs()
-            .settings("settings", &self.record.settings)?
-            .settings("seed", &self.record.seed)?
-            .file(&self.folder.join("sensor.toml"))?
-            .stage(&self.stage("simulation"))?
-            .stage(&self.stage("pairs"))?;
-        self.run_stage("training", inputs, |folder| {
-            let training = Training::open(self)?;
-            let work = Work::start(self.progress(), "training", training.n_epochs());
-            let split = &training.simulation.split;
-            let trained = training.train(split, &training.settings, &work)?;
-            let chosen = digitac::choose(&trained).ok_or_else(nothing_trained)?;
-            write_json(
-                &folder.join("variants.json"),
-                &training.variants(&trained, chosen),
-            )?;
-            let lessons = training.lessons();
-            let certainty = calibrate(&lessons, split, chosen.twin.variant())?;
-            training.keep(chosen, split.clone(), certainty.clone(), &folder.join("held-out"))?;
-
-            let mut everything = split.clone();
-            everything.train.append(&mut everything.test);
-            everything.train.sort_unstable();
-            let again = TrainSettings {
-                variants: vec![chosen.twin.variant()],
-                ..training.settings.clone()
-            };
-            let complete = training.train(&everything, &again, &work)?;
-            let complete = complete.first().ok_or_else(nothing_trained)?;
-            let teachers = [&everything.train[..], &everything.validation].concat();
-            let certainty = certainty.map(|certainty| certainty.taught_by(&lessons, &teachers));
-            training.keep(complete, everything, certainty, &folder.join("complete"))
-        })?;
-        self.publish_model()
-    }
-
-    /// Trains the paper's twin on all presses, test presses too: its stress feature through its perceptron.
-    pub(crate) fn train_paper_twin(&self) -> Result<(), RunError> {
-        let inputs = self.inputs().stage(&self.stage("training"))?;
-        self.run_stage(PAPER_TWIN, inputs, |folder| {
-            let training = Training::open(self)?;
-            let work = Work::start(self.progress(), "training", training.settings.epochs);
-            let mut everything = training.simulation.split.clone();
-            everything.train.append(&mut everything.test);
-            everything.train.sort_unstable();
-            let settings = TrainSettings {
-                variants: vec![Variant::Paper],
-                ..training.settings.clone()
-            };
-            let trained = training.train(&everything, &settings, &work)?;
-            let paper = trained.first().ok_or_else(nothing_trained)?;
-            training.keep(paper, everything, None, folder)
-        })
-    }
-
-    /// The folder of the paper's twin of all presses.
-    pub(crate) fn paper_twin_folder(&self) -> PathBuf {
-        self.stage(PAPER_TWIN)
-    }
-
-    /// Puts the twin of all presses where people look for it.
-    fn publish_model(&self) -> Result<(), RunError> {
+        let finished = self.run_stage(&self.training_stage()?)?;
+        // Where people look for it.
         let target = self.model_folder();
-        let model = Model::load(&self.stage("training").join("complete"))?;
+        let model = Model::load(&finished.file(COMPLETE))?;
         if Model::load(&target).is_ok_and(|there| there.record == model.record) {
             return Ok(());
         }
         Ok(model.save(&target)?)
     }
+
+    /// Trains the paper's twin on all presses, test presses too: its stress feature through its perceptron.
+    pub(crate) fn train_paper_twin(&self) -> Result<Finished, RunError> {
+        let teaching = self.teaching()?;
+        self.run_stage(&PaperTwin { teaching })
+    }
+
+    fn teaching(&self) -> Result<Teaching<'_>, RunError> {
+        Ok(Teaching {
+            setup: self.setup(),
+            recordings: self.recordings()?,
+            simulation: self.simulation()?,
+            pairs: self.pairs()?,
+        })
+    }
+
+    fn training_stage(&self) -> Result<TrainingStage<'_>, RunError> {
+        let teaching = self.teaching()?;
+        Ok(TrainingStage { teaching })
+    }
+
+    /// The trained twins, as they would be trained now.
+    pub(crate) fn training(&self) -> Result<Finished, RunError> {
+        Ok(self.stages().current(&self.training_stage()?)?)
+    }
 }
 
 fn nothing_trained() -> RunError {
-    RunError::Input("no variant was trained; `train.variants` in the settings names none".to_owned())
+    RunError::Input("no variant was trained".to_owned())
 }
 
 /// All that twins are trained with.
 struct Training<'a> {
-    run: &'a Run,
+    setup: &'a Setup<'a>,
     recording: Recording,
     simulation: Simulation,
     presses: Vec<PairedPress>,
     contacts: Vec<Contact>,
-    settings: TrainSettings,
-    bench: BenchSettings,
+    settings: ResolvedSettings,
     block_mm: f64,
     scale: Scale,
 }
 
 impl<'a> Training<'a> {
-    fn open(run: &'a Run) -> Result<Self, RunError> {
-        let recording = run.recording()?;
-        let simulation = run.simulation(&recording)?;
-        let presses = run.pairs()?;
-        let settings = run.resolved(&recording, &simulation.places);
-        let contacts = run.contacts(&simulation.places)?;
-        let scale = Scale::of(&presses, run.left_out());
+    fn open(teaching: &'a Teaching<'a>) -> Result<Self, RunError> {
+        let setup = &teaching.setup;
+        let recording = read_recording(&teaching.recordings)?;
+        let simulation = Simulation::read(&teaching.simulation)?;
+        let presses = read_pairs(&teaching.pairs)?;
+        let settings = setup.resolved(&recording)?;
+        let contacts = contacts(&simulation.places, setup.sensor, setup.settings)?;
+        let scale = Scale::of(&presses, left_out(&setup.sensor.sensor));
         Ok(Self {
-            run,
+            setup,
+            block_mm: settings.split.block_mm_of(&recording)?,
             recording,
             simulation,
             presses,
             contacts,
-            settings: settings.train,
-            bench: settings.bench,
-            block_mm: settings.split.block_mm,
+            settings,
             scale,
         })
+    }
+
+    /// All presses teach that do not choose.
+    fn everything(&self) -> Split {
+        let mut everything = self.simulation.split.clone();
+        everything.train.append(&mut everything.test);
+        everything.train.sort_unstable();
+        everything
     }
 
     /// What the twin is made again of, to find how sure it is.
@@ -160,8 +214,10 @@ impl<'a> Training<'a> {
             tables: &self.simulation.tables,
             contacts: &self.contacts,
             bench: &self.simulation.bench,
-            bench_settings: &self.bench,
-            train: &self.settings,
+            bench_settings: &self.settings.bench,
+            taxels: &self.settings.taxels,
+            train: &self.settings.train,
+            seed: self.settings.seed,
             block_mm: self.block_mm,
             scale: &self.scale,
         }
@@ -169,7 +225,9 @@ impl<'a> Training<'a> {
 
     /// Epochs of all variants, and of the chosen one once more.
     fn n_epochs(&self) -> usize {
-        self.settings.epochs * (self.settings.variants.len() + 1)
+        let TrainSettings { epochs, variants, .. } = &self.settings.train;
+        let n_variants = variants.as_ref().map_or(Variant::ALL.len(), Vec::len);
+        epochs * (n_variants + 1)
     }
 
     fn train(
@@ -189,6 +247,7 @@ impl<'a> Training<'a> {
             split,
             &self.scale,
             settings,
+            self.settings.seed,
             &mut follow,
         )?)
     }
@@ -218,15 +277,19 @@ impl<'a> Training<'a> {
             let held_out = &self.simulation.split;
             digitac::evaluate(&trained.twin, &self.presses, &held_out.test, &self.scale, None)
         });
-        let settings = &self.run.record.settings;
+        let settings = self.setup.settings;
         let origin = Origin {
-            sensor: self.run.sensor.text.clone(),
-            simulation: serde_json::to_value(&settings.simulate).map_err(|source| RunError::Json {
+            sensor: self.setup.sensor.text.clone(),
+            surfaces: self.setup.sensor.surfaces().clone(),
+            simulation: serde_json::to_value(&settings.simulate).map_err(|source| StoreError::Json {
                 what: "the settings of the simulation".to_owned(),
                 source,
             })?,
             bench: self.simulation.bench.clone(),
-            settings: self.settings.clone(),
+            settings: TrainedWith {
+                settings: self.settings.train.clone(),
+                seed: self.settings.seed,
+            },
             provenance: self.recording.provenance,
             files: files(&self.recording),
             taught_by: split

@@ -97,13 +97,13 @@ impl DashboardState {
         self.latest = Some(reading);
     }
 
-    /// Makes the map of the newest frame. Its width is that which told a touch best taxel by taxel, the strongest touch so far.
+    /// Makes the map of the newest frame, through the taxels that have a reading; NaN if none has. Its width is that which told a touch best taxel by taxel, the strongest touch so far.
     ///
     /// # Errors
     /// [`LiveError::Map`].
     pub fn refresh(&mut self) -> Result<(), LiveError> {
         let above_kpa = self.above_kpa();
-        let field: Vec<f64> = above_kpa.iter().map(|above| above.unwrap_or(0.0)).collect();
+        let field: Vec<f64> = above_kpa.iter().map(|above| above.unwrap_or(f64::NAN)).collect();
         let strength_kpa = field.iter().copied().fold(0.0, f64::max);
         let is_whole = above_kpa.iter().all(Option::is_some);
         if is_whole && strength_kpa > WEAK_KPA.max(STRONGER * self.strongest_kpa) {

@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use ratatui::DefaultTerminal;
@@ -15,12 +16,18 @@ const PICTURE: Duration = Duration::from_millis(66);
 /// How long to wait for a frame before looking at the keys again.
 const GLANCE: Duration = Duration::from_millis(10);
 
-/// Shows frames on the terminal until `q` is pressed or the source ends. Recordings go into `folder`.
+/// Shows frames on the terminal until `q` is pressed, the source ends or `stop` is set, as by a signal: the terminal is then as it was before, and a recording
+/// is finished. Recordings go into `folder`.
 ///
 /// # Errors
 /// [`LiveError::Terminal`]: standard output is none, or fails. Those of [`FrameSource::next`]; [`LiveError::Log`] of a recording that was
 /// not finished.
-pub fn run(source: &mut FrameSource, about: About, folder: &Path) -> Result<Tally, LiveError> {
+pub fn run(
+    source: &mut FrameSource,
+    about: About,
+    folder: &Path,
+    stop: &AtomicBool,
+) -> Result<Tally, LiveError> {
     if !std::io::stdout().is_terminal() {
         return Err(LiveError::Terminal(std::io::Error::other(
             "standard output is no terminal",
@@ -29,7 +36,7 @@ pub fn run(source: &mut FrameSource, about: About, folder: &Path) -> Result<Tall
     let state = DashboardState::new(about)?;
     let mut terminal = ratatui::try_init().map_err(LiveError::Terminal)?;
     let mut recording = None;
-    let result = show(&mut terminal, source, state, folder, &mut recording);
+    let result = show(&mut terminal, source, state, folder, &mut recording, stop);
     ratatui::restore();
     if let Some(recording) = recording {
         recording.finish()?;
@@ -43,9 +50,10 @@ fn show(
     mut state: DashboardState,
     folder: &Path,
     recording: &mut Option<TouchRecording>,
+    stop: &AtomicBool,
 ) -> Result<(), LiveError> {
     let mut next_picture = Instant::now();
-    loop {
+    while !stop.load(Ordering::Relaxed) {
         let mut waiting = source.next(GLANCE)?;
         while let Some(reading) = waiting {
             if let Some(log) = recording
@@ -86,6 +94,7 @@ fn show(
             next_picture = Instant::now() + PICTURE; // however long it took, frames are taken in between
         }
     }
+    Ok(())
 }
 
 /// Begins a recording or ends it, and says how that went: what goes wrong with a file does not end the picture.

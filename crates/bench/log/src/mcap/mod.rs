@@ -9,12 +9,13 @@
 mod chunk;
 mod record;
 mod scan;
+mod source;
 mod summary;
 mod take;
 
 pub(crate) use chunk::{Chunk, number};
 pub(crate) use record::{Records, op};
-pub(crate) use scan::{Found, Scanner};
+pub(crate) use scan::{Found, Scanner, Statistics};
 pub(crate) use summary::Summary;
 
 /// First and last bytes of a file.

@@ -4,12 +4,18 @@ use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::ops::Range;
 
+use crc32fast::Hasher;
+
+use super::source::Source;
 use super::take::Take;
 use super::{MAGIC, op};
 
 /// Largest record that is read; longer ones are damage. Chunks of common writers have a few MB.
 const LARGEST_RECORD_BYTES: u64 = 64 << 20;
 const FRAMING_BYTES: usize = 9;
+
+/// What is looked at of a record before all of it is read: what stands before the records of a chunk, with the name of a compression.
+const HEADER_BYTES: usize = 44;
 
 /// Something in a file.
 #[derive(Debug)]
@@ -21,13 +27,14 @@ pub(crate) enum Found<'a> {
         name: String,
         map: BTreeMap<String, String>,
     },
-    /// A message of a channel.
+    /// A message of a channel, with its number there.
     Message {
         channel: u16,
+        sequence: u32,
         time_ns: u64,
         data: &'a [u8],
     },
-    /// A record that is not what was written; reading goes on behind it.
+    /// Something that is not what was written; reading goes on behind it.
     Damage,
     /// A chunk that is compressed, and how.
     Compressed(String),
@@ -50,34 +57,62 @@ enum Step {
     },
     Message {
         channel: u16,
+        sequence: u32,
         time_ns: u64,
         data: Range<usize>,
     },
     Nothing,
 }
 
+/// What a file says of its messages as a whole.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Statistics {
+    /// Time of the last message, ns.
+    pub(crate) last_ns: u64,
+    /// Messages of each channel.
+    pub(crate) counts: BTreeMap<u16, u64>,
+}
+
 /// Reads a file once, from its start. Its memory is bounded by its largest record and the names of its schemas.
 #[derive(Debug)]
 pub(crate) struct Scanner<R> {
-    source: R,
+    source: Source<R>,
     /// The chunk, or the one record outside chunks, that is being read.
     buffer: Vec<u8>,
     /// The part of it that is still to be read.
     rest: Range<usize>,
     schemas: BTreeMap<u16, String>,
+    /// Whether the data have ended and the summary is read.
+    is_in_summary: bool,
+    /// Whether a checksum of the file says that its bytes have changed, wherever that is.
+    is_altered: bool,
+    statistics: Option<Statistics>,
 }
 
 impl<R: Read> Scanner<R> {
     /// `None` if the file does not start as one of MCAP.
-    pub(crate) fn open(mut source: R) -> io::Result<Option<Self>> {
-        let mut magic = Vec::new();
-        (&mut source).take(MAGIC.len() as u64).read_to_end(&mut magic)?;
+    pub(crate) fn open(source: R) -> io::Result<Option<Self>> {
+        let (mut source, mut magic) = (Source::new(source), Vec::new());
+        source.read(MAGIC.len() as u64, &mut magic)?;
         Ok((magic == MAGIC).then(|| Self {
             source,
             buffer: Vec::new(),
             rest: 0..0,
             schemas: BTreeMap::new(),
+            is_in_summary: false,
+            is_altered: false,
+            statistics: None,
         }))
+    }
+
+    /// Whether a checksum of the file says that its bytes have changed; known at [`Found::End`].
+    pub(crate) fn is_altered(&self) -> bool {
+        self.is_altered
+    }
+
+    /// What the summary says of the messages, if it is there and as it was written; known at [`Found::End`].
+    pub(crate) fn statistics(&self) -> Option<&Statistics> {
+        self.statistics.as_ref()
     }
 
     /// What comes next. Nothing comes after [`Found::End`] and [`Found::Cut`].
@@ -96,11 +131,13 @@ impl<R: Read> Scanner<R> {
                 Some(Step::Metadata { name, map }) => return Ok(Found::Metadata { name, map }),
                 Some(Step::Message {
                     channel,
+                    sequence,
                     time_ns,
                     data,
                 }) => {
                     return Ok(Found::Message {
                         channel,
+                        sequence,
                         time_ns,
                         data: &self.buffer[data],
                     });
@@ -115,53 +152,70 @@ impl<R: Read> Scanner<R> {
 
     /// Reads the next record outside chunks; what is in it becomes the rest.
     fn next_record(&mut self) -> io::Result<Option<Found<'static>>> {
+        let before = self.source.checksum();
         self.buffer.clear();
         if !self.read(FRAMING_BYTES as u64)? {
             return Ok(Some(Found::Cut));
         }
-        let mut framing = Take(&self.buffer);
-        let (Some(kind), Some(length)) = (framing.u8(), framing.u64()) else {
-            return Ok(Some(Found::Cut));
-        };
-        let is_read = [
-            op::SCHEMA,
-            op::CHANNEL,
-            op::MESSAGE,
-            op::CHUNK,
-            op::METADATA,
-            op::FOOTER,
-        ]
-        .contains(&kind);
-        // No kind has the number 0: such bytes are where a file system has lost what was written.
-        if kind == 0 || is_read && length > LARGEST_RECORD_BYTES {
+        let (kind, length) = framing(&self.buffer).expect("as many bytes were read");
+        if kind == op::ATTACHMENT || kind > op::DATA_END {
+            return Ok((!self.source.skip(length)?).then_some(Found::Cut));
+        }
+        // Some say their length twice: one that is wrong is found before what is behind it is taken for its content.
+        let header_bytes = length.min(HEADER_BYTES as u64);
+        let has_header = self.read(header_bytes)?;
+        if has_header && !is_plausible(&self.buffer) {
+            return self.go_to_next_chunk();
+        }
+        if !has_header || !self.read(length - header_bytes)? {
             return Ok(Some(Found::Cut));
         }
-        if !is_read {
-            let skipped = io::copy(&mut (&mut self.source).take(length), &mut io::sink())?;
-            return Ok((skipped < length).then_some(Found::Cut));
-        }
-        if !self.read(length)? {
-            return Ok(Some(Found::Cut));
-        }
+        let mut content = Take(&self.buffer[FRAMING_BYTES..]);
         match kind {
-            op::FOOTER => {
-                self.buffer.clear();
-                self.read(MAGIC.len() as u64)?;
-                let is_whole = self.buffer == MAGIC;
-                Ok(Some(if is_whole { Found::End } else { Found::Cut }))
+            op::CHUNK => return Ok(self.open_chunk().unwrap_or(Some(Found::Damage))),
+            op::FOOTER => return self.end(before),
+            op::DATA_END => {
+                self.is_altered |= differs(content.u32(), before.clone().finalize());
+                self.is_in_summary = true;
+                self.source.begin_section();
             }
-            op::CHUNK => Ok(self.open_chunk().unwrap_or(Some(Found::Damage))),
-            _ => {
-                self.rest = 0..self.buffer.len();
-                Ok(None)
-            }
+            op::STATISTICS => self.statistics = take_statistics(content),
+            op::SCHEMA | op::CHANNEL | op::MESSAGE | op::METADATA => self.rest = 0..self.buffer.len(),
+            _ => {}
         }
+        Ok(None)
+    }
+
+    /// Looks for the next chunk, or the end of the data, behind a record that makes no sense.
+    fn go_to_next_chunk(&mut self) -> io::Result<Option<Found<'static>>> {
+        self.is_altered = true;
+        let seen = self.buffer.split_off(1);
+        let begins = |bytes: &[u8]| matches!(bytes[0], op::CHUNK | op::DATA_END) && is_plausible(bytes);
+        let is_found = self.source.go_to(seen, FRAMING_BYTES + HEADER_BYTES, begins)?;
+        Ok(Some(if is_found { Found::Damage } else { Found::Cut }))
+    }
+
+    /// Looks behind the footer, which is in the buffer, and compares the checksum of the summary, which covers its first two fields; `before` is
+    /// that before the footer.
+    fn end(&mut self, mut before: Hasher) -> io::Result<Option<Found<'static>>> {
+        let (checked, own) = self.buffer.split_at(FRAMING_BYTES + 16);
+        before.update(checked);
+        let is_other = differs(Take(own).u32(), before.finalize());
+        if is_other || !self.is_in_summary {
+            (self.is_altered, self.statistics) = (true, None);
+        }
+        self.buffer.clear();
+        self.read(MAGIC.len() as u64)?;
+        Ok(Some(if self.buffer == MAGIC {
+            Found::End
+        } else {
+            Found::Cut
+        }))
     }
 
     /// Appends bytes to the buffer, which grows with those that come; false if they end before.
     fn read(&mut self, length: u64) -> io::Result<bool> {
-        let come = (&mut self.source).take(length).read_to_end(&mut self.buffer)?;
-        Ok(come as u64 == length)
+        self.source.read(length, &mut self.buffer)
     }
 
     /// Lets the messages of the chunk in the buffer be the rest; `None` if it is damaged.
@@ -206,11 +260,12 @@ impl<R: Read> Scanner<R> {
                 }
             }
             op::MESSAGE => {
-                let (channel, _sequence) = (content.u16()?, content.u32()?);
+                let (channel, sequence) = (content.u16()?, content.u32()?);
                 let (time_ns, _published_ns) = (content.u64()?, content.u64()?);
                 let data = self.rest.start - content.0.len()..self.rest.start;
                 Step::Message {
                     channel,
+                    sequence,
                     time_ns,
                     data,
                 }
@@ -222,4 +277,61 @@ impl<R: Read> Scanner<R> {
             _ => Step::Nothing,
         })
     }
+}
+
+/// Kind and length of the record that bytes begin with.
+fn framing(bytes: &[u8]) -> Option<(u8, u64)> {
+    let mut framing = Take(bytes);
+    Some((framing.u8()?, framing.u64()?))
+}
+
+/// Whether a record can be as long as it says, as far as its first bytes tell.
+fn is_plausible(bytes: &[u8]) -> bool {
+    let Some((kind, length)) = framing(bytes) else {
+        return false;
+    };
+    let content = Take(&bytes[FRAMING_BYTES..]);
+    length <= LARGEST_RECORD_BYTES
+        && match kind {
+            0 => false, // such bytes are where a file system has lost what was written
+            op::CHUNK => chunk_bytes(content) == Some(length),
+            op::MESSAGE_INDEX => index_bytes(content) == Some(length),
+            op::DATA_END => length == 4,
+            op::FOOTER => length == 20,
+            op::SUMMARY_OFFSET => length == 17,
+            _ => true,
+        }
+}
+
+/// How long a chunk is, by what stands in it.
+fn chunk_bytes(mut chunk: Take<'_>) -> Option<u64> {
+    let (_earliest_ns, _latest_ns, _length, _checksum) =
+        (chunk.u64()?, chunk.u64()?, chunk.u64()?, chunk.u32()?);
+    let compression = chunk.string()?;
+    chunk.u64()?.checked_add(40 + compression.len() as u64)
+}
+
+/// How long an index of messages is, by what stands in it.
+fn index_bytes(mut index: Take<'_>) -> Option<u64> {
+    let (_channel, length) = (index.u16()?, index.u32()?);
+    Some(6 + u64::from(length))
+}
+
+/// Whether a checksum is another than that found. One of 0 stands for none.
+fn differs(written: Option<u32>, found: u32) -> bool {
+    written.is_none_or(|written| written != 0 && written != found)
+}
+
+fn take_statistics(mut content: Take<'_>) -> Option<Statistics> {
+    let (_messages, _schemas) = (content.u64()?, content.u16()?);
+    let (_channels, _attachments, _metadata, _chunks) =
+        (content.u32()?, content.u32()?, content.u32()?, content.u32()?);
+    let (_first_ns, last_ns) = (content.u64()?, content.u64()?);
+    let length = content.u32()?;
+    let mut pairs = Take(content.bytes(length.into())?);
+    let mut counts = BTreeMap::new();
+    while !pairs.0.is_empty() {
+        counts.insert(pairs.u16()?, pairs.u64()?);
+    }
+    Some(Statistics { last_ns, counts })
 }

@@ -1,7 +1,6 @@
 //! One press, frame by frame.
 
 use twintac_recording::Press;
-use twintac_shape::Pose;
 
 use super::ReadOptions;
 use super::baseline::{baseline_pa, pressure_pa};
@@ -62,10 +61,12 @@ pub(super) fn press(
         let force_n = collected.force_n.at(*time_ns);
         let is_placed = pose.is_some() && force_n.is_some() == has_force;
         let pose = pose.or_else(|| collected.poses.nearest(*time_ns));
-        press.gel_from_indenter.push(pose.unwrap_or(Pose::IDENTITY));
+        press
+            .gel_from_indenter
+            .push(pose.expect("a log without poses has no presses"));
         if let Some(forces_n) = &mut press.force_n {
             let force_n = force_n.or_else(|| collected.force_n.nearest(*time_ns));
-            forces_n.push(force_n.unwrap_or_default());
+            forces_n.push(force_n.expect("the log has wrenches"));
         }
         let taxels = || frame.taxels.iter().zip(&baselines_pa);
         let above = |(taxel, baseline_pa): (&TaxelReading, &Option<f64>)| {
@@ -80,14 +81,28 @@ pub(super) fn press(
         );
         press
             .taxels_kpa
-            .push(readings_kpa.into_iter().map(Option::unwrap_or_default).collect());
+            .push(readings_kpa.into_iter().map(known_or_nan).collect());
         press.taxels_raw.push(frame.taxels.iter().map(raw).collect());
+    }
+    for (taxel, name) in description.taxels.iter().enumerate() {
+        let n_missing = press.taxels_raw.iter().filter(|row| row[taxel].is_nan()).count();
+        if n_missing > 0 {
+            let n_frames = press.time_s.len();
+            remarks.push(format!(
+                "press `{}`: taxel `{name}` gave nothing in {n_missing} of {n_frames} frames",
+                span.name
+            ));
+        }
     }
     Some(press)
 }
 
-/// What the taxel gave, in its own unit.
+/// What the taxel gave, in its own unit; NaN if it gave nothing.
 fn raw(taxel: &TaxelReading) -> f64 {
     let raw = taxel.counts.map(f64::from).or(taxel.pressure_pa);
-    raw.filter(|raw| raw.is_finite()).unwrap_or_default()
+    known_or_nan(raw.filter(|raw| raw.is_finite()))
+}
+
+fn known_or_nan(reading: Option<f64>) -> f64 {
+    reading.unwrap_or(f64::NAN)
 }

@@ -23,7 +23,7 @@ pub struct ReadBack {
     pub recording: Recording,
     /// How the log ends.
     pub ending: Ending,
-    /// What a person should know of it: presses left out or not ended, taxels without a baseline, gaps.
+    /// What a person should know of it: damage, presses left out or not ended, taxels without a baseline or without readings, gaps.
     pub remarks: Vec<String>,
 }
 
@@ -35,7 +35,7 @@ pub struct ReadBack {
 ///   none in a log without wrenches.
 /// - `taxels_raw` are counts, or Pa of a taxel that does not count. `taxels_kpa` are above the mean of the last second before
 ///   the press, as far as no other press was on; a taxel without a value then is invalid for the whole press. What is missing is
-///   0 and invalid.
+///   NaN and invalid.
 /// - Memory grows with the log: a reading takes about 100 bytes.
 /// - A press that was not ended goes on until the next one begins or the log ends. A name that is there twice gets a number.
 ///
@@ -64,6 +64,15 @@ pub fn presses<R: Read>(
     }
     let description = reader.description();
     let mut remarks = collected.remarks.clone();
+    match ending {
+        Ending::Whole => {}
+        Ending::Damaged => remarks.push(
+            "the log is damaged: its bytes have changed since it was written; where no gap says what is missing, what it says of the sensor or the \
+             bench may be wrong"
+                .to_owned(),
+        ),
+        Ending::Cut => remarks.push("the log was cut: it has what was flushed before".to_owned()),
+    }
     let mut presses = Vec::new();
     for place in 0..collected.spans.len() {
         presses.extend(frames::press(

@@ -1,8 +1,12 @@
 //! Making a mesh of the contents of a file.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
+use twintac_shape::ExtentError;
 
 use super::input::Input;
+use super::whole;
 use crate::quality::check_volumes;
 use crate::tet_mesh::signed_volume_mm3;
 use crate::{MeshError, TetMesh};
@@ -72,42 +76,64 @@ pub(super) fn assemble(input: &Input, contents: Contents) -> Result<TetMesh, Mes
         }
     }
     let mut mesh = TetMesh::default();
+    let mut used_tags = Vec::new();
     for (number, node) in numbers.iter_mut().zip(&nodes).filter(|(number, _)| **number == 0) {
         *number = mesh.nodes_mm.len() as u32;
         mesh.nodes_mm.push(node.position_mm);
+        used_tags.push(node.tag);
     }
-    let number_of = |tag: u64| place_of(tag).map_or(u32::MAX, |place| numbers[place]);
+    let mut seen = BTreeSet::new();
     for tet in &tets {
-        let mut corners = tet.tags.map(number_of);
+        let mut corners = tet
+            .tags
+            .map(|tag| numbers[place_of(tag).expect("looked up above")]);
+        let mut sorted = corners;
+        sorted.sort_unstable();
+        if !seen.insert(sorted) {
+            continue;
+        }
         if signed_volume_mm3(corners.map(|node| mesh.nodes_mm[node as usize])) < 0.0 {
             corners.swap(2, 3);
         }
         mesh.tets.push(corners);
     }
+    let (low, high) = bounds_mm(&mesh);
+    ExtentError::check(low, high)?;
     check_volumes(&mesh, LEAST_VOLUME_SHARE)?;
+    whole::check(&mesh, &used_tags)?;
     match bonded {
         Some(values) => {
-            let is_bonded = |value: &&(u64, f64)| value.1 >= 0.5;
-            let mut bonded: Vec<u32> = values
-                .iter()
-                .filter(is_bonded)
-                .map(|&(tag, _)| number_of(tag))
-                .collect();
-            bonded.sort_unstable();
-            mesh.name_nodes(|node| bonded.binary_search(&node).is_ok());
+            let mut is_bonded = vec![false; mesh.nodes_mm.len()];
+            for (tag, value) in values {
+                let Some(place) = place_of(tag) else {
+                    return input.error(
+                        "data of nodes of the file",
+                        format!("the tag {tag}, which no node has"),
+                    );
+                };
+                // Nodes that no tetrahedron uses have no number.
+                if let Some(is_bonded) = is_bonded.get_mut(numbers[place] as usize) {
+                    *is_bonded = value >= 0.5;
+                }
+            }
+            mesh.name_nodes(|node| is_bonded[node as usize]);
         }
         None => bond_lowest(&mut mesh),
     }
     Ok(mesh)
 }
 
+fn bounds_mm(mesh: &TetMesh) -> (DVec3, DVec3) {
+    let nodes_mm = || mesh.nodes_mm.iter().copied();
+    (
+        nodes_mm().fold(DVec3::MAX, DVec3::min),
+        nodes_mm().fold(DVec3::MIN, DVec3::max),
+    )
+}
+
 /// Bonds the nodes on the board.
 fn bond_lowest(mesh: &mut TetMesh) {
-    let low = mesh.nodes_mm.iter().fold(DVec3::MAX, |low, &node| low.min(node));
-    let high = mesh
-        .nodes_mm
-        .iter()
-        .fold(DVec3::MIN, |high, &node| high.max(node));
+    let (low, high) = bounds_mm(mesh);
     let highest_mm = low.z + BOARD_TOLERANCE * low.distance(high);
     let is_low: Vec<bool> = mesh.nodes_mm.iter().map(|node| node.z <= highest_mm).collect();
     mesh.name_nodes(|node| is_low[node as usize]);

@@ -3,22 +3,24 @@
 use glam::DVec3;
 
 use super::assemble::{Contents, NodeEntry, TetEntry, assemble};
-use super::elements::{TET_4, TET_10, nodes_of};
+use super::elements::{Use, nodes_of, use_of};
 use super::input::{Encoding, Input, shown};
 use crate::{MeshError, TetMesh};
 
-/// Coordinates beyond this count as a damaged file, mm.
-const FARTHEST_MM: f64 = 1e6;
+/// Coordinates beyond this count as a damaged file, in its unit.
+const FARTHEST: f64 = 1e6;
 
-/// Reads a mesh, coordinates in mm.
+/// Reads a mesh in which a length of 1 is so many mm.
 ///
-/// Inverted tetrahedra are turned, nodes that no tetrahedron uses are dropped. The bonded nodes are those that the node data named
+/// Inverted tetrahedra are turned, nodes that no tetrahedron uses are dropped, and a tetrahedron that is listed twice, as one of two physical groups,
+/// is one. Points, lines and faces are not needed. The bonded nodes are those that the node data named
 /// "bonded" tell, as [`super::write`] writes them; without such data, those within 0.2 % of the mesh's diagonal above its lowest node.
 ///
 /// # Errors
-/// [`MeshError::File`] with the line or byte where the file is not what it should be, [`MeshError::Degenerate`] for a
-/// tetrahedron without volume and [`MeshError::Empty`] for a file without tetrahedra.
-pub fn read(bytes: &[u8]) -> Result<TetMesh, MeshError> {
+/// [`MeshError::File`] with the line or byte where the file is not what it should be, also for hexahedra, prisms and pyramids;
+/// [`MeshError::Degenerate`] for a tetrahedron without volume, [`MeshError::Empty`] for a file without tetrahedra, [`MeshError::Extent`] for a size
+/// that `mm_per_unit` does not explain, [`MeshError::NodesTwice`] and [`MeshError::Overlap`] for bodies that are not meshed as one.
+pub fn read(bytes: &[u8], mm_per_unit: f64) -> Result<TetMesh, MeshError> {
     let mut input = Input::new(bytes);
     let version = read_format(&mut input)?;
     let mut contents = Contents::default();
@@ -50,6 +52,10 @@ pub fn read(bytes: &[u8]) -> Result<TetMesh, MeshError> {
         input.end_section(name)?;
     }
     input.encoding = encoding;
+    contents
+        .nodes
+        .iter_mut()
+        .for_each(|node| node.position_mm *= mm_per_unit);
     assemble(&input, contents)
 }
 
@@ -147,8 +153,8 @@ fn read_position(input: &mut Input) -> Result<DVec3, MeshError> {
     let mut coordinates = [0.0; 3];
     for coordinate in &mut coordinates {
         *coordinate = input.real("a coordinate")?;
-        if !(-FARTHEST_MM..=FARTHEST_MM).contains(coordinate) {
-            return input.error("a coordinate within ±1e6 mm", coordinate.to_string());
+        if !(-FARTHEST..=FARTHEST).contains(coordinate) {
+            return input.error("a coordinate within ±1e6", coordinate.to_string());
         }
     }
     Ok(DVec3::from_array(coordinates))
@@ -183,10 +189,19 @@ fn read_elements_2(input: &mut Input, encoding: Encoding, contents: &mut Content
         }
         done += in_block;
         for _ in 0..in_block {
-            let header = n_tags + u32::from(encoding != Encoding::Text);
-            for _ in 0..header {
-                input.int("a tag")?;
+            let at = input.position();
+            if encoding != Encoding::Text {
+                input.int("the number of an element")?;
             }
+            let mut entity = 0;
+            for place in 0..n_tags {
+                let tag = input.int("a tag")?;
+                // The first tag is the physical group.
+                if place == 1 {
+                    entity = tag;
+                }
+            }
+            check_use(input, kind, at, entity)?;
             read_element(input, kind, n_nodes, tag, contents)?;
         }
     }
@@ -201,9 +216,10 @@ fn read_elements_4(input: &mut Input, encoding: Encoding, contents: &mut Content
     }
     for _ in 0..input.fits(n_blocks, 4, "the number of blocks")? {
         input.int("the dimension of an entity")?;
-        input.int("the tag of an entity")?;
+        let entity = input.int("the tag of an entity")?;
         let kind = input.int("the kind of elements")?;
         let n_nodes = known(input, kind)?;
+        check_use(input, kind, input.position(), entity)?;
         let count = input.size("the number of elements in a block")?;
         for _ in 0..input.fits(count, 1 + n_nodes as u64, "the number of elements in a block")? {
             input.size("the tag of an element")?;
@@ -217,6 +233,17 @@ fn read_elements_4(input: &mut Input, encoding: Encoding, contents: &mut Content
         }
     }
     Ok(())
+}
+
+/// Fails for an element that a mesh of tetrahedra can't have; it begins at a position.
+fn check_use(input: &Input, kind: i64, at: usize, entity: i64) -> Result<(), MeshError> {
+    match use_of(kind) {
+        Use::Other(name) => {
+            let found = format!("{name} (kind {kind}) in entity {entity}");
+            input.error_at(at, "tetrahedra as the only solid elements", found)
+        }
+        Use::Tetrahedron | Use::NoVolume => Ok(()),
+    }
 }
 
 /// Reads the nodes of an element and keeps them if it is a tetrahedron.
@@ -234,7 +261,7 @@ fn read_element(
             *corner = tag;
         }
     }
-    if kind == TET_4 || kind == TET_10 {
+    if use_of(kind) == Use::Tetrahedron {
         contents.tets.push(TetEntry {
             tags: corners,
             at: input.position(),

@@ -11,7 +11,8 @@ pub(super) fn table(nodes: &[u32; NODES], children: &[[u32; 4]; 8]) -> Table {
 }
 
 fn point(nodes: &[u32; NODES], child: &[u32; 4]) -> QuadraturePoint {
-    let mut own = child.map(|node| nodes.iter().position(|&other| other == node).unwrap_or_default() as u8);
+    let place = |node| nodes.iter().position(|&other| other == node);
+    let mut own = child.map(|node| place(node).expect("children have nodes of their parent alone") as u8);
     own.sort_unstable();
     // Coordinates along the three edges at the first corner: 0 or 1 for corners, their mean for midpoints.
     let at = |node: u8| {

@@ -97,10 +97,9 @@ impl Sparsity {
 /// Where the blocks of a tetrahedron go.
 pub(super) fn tet_blocks(corners: &[u32; 4], rank: &[u32], later: &[Vec<(u32, u32)>]) -> TetBlocks {
     let offset = |row: u32, column: u32| {
-        later[column as usize]
-            .iter()
-            .find(|(n, _)| *n == row)
-            .map_or(0, |(_, offset)| *offset)
+        let blocks = &later[column as usize];
+        let block = blocks.iter().find(|(n, _)| *n == row);
+        block.expect("the nodes of a tetrahedron are neighbours").1
     };
     let mut blocks = [(true, 0); 10];
     for a in 0..4 {

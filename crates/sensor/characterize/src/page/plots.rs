@@ -423,13 +423,14 @@ pub(super) fn cross_talk(talk: &CrossTalk) -> Plot {
         let y = top + CELL * (row as f64 + 0.5) + 4.0;
         scene.small([left - 6.0, y], name, Ink::Text, Anchor::End);
         for (column, percent) in talk.percent[row].iter().enumerate() {
-            let ink = Ink::Rgb(if *percent > 55.0 { [0; 3] } else { [255; 3] });
+            let percent = percent.unwrap_or(f64::NAN); // shown as a dash
+            let ink = Ink::Rgb(if percent > 55.0 { [0; 3] } else { [255; 3] });
             let x = left + cell * (column as f64 + 0.5);
             let corner = [x - 0.5 * cell, top + CELL * row as f64];
             scene.rectangle(corner, [cell, CELL], Ink::Rgb(viridis(percent / 100.0)), 1.0);
             scene.small(
                 [x, y],
-                number(*percent, if percent.abs() < 10.0 { 1 } else { 2 }),
+                number(percent, if percent.abs() < 10.0 { 1 } else { 2 }),
                 ink,
                 Anchor::Middle,
             );

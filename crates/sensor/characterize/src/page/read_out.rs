@@ -5,6 +5,14 @@ use crate::{Characterization, Fate};
 
 /// Name, value and condition of each figure.
 pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
+    let silent = found.conditions.iter().filter(|taxel| taxel.n_missing > 0);
+    let silent = silent.map(|taxel| {
+        format!(
+            "{} in {} of {} frames",
+            taxel.taxel, taxel.n_missing, taxel.n_frames
+        )
+    });
+    let silent: Vec<String> = silent.collect();
     let with = |fate: Fate| found.conditions.iter().filter(|taxel| taxel.fate == fate).count();
     vec![
         row(
@@ -28,12 +36,20 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
         row(
             "Taxels that fail",
             format!(
-                "{} dead, {} stuck, {} late",
+                "{} dead, {} stuck, {} late, {} intermittent",
                 with(Fate::Dead),
                 with(Fate::Stuck),
-                with(Fate::Late)
+                with(Fate::Late),
+                with(Fate::Intermittent)
             ),
-            format!("of {}", found.conditions.len()),
+            match silent.is_empty() {
+                true => format!("of {}", found.conditions.len()),
+                false => format!(
+                    "of {}; nothing came of {}",
+                    found.conditions.len(),
+                    silent.join(", ")
+                ),
+            },
         ),
     ]
 }

@@ -324,6 +324,18 @@ mod tests {
         let page = page.render();
         assert!(page.contains("212 N as the largest force"));
         assert!(page.contains("clocks that may differ"));
+        let mut silent = recording.clone();
+        for frame in 40..101 {
+            let press = &mut silent.presses[0];
+            (press.taxels_kpa[frame][1], press.taxels_raw[frame][1]) = (f64::NAN, f64::NAN);
+            press.valid[frame][1] = false;
+        }
+        let silent_found = characterize(&silent, &[], &sensor, &CharacterizeOptions::default()).unwrap();
+        let page = report(&silent_found, &silent, &sensor).render();
+        let n = silent.presses[0].time_s.len();
+        let said = format!("nothing came of {} in 61 of {n} frames", silent.taxels[1]);
+        assert!(page.contains("0 dead, 0 stuck, 0 late, 1 intermittent") && page.contains(&said));
+        assert!(!page.contains("NaN"));
         sensor.source = "measured by its maker".to_owned();
         let page = report(&found, &recording, &sensor).render();
         assert!(!page.contains("TwinTac paper"));

@@ -40,7 +40,21 @@ pub struct PhysTac<I2C, D, C, const N: usize> {
     pub(super) suspect: Option<usize>,
     /// Channels that hung the bus twice running.
     pub(super) isolated: Channels,
+    /// When taxels that are isolated are looked into again.
+    retries: [Retry; N],
 }
+
+/// When a channel that hung the bus is looked into again.
+#[derive(Clone, Copy, Debug)]
+struct Retry {
+    /// When, µs of the clock; not known yet if `None`.
+    at_us: Option<u64>,
+    /// How long it is closed before, µs.
+    wait_us: u64,
+}
+
+/// The longest that a channel is closed, over the first time.
+const LONGEST_WAIT: u64 = 64;
 
 /// A taxel and the channel that it is on.
 #[derive(Clone, Copy)]
@@ -63,6 +77,10 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
             left_out: [None; N],
             suspect: None,
             isolated: Channels::NONE,
+            retries: [Retry {
+                at_us: None,
+                wait_us: 0,
+            }; N],
         }
     }
 
@@ -80,7 +98,8 @@ impl<I2C, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         free(&mut self.i2c, &mut self.delay)
     }
 
-    /// Gives isolated taxels another chance. A taxel is isolated when the bus hung twice running with its channel alone open.
+    /// Gives isolated taxels another chance at once. A taxel is isolated when the bus hung twice running with its channel alone open, and is looked
+    /// into again by itself after [`Settings::retry_us`].
     pub const fn readmit(&mut self) {
         self.is_ready = false;
         self.suspect = None;
@@ -242,6 +261,7 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
             self.start().await?;
         }
         self.is_ready = false;
+        self.look_again().await?;
         self.left_out = [None; N];
         let doubtful = core::mem::take(&mut self.doubtful);
         for taxel in self.taxels().filter(|taxel| doubtful.contains(taxel.channel)) {
@@ -261,6 +281,43 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         }
         self.is_ready = true;
         Ok(self.clock.now_us())
+    }
+
+    /// Looks into isolated channels whose time has come: one that does not hang the bus any more takes part again.
+    async fn look_again(&mut self) -> Result<(), Error<I2C::Error>> {
+        let first_us = u64::from(self.settings.retry_us);
+        for (index, channel) in self.settings.wiring.channels().into_iter().enumerate() {
+            if !self.isolated.contains(channel) {
+                self.retries[index].at_us = None;
+                continue;
+            }
+            let now_us = self.clock.now_us();
+            let retry = &mut self.retries[index];
+            let is_due = retry.at_us.is_some_and(|at_us| at_us <= now_us);
+            if retry.at_us.is_some() && !is_due {
+                continue;
+            }
+            // The next time is set before the bus may hang again.
+            let twice_us = 2 * retry.wait_us.max(first_us);
+            retry.wait_us = match is_due {
+                true => twice_us.min(LONGEST_WAIT * first_us),
+                false => retry.wait_us.max(first_us),
+            };
+            retry.at_us = Some(now_us.saturating_add(retry.wait_us));
+            if !is_due {
+                continue;
+            }
+            let taxel = Taxel { index, channel };
+            let fault = match self.ask(channel).await {
+                Ok(()) => None,
+                Err(error) => Some(self.fault_of(taxel, error).await?),
+            };
+            if !matches!(fault, Some(Fault::Bus(_))) {
+                self.isolated = self.isolated.without(channel);
+                self.doubtful = self.doubtful | channel;
+            }
+        }
+        Ok(())
     }
 
     /// Sees that the switch obeys and that the bus works with one channel open, and waits for its barometer.

@@ -89,7 +89,8 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         self.0.recover(|i2c, delay| free(&mut i2c.0, &mut delay.0))
     }
 
-    /// Gives isolated taxels another chance. A taxel is isolated when the bus hung twice running with its channel alone open.
+    /// Gives isolated taxels another chance at once. A taxel is isolated when the bus hung twice running with its channel alone open, and is looked
+    /// into again by itself after [`Settings::retry_us`].
     pub const fn readmit(&mut self) {
         self.0.readmit();
     }

@@ -119,7 +119,7 @@ impl Track {
         let zeros = zero_kpa.iter().enumerate();
         let kpa = zeros
             .clone()
-            .map(|(k, zero)| self.kpa(row, k, description) - zero.unwrap_or(0.0));
+            .map(|(k, zero)| zero.map_or(f64::NAN, |zero| self.kpa(row, k, description) - zero));
         press.taxels_kpa.push(kpa.collect());
         press.taxels_raw.push(self.raw[row].clone());
         press.valid.push(

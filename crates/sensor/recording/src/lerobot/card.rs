@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+use serde_json::Value;
+use twintac_text::{markdown, visible};
+
 use super::episode::LeRobotSummary;
 use super::features::{Feature, Rate};
 use crate::{Provenance, Recording};
@@ -9,7 +12,7 @@ use crate::{Provenance, Recording};
 /// Frames that are no farther from evenly spaced count as evenly spaced, s.
 const EVEN_S: f64 = 1e-4;
 
-/// `README.md`.
+/// `README.md`; `how_made` is Markdown.
 pub(super) fn card(
     recording: &Recording,
     features: &[Feature],
@@ -17,7 +20,10 @@ pub(super) fn card(
     rate: &Rate,
     how_made: &str,
 ) -> String {
-    let (sensor, provenance) = (&recording.sensor, recording.provenance);
+    let (sensor, provenance) = (markdown(&recording.sensor), recording.provenance);
+    // As a literal of Python, which takes JSON's.
+    let repository = Value::from(format!("twintac/{}", recording.sensor)).to_string();
+    let repository = visible(&repository);
     let meaning = match provenance {
         Provenance::Real => "measured on hardware",
         Provenance::Emulated => "read from an emulated bench in software, not from hardware",
@@ -34,7 +40,7 @@ pub(super) fn card(
          - Provenance: `{provenance}`: every number is {meaning}.\n\
          - {episodes} episodes (presses), {frames} frames, {tasks} tasks (indenters), {} frames a second; LeRobot format v3.0.\n\
          - Licence: to be filled in by whoever publishes this.\n\n\
-         ```python\nfrom lerobot.datasets.lerobot_dataset import LeRobotDataset\n\ndataset = LeRobotDataset(\"twintac/{sensor}\", root=\".\")\n```\n\n\
+         ```python\nfrom lerobot.datasets.lerobot_dataset import LeRobotDataset\n\ndataset = LeRobotDataset({repository}, root=\".\")\n```\n\n\
          ## Features\n\n| feature | type | numbers | meaning |\n|---|---|---|---|\n",
         rate.value
     );
@@ -45,7 +51,7 @@ pub(super) fn card(
             "| `{}` | {} | {} | {meaning} |",
             feature.name,
             feature.dtype(),
-            feature.names()
+            markdown(&feature.names())
         );
     }
     card.push_str(
@@ -61,6 +67,18 @@ pub(super) fn card(
     }
     if !features.iter().any(|feature| feature.name == "observation.force") {
         card.push_str("\nThere is no force: not all presses have one.\n");
+    }
+    for (taxel, name) in recording.taxels.iter().enumerate() {
+        let rows = recording.presses.iter().flat_map(|press| &press.valid);
+        let n_unusable = rows.filter(|row| !row[taxel]).count();
+        if n_unusable > 0 {
+            let _ = writeln!(
+                card,
+                "\nTaxel {} has no reading that can be used in {n_unusable} of {frames} frames: `tactile_valid` is false there, `observation.tactile` NaN where none came, and \
+                 statistics are without them.",
+                markdown(name)
+            );
+        }
     }
     let _ = writeln!(card, "\n## How it was made\n\n{}", how_made.trim());
     card

@@ -20,15 +20,18 @@ enum Kind {
     Flag,
 }
 
+/// The numbers of a feature in a frame of an episode, which has a number itself.
+type Numbers = Box<dyn Fn(&Episode, usize, usize) -> Vec<f64>>;
+
 /// One feature of every frame.
 pub(super) struct Feature {
     pub(super) name: String,
     kind: Kind,
     /// What its numbers are called; none has a single number without a name.
     names: Vec<String>,
-    /// Its numbers in a frame of an episode, which has this number itself.
-    #[expect(clippy::type_complexity)]
-    value: Box<dyn Fn(&Episode, usize, usize) -> Vec<f64>>,
+    value: Numbers,
+    /// Which of its numbers can be used; `None` for all.
+    usable: Option<fn(&Press, usize) -> &[bool]>,
 }
 
 /// The features of a recording, in the order of the columns.
@@ -39,6 +42,7 @@ pub(super) fn features(recording: &Recording) -> Vec<Feature> {
             kind: Kind::Single,
             names: POSE.map(str::to_owned).to_vec(),
             value: Box::new(|episode, _, frame| pose(episode.press, frame)),
+            usable: None,
         },
         Feature {
             name: "observation.tactile".to_owned(),
@@ -49,6 +53,7 @@ pub(super) fn features(recording: &Recording) -> Vec<Feature> {
                 .map(|taxel| format!("{taxel}_kpa"))
                 .collect(),
             value: Box::new(|episode, _, frame| episode.press.taxels_kpa[frame].clone()),
+            usable: Some(|press, frame| &press.valid[frame]),
         },
     ];
     if recording.presses.iter().all(|press| press.force_n.is_some()) {
@@ -58,8 +63,9 @@ pub(super) fn features(recording: &Recording) -> Vec<Feature> {
             names: vec!["force_n".to_owned()],
             value: Box::new(|episode, _, frame| {
                 let force_n = episode.press.force_n.as_ref();
-                vec![force_n.map_or(0.0, |force_n| force_n[frame])]
+                vec![force_n.expect("all presses have a force")[frame]]
             }),
+            usable: None,
         });
     }
     features.push(Feature {
@@ -70,6 +76,7 @@ pub(super) fn features(recording: &Recording) -> Vec<Feature> {
             let last = episode.press.time_s.len() - 1;
             pose(episode.press, (frame + 1).min(last))
         }),
+        usable: None,
     });
     features.push(Feature {
         name: "tactile_valid".to_owned(),
@@ -83,6 +90,7 @@ pub(super) fn features(recording: &Recording) -> Vec<Feature> {
             let flags = episode.press.valid[frame].iter();
             flags.map(|flag| f64::from(u8::from(*flag))).collect()
         }),
+        usable: None,
     });
     features.push(Feature {
         name: "timestamp".to_owned(),
@@ -92,6 +100,7 @@ pub(super) fn features(recording: &Recording) -> Vec<Feature> {
             let time_s = &episode.press.time_s;
             vec![time_s[frame] - time_s[0]]
         }),
+        usable: None,
     });
     features.extend([
         whole("frame_index", |_, _, frame| frame),
@@ -108,6 +117,7 @@ fn whole(name: &str, value: impl Fn(&Episode, usize, usize) -> usize + 'static) 
         kind: Kind::Whole,
         names: Vec::new(),
         value: Box::new(move |episode, index, frame| vec![value(episode, index, frame) as f64]),
+        usable: None,
     }
 }
 
@@ -125,6 +135,24 @@ impl Feature {
         index: usize,
     ) -> impl Iterator<Item = Vec<f64>> + 'a {
         (0..episode.press.time_s.len()).map(move |frame| (self.value)(episode, index, frame))
+    }
+
+    /// The same, with NaN for each number that cannot be used: what statistics are of.
+    pub(super) fn usable_rows<'a>(
+        &'a self,
+        episode: &'a Episode,
+        index: usize,
+    ) -> impl Iterator<Item = Vec<f64>> + 'a {
+        let rows = self.rows(episode, index).enumerate();
+        rows.map(|(frame, mut row)| {
+            if let Some(usable) = self.usable {
+                let flags = row.iter_mut().zip(usable(episode.press, frame));
+                flags
+                    .filter(|(_, usable)| !**usable)
+                    .for_each(|(number, _)| *number = f64::NAN);
+            }
+            row
+        })
     }
 
     /// How many numbers it has in a frame.

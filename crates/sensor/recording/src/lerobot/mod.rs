@@ -51,6 +51,8 @@ impl Recording {
     /// `observation.force` (N) where all presses have one; `action`, the pose of the next frame; `tactile_valid`, whether each reading can be used. `timestamp` counts
     /// from the start of each press, s. Tasks name the indenter.
     ///
+    /// A reading that is missing is NaN. Statistics are of the readings that can be used, and null where there are none.
+    ///
     /// # Errors
     /// The recording is inconsistent or has no presses; the folder is there already, or cannot be written.
     pub fn write_lerobot(&self, folder: &Path, how_made: &str) -> Result<LeRobotSummary, RecordingError> {
@@ -113,7 +115,7 @@ impl Recording {
             let rows: Vec<Vec<f64>> = episodes
                 .iter()
                 .enumerate()
-                .flat_map(|(index, episode)| features[number].rows(episode, index))
+                .flat_map(|(index, episode)| features[number].usable_rows(episode, index))
                 .collect();
             of_all.insert(feature.name.clone(), statistics(&rows).json());
         }
@@ -138,7 +140,7 @@ impl Recording {
                 task: tasks
                     .iter()
                     .position(|task| *task == press.indenter)
-                    .unwrap_or_default(),
+                    .expect("each indenter is a task"),
                 first,
                 file,
             };
@@ -209,8 +211,8 @@ fn write_episodes(
     ];
     for feature in features {
         let of_episodes = episodes.iter().enumerate();
-        let of_episodes =
-            of_episodes.map(|(index, episode)| statistics(&feature.rows(episode, index).collect::<Vec<_>>()));
+        let of_episodes = of_episodes
+            .map(|(index, episode)| statistics(&feature.usable_rows(episode, index).collect::<Vec<_>>()));
         columns.extend(Statistics::columns(
             &feature.name,
             &of_episodes.collect::<Vec<_>>(),

@@ -15,13 +15,14 @@ const QUANTILES: [(&str, f64); 5] = [
 
 /// Statistics over frames, of each of a feature's numbers.
 pub(super) struct Statistics {
-    /// `min`, `max`, `mean`, `std` and the quantiles, by name.
+    /// `min`, `max`, `mean`, `std` and the quantiles, by name; NaN of nothing.
     by_name: Vec<(&'static str, Vec<f64>)>,
     /// Frames.
     count: i64,
 }
 
-/// The statistics of rows of numbers. Quantiles are between neighbours in proportion; the deviation is that of the rows themselves.
+/// The statistics of rows of numbers, those that are NaN left out. Quantiles are between neighbours in proportion; the deviation is that of the rows
+/// themselves.
 pub(super) fn statistics(rows: &[Vec<f64>]) -> Statistics {
     let width = rows.first().map_or(0, Vec::len);
     let mut by_name: Vec<(&'static str, Vec<f64>)> = ["min", "max", "mean", "std"]
@@ -30,7 +31,12 @@ pub(super) fn statistics(rows: &[Vec<f64>]) -> Statistics {
         .map(|name| (name, Vec::with_capacity(width)))
         .collect();
     for number in 0..width {
-        let mut sorted: Vec<f64> = rows.iter().map(|row| row[number]).collect();
+        let all = rows.iter().map(|row| row[number]);
+        let mut sorted: Vec<f64> = all.filter(|value| !value.is_nan()).collect();
+        if sorted.is_empty() {
+            by_name.iter_mut().for_each(|(_, values)| values.push(f64::NAN));
+            continue;
+        }
         sorted.sort_unstable_by(f64::total_cmp);
         let n = sorted.len() as f64;
         let mean = sorted.iter().sum::<f64>() / n;
@@ -54,7 +60,7 @@ fn quantile(sorted: &[f64], part: f64) -> f64 {
 }
 
 impl Statistics {
-    /// As `stats.json` has them.
+    /// As `stats.json` has them; a statistic of nothing is null.
     pub(super) fn json(&self) -> Value {
         let mut json: Map<String, Value> = self
             .by_name
@@ -111,5 +117,19 @@ mod tests {
         close("q90", 4.6);
         assert_eq!(json["q90"][1].as_f64(), Some(-1.0));
         assert_eq!(json["count"][0], 5);
+    }
+
+    #[test]
+    fn what_is_missing_is_left_out_and_a_statistic_of_nothing_is_null() {
+        let rows = [vec![f64::NAN, f64::NAN], vec![2.0, f64::NAN], vec![4.0, f64::NAN]];
+        let json = statistics(&rows).json();
+        let of_first = ["min", "q50", "mean", "std"].map(|name| json[name][0].as_f64().unwrap());
+        assert_eq!(of_first, [2.0, 3.0, 3.0, 1.0]);
+        assert!(
+            ["min", "max", "mean", "std", "q99"]
+                .iter()
+                .all(|name| json[name][1].is_null())
+        );
+        assert_eq!(json["count"][0], 3, "frames, as LeRobot weighs with them");
     }
 }

@@ -10,7 +10,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
-use twintac_files::PartialFile;
+use twintac_store::PartialFile;
 
 use super::schema;
 use super::write::put_column;
@@ -84,18 +84,38 @@ impl FrameTable {
     /// Adds a frame: a cell for each taxel, and whether frames before it are known to be missing.
     ///
     /// # Errors
-    /// [`RecordingError::Write`].
+    /// [`RecordingError::Write`]. [`RecordingError::Inconsistent`]: another number of cells, or a number that is not finite; one that is missing is
+    /// `None`. Nothing is added then.
     pub fn push(
         &mut self,
         time_s: f64,
         gap_before: bool,
         cells: impl IntoIterator<Item = TaxelCell>,
     ) -> Result<(), RecordingError> {
+        let cells: Vec<TaxelCell> = cells.into_iter().collect();
+        let wrong = |problem: String| {
+            Err(RecordingError::Inconsistent {
+                place: format!("frame {}", self.rows),
+                problem,
+            })
+        };
+        if cells.len() != self.cells.len() {
+            return wrong(format!(
+                "expected {} taxels, found {}",
+                self.cells.len(),
+                cells.len()
+            ));
+        }
+        let numbers = cells
+            .iter()
+            .flat_map(|cell| [cell.absolute_kpa, cell.temperature_c]);
+        if !numbers.flatten().chain([time_s]).all(f64::is_finite) {
+            return wrong("a number is not finite".to_owned());
+        }
         self.time_s.push(time_s);
         self.gap_before.push(gap_before);
-        let mut cells = cells.into_iter();
-        for column in &mut self.cells {
-            column.push(cells.next().unwrap_or_default());
+        for (column, cell) in self.cells.iter_mut().zip(cells) {
+            column.push(cell);
         }
         self.rows += 1;
         if self.time_s.len() == ROWS {
@@ -176,6 +196,27 @@ mod tests {
         table.push(0.0, false, []).unwrap();
         drop(table);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_frame_with_another_number_of_taxels_or_without_a_number_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frames.parquet");
+        let mut table = FrameTable::create(&path, "pad", Provenance::Real, &["a".to_owned()]).unwrap();
+        let cell = |kpa| TaxelCell {
+            absolute_kpa: Some(kpa),
+            ..TaxelCell::default()
+        };
+        let error = table
+            .push(0.0, false, [cell(1.0), cell(2.0)])
+            .unwrap_err()
+            .to_string();
+        assert_eq!(error, "frame 0: expected 1 taxels, found 2");
+        assert!(table.push(0.0, false, []).is_err());
+        assert!(table.push(0.0, false, [cell(f64::INFINITY)]).is_err());
+        assert!(table.push(f64::NAN, false, [cell(1.0)]).is_err());
+        table.push(0.0, false, [cell(1.0)]).unwrap();
+        assert_eq!(table.finish().unwrap(), 1);
     }
 
     #[test]

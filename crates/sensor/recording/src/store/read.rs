@@ -8,6 +8,7 @@ use twintac_shape::Pose;
 
 use super::column::Columns;
 use super::{schema, seal};
+use crate::missing::known_or_nan;
 use crate::{Control, Press, Provenance, Recording, RecordingError};
 
 impl Recording {
@@ -18,7 +19,7 @@ impl Recording {
     /// # Errors
     ///
     /// The file cannot be read, is truncated or altered (files that this crate wrote carry a checksum of all bytes), lacks a
-    /// column, or is inconsistent ([`check`](Self::check)).
+    /// column, is inconsistent ([`check`](Self::check)), or holds no presses.
     pub fn read_parquet(path: &Path) -> Result<Self, RecordingError> {
         let damaged = |problem: String| RecordingError::Damaged {
             file: path.display().to_string(),
@@ -32,6 +33,13 @@ impl Recording {
             .unwrap_or_else(|_| Err("it cannot be decoded".to_owned()))
             .map_err(damaged)?;
         recording.check().map_err(|e| damaged(e.to_string()))?;
+        if recording.presses.is_empty() {
+            return Err(RecordingError::NoPresses {
+                file: path.display().to_string(),
+                rows: 0,
+                why: "the table is empty".to_owned(),
+            });
+        }
         Ok(recording)
     }
 }
@@ -94,10 +102,11 @@ impl Frames {
             .map(str::to_owned)
             .collect();
         let of_taxels = |suffix: &str| -> Result<Vec<Vec<f64>>, String> {
-            taxels
-                .iter()
-                .map(|taxel| columns.doubles(&format!("{taxel}{suffix}")))
-                .collect()
+            let column = |taxel: &String| {
+                let readings = columns.optional_doubles(&format!("{taxel}{suffix}"))?;
+                Ok(readings.into_iter().map(known_or_nan).collect())
+            };
+            taxels.iter().map(column).collect()
         };
         let frames = Self {
             press: columns.texts(schema::PRESS)?,

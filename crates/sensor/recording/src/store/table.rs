@@ -5,6 +5,7 @@ use parquet::errors::ParquetError;
 use parquet::schema::types::TypePtr;
 
 use super::schema;
+use crate::missing::known;
 use crate::{Press, Recording};
 
 /// A column of a recording's table.
@@ -80,12 +81,12 @@ impl Recording {
             let taxels = self.taxels.iter().enumerate();
             columns.extend(taxels.map(|(taxel, name)| (format!("{name}{suffix}"), column(taxel))));
         };
-        of_taxels(schema::KPA, &|taxel| {
-            number(&|press, frame| press.taxels_kpa[frame][taxel])
-        });
-        of_taxels(schema::RAW, &|taxel| {
-            number(&|press, frame| press.taxels_raw[frame][taxel])
-        });
+        let readings = |taxel: usize, of: fn(&Press) -> &Vec<Vec<f64>>| {
+            let rows = self.presses.iter().flat_map(of);
+            Column::Known(rows.map(|row| known(row[taxel])).collect())
+        };
+        of_taxels(schema::KPA, &|taxel| readings(taxel, |press| &press.taxels_kpa));
+        of_taxels(schema::RAW, &|taxel| readings(taxel, |press| &press.taxels_raw));
         of_taxels(schema::VALID, &|taxel| {
             let rows = self.presses.iter().flat_map(|press| &press.valid);
             Column::Flag(rows.map(|row| row[taxel]).collect())

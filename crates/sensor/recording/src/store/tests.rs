@@ -90,7 +90,8 @@ fn impossible_numbers_are_named() {
         "{}",
         with(9.0, f64::NAN)
     );
-    assert!(with(3.0, f64::NAN).contains("frame 0: a reading is not finite"));
+    assert!(with(3.0, f64::NAN).contains("frame 0: the reading of `S0` is missing, but marked as valid"));
+    assert!(with(5.0, f64::NEG_INFINITY).contains("frame 1: the reading of `S0` is infinite"));
     assert!(with(0.25, 0.0).contains("frame 1: time 0 s follows 0.125 s"));
     assert!(with(6.0, f64::INFINITY).contains("the pose is not finite"));
 }

@@ -12,7 +12,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::ColumnPath;
-use twintac_files::PartialFile;
+use twintac_store::PartialFile;
 
 use super::seal::Sealing;
 use super::{Column, schema, table};
@@ -25,8 +25,8 @@ impl Recording {
     /// Writes a Parquet file with one row per frame, through a temporary name. The same recording gives the same bytes.
     ///
     /// Columns: `press_index` (from 0), `press`, `mounting`, `indenter`, `control` and `provenance`; `time_s`; the pose
-    /// `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`; `force_n` (null where unknown); then `<taxel>_kpa` of all taxels,
-    /// `<taxel>_raw` and `<taxel>_valid`. The metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
+    /// `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`; `force_n` (null where unknown); then `<taxel>_kpa` of all taxels and
+    /// `<taxel>_raw` (null where a reading is missing), and `<taxel>_valid`. The metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
     ///
     /// # Errors
     ///
@@ -100,7 +100,7 @@ impl RecordingWriter {
     /// # Errors
     /// A press that is inconsistent ([`Recording::check`]) or whose name was there before; a file that cannot be written.
     pub fn push(&mut self, press: Press) -> Result<(), RecordingError> {
-        press.check(self.encoder.waiting.taxels.len())?;
+        press.check(&self.encoder.waiting.taxels)?;
         if !self.names.insert(press.name.clone()) {
             return Err(RecordingError::Inconsistent {
                 place: self.path.display().to_string(),

@@ -59,13 +59,13 @@ pub(crate) fn twin(variant: Variant, n_taxels: usize) -> Result<Twin, DigitacErr
         test: Vec::new(),
     };
     let settings = TrainSettings {
-        variants: vec![variant],
+        variants: Some(vec![variant]),
         epochs: 2,
         ..TrainSettings::default()
     };
     let taxels: Vec<String> = (0..n_taxels).map(|taxel| format!("t{taxel}")).collect();
     let scale = Scale::of(&presses, BTreeSet::new());
-    let trained = train(&presses, &taxels, &split, &scale, &settings, &mut |_| {
+    let trained = train(&presses, &taxels, &split, &scale, &settings, 1, &mut |_| {
         ControlFlow::Continue(())
     })?;
     trained

@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
+use twintac_config::Problem;
 
 use super::NewSensor;
 use crate::bench_fit::{BenchEstimate, Estimate};
@@ -49,15 +50,12 @@ pub struct Adapted {
 /// Adapts a twin and what was found of its bench to the presses `used` of another sensor.
 ///
 /// # Errors
-/// The paper's variant, which has no gains; no presses; tables that do not go with the places; damaged presses.
+/// The paper's variant, which has no gains; no presses, or none that touches the gel; tables that do not go with the places; damaged presses.
 pub fn adapt(sensor: &NewSensor<'_>, used: &[usize]) -> Result<Adapted, DigitacError> {
     let twin = sensor.twin;
     if twin.variant() == Variant::Paper {
-        return Err(DigitacError::Setting {
-            setting: "variant",
-            expected: "a twin with gains, which few presses can tell",
-            found: Variant::Paper.to_string(),
-        });
+        let hint = "adapt a twin of another variant";
+        return Err(Problem::new("variant", "is the paper's, whose network has no gains", hint).into());
     }
     if used.is_empty() {
         return Err(DigitacError::TooFew {
@@ -66,6 +64,8 @@ pub fn adapt(sensor: &NewSensor<'_>, used: &[usize]) -> Result<Adapted, DigitacE
         });
     }
     let chosen: BTreeSet<usize> = used.iter().copied().collect();
+    let as_learned = sensor.features(sensor.bench)?;
+    sensor.refuse_untouched(&as_learned, used.iter().copied())?;
     let (bench, posterior) = sensor.learned().fit(&chosen)?;
     let features = sensor.features(&bench)?;
     let with = twin.adapted(posterior.gains.clone(), true);

@@ -20,7 +20,7 @@ const ASIDE: usize = 5;
 /// the candidates aside.
 ///
 /// # Errors
-/// Tables that do not go with the places; damaged presses.
+/// No press that touches the gel; tables that do not go with the places; damaged presses.
 pub fn choose_presses(
     sensor: &NewSensor<'_>,
     candidates: &[usize],
@@ -32,6 +32,7 @@ pub fn choose_presses(
     left.shuffle(&mut random);
     left.truncate(MAX_CANDIDATES.max(n_presses));
     let features = sensor.features(sensor.bench)?;
+    sensor.refuse_untouched(&features, left.iter().copied())?;
     let predicted_kpa = sensor.twin.predict(&features.iter().collect::<Vec<_>>());
     let (told, known) = sensor
         .learned()

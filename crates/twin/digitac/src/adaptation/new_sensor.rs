@@ -42,4 +42,25 @@ impl NewSensor<'_> {
     pub(super) fn features(&self, bench: &BenchEstimate) -> Result<Vec<Features>, DigitacError> {
         bench_fit::features(self.recording, self.places, self.tables, bench)
     }
+
+    /// Presses that stay in the air tell nothing: some have to touch the gel.
+    pub(super) fn refuse_untouched(
+        &self,
+        features: &[Features],
+        presses: impl IntoIterator<Item = usize>,
+    ) -> Result<(), DigitacError> {
+        let deepest_mm = |press: usize| features[press].depth_mm.iter().copied();
+        let depths_mm: Vec<f64> = presses.into_iter().flat_map(deepest_mm).collect();
+        let deepest_mm = depths_mm.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if deepest_mm > 0.0 {
+            return Ok(());
+        }
+        Err(DigitacError::TooFew {
+            expected: "presses that touch the gel, to adapt with".into(),
+            found: match depths_mm.len() {
+                0 => "none".into(),
+                _ => format!("none: the deepest pose is {:.2} mm above it", -deepest_mm),
+            },
+        })
+    }
 }

@@ -1,8 +1,9 @@
 //! Pairs each measured frame with the simulated frame of the same instant.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 use twintac_depth_table::DepthTable;
-use twintac_recording::{Control, Press, Recording};
+use twintac_recording::{Control, Press, Recording, null_as_nan};
 
 use super::{Warp, WarpSettings};
 use crate::bench_fit::{BenchEstimate, Places, deepest_pose, features};
@@ -24,7 +25,8 @@ pub struct PairedPress {
     pub features: Features,
     /// Measured force, N; `[n_frames]`, if there was one.
     pub measured_force_n: Option<Vec<f64>>,
-    /// Readings above the unloaded baseline, on the recording's own clock, kPa; `[n_frames][n_taxels]`.
+    /// Readings above the unloaded baseline, on the recording's own clock, kPa, NaN where one is missing; `[n_frames][n_taxels]`.
+    #[serde(deserialize_with = "null_as_nan")]
     pub readings_kpa: Vec<Vec<f64>>,
     /// Whether the reading is usable; `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
@@ -52,7 +54,17 @@ pub struct PairSettings {
     pub warp: WarpSettings,
 }
 
+impl Checked for PairSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self { warp } = self;
+        ranges.inside("warp", warp);
+    }
+}
+
 /// Pairs every press of a recording with its simulation.
+///
+/// # Errors
+/// Settings that cannot be; tables that do not go with the places; a press that contradicts itself.
 pub fn pair(
     recording: &Recording,
     places: &Places,
@@ -60,6 +72,7 @@ pub fn pair(
     bench: &BenchEstimate,
     settings: &PairSettings,
 ) -> Result<Vec<PairedPress>, DigitacError> {
+    settings.checked()?;
     let features = features(recording, places, tables, bench)?;
     recording
         .presses

@@ -7,6 +7,7 @@
 //! any instant can be moved; and a warp that does not remove most of the mismatch is rejected.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 
 /// Settings of the time warp.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +31,21 @@ impl Default for WarpSettings {
             smoothing_s: 0.08,
             believed_below: 0.5,
         }
+    }
+}
+
+impl Checked for WarpSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            window_s,
+            step_cost,
+            smoothing_s,
+            believed_below,
+        } = self;
+        ranges.zero_or("window_s", *window_s, 1e-3..=10.0);
+        ranges.zero_or("step_cost", *step_cost, 1e-6..=1e3);
+        ranges.zero_or("smoothing_s", *smoothing_s, 1e-3..=10.0);
+        ranges.zero_or("believed_below", *believed_below, 1e-3..=1.0);
     }
 }
 
@@ -107,8 +123,7 @@ impl Warp {
         self.measured_index
             .iter()
             .map(|&index| {
-                let (i, fraction) = split(index, rows.len());
-                let next = (i + 1).min(rows.len() - 1);
+                let ([i, next], fraction) = split(index, rows.len());
                 rows[i]
                     .iter()
                     .zip(&rows[next])
@@ -124,26 +139,23 @@ impl Warp {
         self.measured_index
             .iter()
             .map(|&index| {
-                let (i, fraction) = split(index, rows.len());
-                let next = if fraction > 0.0 {
-                    (i + 1).min(rows.len() - 1)
-                } else {
-                    i
-                };
+                let ([i, next], _) = split(index, rows.len());
                 rows[i].iter().zip(&rows[next]).map(|(a, b)| *a && *b).collect()
             })
             .collect()
     }
 }
 
-fn split(index: f64, n: usize) -> (usize, f64) {
+/// The two rows around an index and the part of the way from the first to the second. At a row itself both are that one: the next may be missing.
+fn split(index: f64, n: usize) -> ([usize; 2], f64) {
     let i = (index.floor() as usize).min(n - 1);
-    (i, index - i as f64)
+    let fraction = index - i as f64;
+    let next = if fraction > 0.0 { (i + 1).min(n - 1) } else { i };
+    ([i, next], fraction)
 }
 
 fn interpolate(values: &[f64], index: f64) -> f64 {
-    let (i, fraction) = split(index, values.len());
-    let next = (i + 1).min(values.len() - 1);
+    let ([i, next], fraction) = split(index, values.len());
     values[i] + fraction * (values[next] - values[i])
 }
 

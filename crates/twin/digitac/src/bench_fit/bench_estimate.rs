@@ -1,12 +1,12 @@
 //! What is unknown about a bench: the tip's radius, the height at which it touches, and the true stiffness
 //! of the gel.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Estimate, SmoothFactor};
-use crate::features::{Gains, TIME_CONSTANTS_S};
+use crate::features::Gains;
 
 /// Values of a bench that no data sheet gives, fitted to training presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,64 +93,5 @@ impl PortEstimate {
     pub(crate) fn change_kpa(&self, slope_kpa_per_mm: [f64; 3]) -> f64 {
         let [x, y, wider] = slope_kpa_per_mm;
         x * self.shift_mm[0] + y * self.shift_mm[1] + wider * self.wider_mm
-    }
-}
-
-/// How a bench is fitted.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct BenchSettings {
-    /// Tip radii to simulate, mm, at increasing size; the fit interpolates between them. Empty takes the
-    /// described indenter.
-    pub tip_radii_mm: Vec<f64>,
-    /// How many places, spread over taxels and readings, the fit looks at; more where a file would have too few.
-    pub n_places: usize,
-    /// Largest correction of the contact height, mm. Zero fits none. What it puts beyond the margin of
-    /// [`PlaceSettings`](crate::PlaceSettings) is not simulated: tables go straight on.
-    pub contact_offset_limit_mm: f64,
-    /// How far a port may be from where it is described, mm. Zero fits no places.
-    pub port_shift_limit_mm: f64,
-    /// Pull of a port to its place, for each square millimetre. Many presses in a plane, of several shapes, tell places well and need less of it.
-    pub port_shift_pull: f64,
-    /// By how much the radius of all ports may differ from its description, mm. Zero fits none.
-    pub port_radius_limit_mm: f64,
-    /// Smallest and largest stiffness over the simulated one. Fitted to presses of prescribed force, if the tip is known: a blunter tip on a
-    /// stiffer gel makes the same contact.
-    pub stiffness_limits: [f64; 2],
-    /// Time constants of the barometers' memory that the fit starts from, s.
-    pub time_constants_s: Vec<f64>,
-    /// Whether barometers may read otherwise than in proportion to the pressure.
-    pub port_law: bool,
-    /// Whether the gel remembers the presses before.
-    pub history: bool,
-    /// Places of the ports in the gel's plane, mm: what tip and gel do otherwise than simulated is fitted as a smooth factor of the distance from them and of
-    /// depth. `[n_taxels]`; empty fits none.
-    pub ports_mm: Vec<[f64; 2]>,
-    /// Pull of that factor to one.
-    pub smooth_factor_pull: f64,
-    /// Taxels that the fit leaves out, by index.
-    pub left_out: BTreeSet<usize>,
-    /// How many blocks of places are left out in turn for the uncertainties.
-    pub n_blocks: usize,
-}
-
-impl Default for BenchSettings {
-    fn default() -> Self {
-        Self {
-            tip_radii_mm: vec![2.0, 3.6, 6.5],
-            n_places: 5,
-            contact_offset_limit_mm: 0.4,
-            port_shift_limit_mm: 0.5,
-            port_shift_pull: 1e-3,
-            port_radius_limit_mm: 0.5,
-            stiffness_limits: [0.5, 2.0],
-            time_constants_s: TIME_CONSTANTS_S.to_vec(),
-            port_law: true,
-            history: true,
-            ports_mm: Vec::new(),
-            smooth_factor_pull: 1e-5,
-            left_out: BTreeSet::new(),
-            n_blocks: 6,
-        }
     }
 }

@@ -9,7 +9,7 @@ use super::problem::{Along, BenchProblem};
 use super::search::in_order;
 use super::simulated::{bare_features, curves, follow_each_other};
 use super::widths::BenchWidths;
-use super::{BenchEstimate, BenchSettings, Estimate, Places};
+use super::{BenchEstimate, BenchSettings, Estimate, Places, Taxels};
 use crate::numerics::Unknown;
 use crate::physical_fit::{
     Elastic, Fitted, Posterior, Pressures, Prior, Series, fit_near_learned, information,
@@ -114,12 +114,9 @@ impl LearnedBench<'_> {
             valid: &recording.presses[index].valid,
             is_used: used.contains(&index),
         };
-        let settings = BenchSettings {
-            tip_radii_mm: Vec::new(),
-            ..BenchSettings::default()
-        };
+        let (settings, unknown) = (BenchSettings::default(), Taxels::default());
         let along = presses.iter().map(along).collect();
-        let problem = BenchProblem::new(along, &curves, &[], n_taxels, &settings);
+        let problem = BenchProblem::new(along, &curves, &[], n_taxels, (&settings, &unknown));
         let near = NearLearned {
             problem: problem.near_learned(self.bench),
             learned: self.bench,

@@ -1,6 +1,7 @@
 //! Which places a recording presses, so that each is simulated once.
 
 use glam::{DQuat, DVec2};
+use twintac_config::{Checked, Ranges};
 use twintac_depth_table::{DepthTableRequest, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 use twintac_shape::Pose;
@@ -35,8 +36,19 @@ impl Default for PlaceSettings {
     }
 }
 
+impl Checked for PlaceSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            margin_mm,
+            force_control_depth_mm,
+        } = self;
+        ranges.number("margin_mm", *margin_mm, 0.01..=5.0);
+        ranges.number("force_control_depth_mm", *force_control_depth_mm, 0.1..=50.0);
+    }
+}
+
 /// The distinct places of a recording.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Places {
     /// What to simulate, in the order in which the recording comes to it.
     pub requests: Vec<DepthTableRequest>,
@@ -113,6 +125,17 @@ impl Places {
         }
         self
     }
+}
+
+/// How many distinct places a recording presses.
+pub(crate) fn n_places(recording: &Recording) -> Result<usize, DigitacError> {
+    let keys = recording
+        .presses
+        .iter()
+        .map(|press| Ok(key(&press.indenter, &deepest_pose(press)?)));
+    Ok(keys
+        .collect::<Result<std::collections::BTreeSet<_>, DigitacError>>()?
+        .len())
 }
 
 /// Where the indenter is lowest; its place in the gel's plane stands for the press.

@@ -8,7 +8,7 @@ use twintac_recording::{Control, Press};
 
 use super::smooth_factor::N_TERMS;
 use super::widths::BenchWidths;
-use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, SmoothFactor, deepest_pose};
+use super::{BenchEstimate, BenchSettings, Estimate, PortEstimate, SmoothFactor, Taxels, deepest_pose};
 use crate::DigitacError;
 use crate::numerics::{Unknown, median};
 use crate::physical_fit::{Elastic, Pressures, Slope};
@@ -80,7 +80,7 @@ impl<'a> BenchProblem<'a> {
         curves: &[Vec<DepthCurves>],
         radii_mm: &[f64],
         n_taxels: usize,
-        settings: &'a BenchSettings,
+        (settings, taxels): (&'a BenchSettings, &Taxels),
     ) -> Self {
         let mut frames: Vec<Range<usize>> = Vec::with_capacity(presses.len());
         let mut mountings: Vec<(String, Range<usize>)> = Vec::new();
@@ -113,7 +113,7 @@ impl<'a> BenchProblem<'a> {
             axes: (0..2)
                 .filter(|axis| has_places && spread_mm(*axis) > SPREAD_MM)
                 .collect(),
-            ln_stiffness: if is_forced && settings.tip_radii_mm.len() < 2 {
+            ln_stiffness: if is_forced && settings.radii_mm().len() < 2 {
                 settings.stiffness_limits.map(f64::ln)
             } else {
                 [0.0; 2]
@@ -121,7 +121,9 @@ impl<'a> BenchProblem<'a> {
             places: (0..n_places)
                 .map(|place| resampled(curves, place, n_taxels))
                 .collect(),
-            form: (radii_mm.len() < 2).then(|| form(&presses, settings)).flatten(),
+            form: (settings.smooth_factor && radii_mm.len() < 2)
+                .then(|| form(&presses, taxels))
+                .flatten(),
             ln_radii: radii_mm.iter().map(|radius| radius.ln()).collect(),
             presses,
             frames,
@@ -522,8 +524,8 @@ impl Elastic for BenchProblem<'_> {
 }
 
 /// Room for what is not simulated of tip and gel.
-fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<SmoothFactor> {
-    if settings.ports_mm.is_empty() {
+fn form(presses: &[Along<'_>], taxels: &Taxels) -> Option<SmoothFactor> {
+    if taxels.ports_mm.is_empty() {
         return None;
     }
     let poses = presses.iter().flat_map(|along| {
@@ -538,12 +540,12 @@ fn form(presses: &[Along<'_>], settings: &BenchSettings) -> Option<SmoothFactor>
         if along.is_used {
             depth_mm = depth_mm.max(along.touch_z_mm - pose.position_mm.z);
         }
-        for port in &settings.ports_mm {
+        for port in &taxels.ports_mm {
             far_mm = far_mm.max((port[0] - pose.position_mm.x).hypot(port[1] - pose.position_mm.y));
         }
     }
     Some(SmoothFactor {
-        ports_mm: settings.ports_mm.clone(),
+        ports_mm: taxels.ports_mm.clone(),
         reach_mm: 0.5 * far_mm,
         depth_mm,
         coefficients: vec![0.0; N_TERMS],

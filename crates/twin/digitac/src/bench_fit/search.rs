@@ -5,12 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use twintac_config::Checked;
 use twintac_depth_table::{DepthCurves, DepthTable, DepthTableSource};
 use twintac_recording::{Control, Press, Recording};
 
 use super::problem::{Along, BenchProblem};
 use super::simulated::{bare_features, curves, features_along, follow_each_other};
-use super::{BenchEstimate, BenchSettings, Estimate, Places};
+use super::{BenchEstimate, BenchSettings, Estimate, Places, Taxels};
 use crate::features::Sample;
 use crate::numerics::minimize;
 use crate::physical_fit::{BarometerModel, Elastic, Fitted, Series, Solution, fit};
@@ -30,9 +31,10 @@ pub fn fit_bench(
     train: &[usize],
     source: &dyn DepthTableSource,
     settings: &BenchSettings,
+    taxels: &Taxels,
 ) -> Result<BenchEstimate, DigitacError> {
-    check(settings)?;
-    let radii_mm = &settings.tip_radii_mm;
+    settings.checked()?;
+    let radii_mm = settings.radii_mm();
     let is_forced = |index: &usize| recording.presses[*index].control == Control::Force;
     let chosen = choose(recording, places, train, settings.n_places);
     if chosen.is_empty() {
@@ -65,7 +67,7 @@ pub fn fit_bench(
     } else {
         here
     };
-    let radii: Vec<Option<f64>> = match &radii_mm[..] {
+    let radii: Vec<Option<f64>> = match radii_mm {
         [] => vec![None],
         radii => radii.iter().copied().map(Some).collect(),
     };
@@ -84,7 +86,7 @@ pub fn fit_bench(
         .map(|tables| curves(&here, tables, recording.taxels.len()))
         .collect::<Result<_, _>>()?;
     let place_of = |press: usize| used.partition_point(|&other| other < places.of_press[press]);
-    let bench = Fit::rested(recording, places, &chosen, settings);
+    let bench = Fit::rested(recording, places, &chosen, settings, taxels);
     bench.solve(&curves, radii_mm, &place_of)
 }
 
@@ -95,14 +97,15 @@ pub(crate) fn fit_radius(
     tables: &[Vec<DepthTable>],
     train: &[usize],
     settings: &BenchSettings,
+    taxels: &Taxels,
 ) -> Result<BenchEstimate, DigitacError> {
-    check(settings)?;
+    settings.checked()?;
     let curves: Vec<Vec<DepthCurves>> = tables
         .iter()
         .map(|tables| curves(places, tables, recording.taxels.len()))
         .collect::<Result<_, _>>()?;
-    let bench = Fit::rested(recording, places, train, settings);
-    bench.solve(&curves, &settings.tip_radii_mm, &|press| places.of_press[press])
+    let bench = Fit::rested(recording, places, train, settings, taxels);
+    bench.solve(&curves, settings.radii_mm(), &|press| places.of_press[press])
 }
 
 /// Fits the rest to all presses that teach, with the tables of all places: contact heights, the places of ports, and the barometers. All
@@ -114,12 +117,15 @@ pub fn refine_bench(
     train: &[usize],
     found: &BenchEstimate,
     settings: &BenchSettings,
+    taxels: &Taxels,
 ) -> Result<BenchEstimate, DigitacError> {
+    settings.checked()?;
     let curves = vec![curves(places, tables, recording.taxels.len())?];
     let fit = Fit {
         recording,
         places,
         settings,
+        taxels,
         used: train.iter().copied().collect(),
         presses: ordered(recording).collect(),
         has_history: settings.history,
@@ -134,41 +140,6 @@ pub fn refine_bench(
     let odd = fit.odd_presses(&curves[0], &bench)?;
     bench.doubts.extend(odd);
     Ok(bench)
-}
-
-fn check(settings: &BenchSettings) -> Result<(), DigitacError> {
-    let [low, high] = settings.stiffness_limits;
-    let wrong = |setting, expected, found| {
-        Err(DigitacError::Setting {
-            setting,
-            expected,
-            found,
-        })
-    };
-    if settings.tip_radii_mm.first().is_some_and(|r| *r <= 0.0)
-        || !settings.tip_radii_mm.is_sorted_by(|a, b| a < b)
-    {
-        return wrong(
-            "tip_radii_mm",
-            "increasing radii above zero",
-            format!("{:?}", settings.tip_radii_mm),
-        );
-    }
-    if low <= 0.0 || low >= high {
-        return wrong(
-            "stiffness_limits",
-            "two increasing numbers above zero",
-            format!("{low}, {high}"),
-        );
-    }
-    if settings.time_constants_s.iter().any(|tau| *tau <= 0.0) {
-        return wrong(
-            "time_constants_s",
-            "times above zero",
-            format!("{:?}", settings.time_constants_s),
-        );
-    }
-    Ok(())
 }
 
 /// Presses at places spread evenly over the taxels, and over the largest readings; every file has some.
@@ -235,6 +206,7 @@ struct Fit<'a> {
     recording: &'a Recording,
     places: &'a Places,
     settings: &'a BenchSettings,
+    taxels: &'a Taxels,
     /// Presses in the order in which the gel felt them.
     presses: Vec<usize>,
     /// Those whose readings teach.
@@ -249,11 +221,13 @@ impl<'a> Fit<'a> {
         places: &'a Places,
         chosen: &[usize],
         settings: &'a BenchSettings,
+        taxels: &'a Taxels,
     ) -> Self {
         Self {
             recording,
             places,
             settings,
+            taxels,
             used: chosen.iter().copied().collect(),
             presses: ordered(recording)
                 .filter(|press| chosen.contains(press))
@@ -285,7 +259,7 @@ impl<'a> Fit<'a> {
             is_used: self.used.contains(&index),
         };
         let along: Vec<Along<'_>> = self.presses.iter().map(along).collect();
-        let problem = BenchProblem::new(along, curves, radii_mm, n_taxels, self.settings);
+        let problem = BenchProblem::new(along, curves, radii_mm, n_taxels, (self.settings, self.taxels));
         let all = 0..self.recording.presses.len();
         let mut features: Vec<Features> = all
             .map(|index| bare_features(self.press(index), self.touch_z_mm(index)))
@@ -306,8 +280,8 @@ impl<'a> Fit<'a> {
                     is_used: self.used.contains(&index) && is_used(index),
                 })
                 .collect();
-            let series = Series::new(&fitted, n_taxels, &self.settings.left_out);
-            fit(&problem, &series, &model, &self.settings.left_out, near)
+            let series = Series::new(&fitted, n_taxels, &self.taxels.left_out);
+            fit(&problem, &series, &model, &self.taxels.left_out, near)
         };
         let everywhere = solve(&|_| true, None)?;
         let n_places = self
@@ -394,6 +368,6 @@ impl<'a> Fit<'a> {
             valid: &press.valid,
         };
         let predicted = gains.readings_kpa(&[features]).swap_remove(0);
-        sample.deviation_kpa(&predicted, &self.settings.left_out)
+        sample.deviation_kpa(&predicted, &self.taxels.left_out)
     }
 }

@@ -14,8 +14,8 @@ use super::{Certainty, Contact};
 use crate::bench_fit::{features, refine_bench};
 use crate::evaluation::predict_some;
 use crate::{
-    BenchEstimate, BenchSettings, DigitacError, PairedPress, Places, Scale, Split, TrainSettings, Variant,
-    train,
+    BenchEstimate, BenchSettings, DigitacError, PairedPress, Places, Scale, Split, Taxels, TrainSettings,
+    Variant, train,
 };
 
 /// Part of the readings that is to lie within the intervals.
@@ -47,8 +47,12 @@ pub struct Lessons<'a> {
     pub bench: &'a BenchEstimate,
     /// How it is fitted.
     pub bench_settings: &'a BenchSettings,
+    /// What the sensor's description says of its taxels.
+    pub taxels: &'a Taxels,
     /// How twins are trained.
     pub train: &'a TrainSettings,
+    /// Seed of a training.
+    pub seed: u64,
     /// Presses whose places fall into the same square of this side belong together, mm.
     pub block_mm: f64,
     /// Largest readings, and taxels that are left out.
@@ -229,13 +233,18 @@ impl Lessons<'_> {
             test: left.clone(),
         };
         let settings = TrainSettings {
-            variants: vec![variant],
+            variants: Some(vec![variant]),
             ..self.train.clone()
         };
-        let taxels = &self.recording.taxels;
-        let trained = train(&presses, taxels, &division, self.scale, &settings, &mut |_| {
-            ControlFlow::Continue(())
-        })?;
+        let trained = train(
+            &presses,
+            &self.recording.taxels,
+            &division,
+            self.scale,
+            &settings,
+            self.seed,
+            &mut |_| ControlFlow::Continue(()),
+        )?;
         let Some(trained) = trained.first() else {
             return Ok(Vec::new());
         };
@@ -256,7 +265,15 @@ impl Lessons<'_> {
             ..self.bench_settings.clone()
         };
         let (recording, places, tables) = (self.recording, self.places, self.tables);
-        let mut bench = refine_bench(recording, places, tables, teachers, self.bench, &settings)?;
+        let mut bench = refine_bench(
+            recording,
+            places,
+            tables,
+            teachers,
+            self.bench,
+            &settings,
+            self.taxels,
+        )?;
         for (mounting, height) in &self.bench.contact_offset_mm {
             bench.contact_offset_mm.entry(mounting.clone()).or_insert(*height);
         }

@@ -1,6 +1,7 @@
 //! How sure a twin is of its readings.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 
 use super::Contact;
 use super::spread::{Known, Spread};
@@ -21,6 +22,26 @@ pub struct Certainty {
     pub(super) factors: [f64; 2],
     /// By how much intervals widen for each unit of unlikeness above one.
     pub(super) growth: f64,
+}
+
+impl Checked for Certainty {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            level_percent,
+            threshold,
+            learned_from: _,
+            taught,
+            spread,
+            factors,
+            growth,
+        } = self;
+        ranges.number("level_percent", *level_percent, 0.0..=100.0);
+        ranges.number("threshold", *threshold, 0.0..=1e9);
+        ranges.inside("taught", taught);
+        ranges.inside("spread", spread);
+        ranges.numbers("factors", factors, 2, 0.0..=1e12);
+        ranges.number("growth", *growth, 0.0..=1e6);
+    }
 }
 
 /// How sure a twin is along a press. All vectors have the same length, `n_frames`.

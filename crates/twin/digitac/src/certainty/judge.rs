@@ -7,22 +7,23 @@ use crate::evaluation::predict_some;
 use crate::{PairedPress, Places, Scale, Twin};
 
 /// How well a twin knows how sure it is, on presses that taught nothing. Taxels that are left out do not count.
+/// A figure over nothing is `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CertaintyScore {
     /// Readings that were judged: all usable ones, in the air too.
     pub n_readings: usize,
     /// Part of them within their interval, %. The intervals promise [`Certainty::level_percent`].
-    pub covered_percent: f64,
+    pub covered_percent: Option<f64>,
     /// Mean width of the intervals, over the largest reading of the file, %.
-    pub mean_width_percent: f64,
+    pub mean_width_percent: Option<f64>,
     /// Readings of frames in contact.
     pub n_in_contact: usize,
     /// Part of these within their interval, %.
-    pub covered_in_contact_percent: f64,
+    pub covered_in_contact_percent: Option<f64>,
     /// Mean width of their intervals, over the largest reading of the file, %.
-    pub mean_width_in_contact_percent: f64,
+    pub mean_width_in_contact_percent: Option<f64>,
     /// Part of the frames in contact that is flagged as unlike what taught, %.
-    pub flagged_percent: f64,
+    pub flagged_percent: Option<f64>,
 }
 
 #[derive(Default)]
@@ -39,13 +40,18 @@ impl Sum {
         self.width_percent += width_percent;
     }
 
-    fn covered_percent(&self) -> f64 {
-        100.0 * self.covered as f64 / self.n.max(1) as f64
+    fn covered_percent(&self) -> Option<f64> {
+        percent(self.covered, self.n)
     }
 
-    fn mean_width_percent(&self) -> f64 {
-        self.width_percent / self.n.max(1) as f64
+    fn mean_width_percent(&self) -> Option<f64> {
+        (self.n > 0).then(|| self.width_percent / self.n as f64)
     }
+}
+
+/// So many of all, %; `None` of none.
+fn percent(part: usize, all: usize) -> Option<f64> {
+    (all > 0).then(|| 100.0 * part as f64 / all as f64)
 }
 
 /// Judges the intervals of a twin on some presses of a recording. `contacts` are those of the places, `[n_places]`.
@@ -94,7 +100,7 @@ pub fn score_certainty(
         n_in_contact: in_contact.n,
         covered_in_contact_percent: in_contact.covered_percent(),
         mean_width_in_contact_percent: in_contact.mean_width_percent(),
-        flagged_percent: 100.0 * n_flagged as f64 / n_frames.max(1) as f64,
+        flagged_percent: percent(n_flagged, n_frames),
     }
 }
 

@@ -1,6 +1,7 @@
 //! How much a reading is likely to be off, from what is known before it is measured.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 
 use crate::numerics::minimize;
 
@@ -37,6 +38,27 @@ pub(super) struct Spread {
     of_unlike: f64,
     /// Over the reading's rate of change, s.
     of_rate_s: f64,
+}
+
+impl Checked for Spread {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            still_kpa,
+            of_reading,
+            of_largest,
+            of_unlike,
+            of_rate_s,
+        } = *self;
+        for (field, part) in [
+            ("still_kpa", still_kpa),
+            ("of_reading", of_reading),
+            ("of_largest", of_largest),
+            ("of_unlike", of_unlike),
+            ("of_rate_s", of_rate_s),
+        ] {
+            ranges.number(field, part, 0.0..=1e9);
+        }
+    }
 }
 
 impl Spread {

@@ -1,6 +1,7 @@
 //! What taught a twin, and how unlike it another contact is.
 
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
 use twintac_depth_table::DepthTableSource;
 use twintac_shape::Underside;
 
@@ -62,6 +63,25 @@ pub(crate) struct Taught {
 struct Deepest {
     place_mm: [f64; 2],
     depth_mm: f64,
+}
+
+impl Checked for Taught {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            undersides,
+            spacing_mm,
+            depth_step_mm,
+        } = self;
+        for (shape, (_, presses)) in undersides.iter().enumerate() {
+            for (press, Deepest { place_mm, depth_mm }) in presses.iter().enumerate() {
+                let field = format!("undersides[{shape}][1][{press}]");
+                ranges.numbers(&format!("{field}.place_mm"), place_mm, 2, -1e4..=1e4);
+                ranges.number(&format!("{field}.depth_mm"), *depth_mm, 0.0..=1e3);
+            }
+        }
+        ranges.number("spacing_mm", *spacing_mm, 1e-6..=1e6);
+        ranges.number("depth_step_mm", *depth_step_mm, 0.0..=1e3);
+    }
 }
 
 impl Taught {

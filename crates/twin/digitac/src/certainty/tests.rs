@@ -12,7 +12,7 @@ use super::*;
 use crate::synthetic::{Formula, Truth};
 use crate::{
     BenchEstimate, BenchSettings, PairSettings, PairedPress, PlaceSettings, Places, Scale, Split,
-    SplitSettings, TrainSettings, Twin, Variant, pair, predict, refine_bench, train,
+    SplitSettings, Taxels, TrainSettings, Twin, Variant, pair, predict, refine_bench, train,
 };
 
 /// A twin of the formulas, and all that it was made of.
@@ -35,15 +35,19 @@ fn make(truth: &Truth, n_places: usize) -> Made {
     let places = Places::of(&recording, &Formula, &PlaceSettings::default()).unwrap();
     let places = places.with_tip_radius(Some(truth.radius_mm));
     let tables = Formula.depth_tables(&places.requests).unwrap();
-    let split = Split::new(&recording, &SplitSettings::default()).unwrap();
+    let split = Split::new(&recording, &SplitSettings::default(), 1).unwrap();
     let settings = BenchSettings::default();
     let teachers = [&split.train[..], &split.validation].concat();
     let nominal = BenchEstimate::nominal();
-    let bench = refine_bench(&recording, &places, &tables, &teachers, &nominal, &settings).unwrap();
+    let taxels = Taxels::default();
+    let bench = refine_bench(
+        &recording, &places, &tables, &teachers, &nominal, &settings, &taxels,
+    )
+    .unwrap();
     let presses = pair(&recording, &places, &tables, &bench, &PairSettings::default()).unwrap();
     let scale = Scale::of(&presses, BTreeSet::new());
     let train_settings = TrainSettings {
-        variants: vec![Variant::PressureMemory],
+        variants: Some(vec![Variant::PressureMemory]),
         ..TrainSettings::default()
     };
     let trained = train(
@@ -52,6 +56,7 @@ fn make(truth: &Truth, n_places: usize) -> Made {
         &split,
         &scale,
         &train_settings,
+        1,
         &mut |_| ControlFlow::Continue(()),
     );
     Made {
@@ -79,7 +84,9 @@ impl Made {
             contacts: &self.contacts,
             bench: &self.bench,
             bench_settings: &self.settings,
+            taxels: &Taxels::default(),
             train: &self.train,
+            seed: 1,
             block_mm: 0.1,
             scale: &self.scale,
         };
@@ -106,15 +113,19 @@ fn intervals_cover_what_they_promise_on_presses_that_taught_nothing() {
         found.n_in_contact > 1000 && found.n_readings > found.n_in_contact,
         "{found:?}"
     );
-    for covered in [found.covered_percent, found.covered_in_contact_percent] {
+    for covered in [found.covered_percent, found.covered_in_contact_percent].map(Option::unwrap) {
         assert!((87.0..=93.0).contains(&covered), "{found:?}");
     }
     // Noise alone has 90 % within 1.645 deviations of 0.3 % of 130 kPa.
     let largest_kpa = made.scale.largest_kpa.values().copied().fold(0.0, f64::max);
     let of_noise = 200.0 * 1.645 * 0.003 * 130.0 / largest_kpa;
-    assert!(found.mean_width_percent > 0.9 * of_noise, "{found:?}");
-    assert!(found.mean_width_percent < 3.0 * of_noise, "{found:?}");
-    assert!(found.flagged_percent < 10.0, "{found:?}");
+    let width_percent = found.mean_width_percent.unwrap();
+    assert!(width_percent > 0.9 * of_noise, "{found:?}");
+    assert!(width_percent < 3.0 * of_noise, "{found:?}");
+    assert!(found.flagged_percent.unwrap() < 10.0, "{found:?}");
+    let none = score_certainty((&made.twin, &certainty), &made.presses, places, &[], &made.scale);
+    assert_eq!(none, CertaintyScore::default());
+    assert_eq!(none.covered_percent, None);
     assert_eq!(certainty, made.certainty());
 }
 

@@ -12,8 +12,8 @@ use super::unlike::{ToldApart, tell_apart};
 use crate::bench_fit::{fit_radius, radius_weights};
 use crate::{
     Baselines, BenchEstimate, BenchSettings, Certainty, CertaintyScore, Contact, DigitacError, Errors, Fold,
-    Lessons, PairSettings, PairedPress, Places, Scale, Score, TrainSettings, Twin, Variant, calibrate,
-    choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
+    Lessons, PairSettings, PairedPress, Places, Scale, Score, Taxels, TrainSettings, Twin, Variant,
+    calibrate, choose, evaluate, pair, recalibrate, refine_bench, score_certainty, train,
 };
 
 /// A recording, the gel at its places, and how twins of it are made.
@@ -34,8 +34,10 @@ pub struct Bench<'a> {
     pub pair: &'a PairSettings,
     /// How twins are trained.
     pub train: &'a TrainSettings,
-    /// Places of the ports in the gel's plane, mm; `[n_taxels]`.
-    pub ports_mm: &'a [[f64; 2]],
+    /// Seed of a training.
+    pub seed: u64,
+    /// What the sensor's description says of its taxels.
+    pub taxels: &'a Taxels,
 }
 
 /// The errors on what one division held out.
@@ -74,7 +76,8 @@ pub struct Judgement {
 /// Those of the fits; too few presses.
 pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> {
     let (recording, places) = (bench.recording, bench.places);
-    let left_out = &bench.bench.left_out;
+    let taxels = bench.taxels;
+    let left_out = &taxels.left_out;
     let split = &fold.split;
     let teachers = [&split.train[..], &split.validation].concat();
     let taught = fold.taxel.map(|taxel| new_taxel::without(recording, taxel));
@@ -86,10 +89,10 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
     };
     let mut found = BenchEstimate::nominal();
     if bench.tables.len() > 1 {
-        found = fit_radius(taught, places, bench.tables, &teachers, &settings)?;
+        found = fit_radius(taught, places, bench.tables, &teachers, &settings, taxels)?;
     }
     let tables = bench.tables_at(&found);
-    let mut fitted = refine_bench(taught, places, &tables, &teachers, &found, &settings)?;
+    let mut fitted = refine_bench(taught, places, &tables, &teachers, &found, &settings, taxels)?;
     let whole = pair(recording, places, &tables, &fitted, bench.pair)?;
     let scale = Scale::of(&whole, left_out.clone());
     let pairs = match fold.taxel {
@@ -99,9 +102,8 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
 
     let mut train_settings = bench.train.clone();
     if fold.taxel.is_some() {
-        train_settings
-            .variants
-            .retain(|variant| !variant.has_perceptron());
+        let variants = train_settings.variants().iter().copied();
+        train_settings.variants = Some(variants.filter(|variant| !variant.has_perceptron()).collect());
     }
     let mut trained = train(
         &pairs,
@@ -109,16 +111,19 @@ pub fn judge(bench: &Bench<'_>, fold: &Fold) -> Result<Judgement, DigitacError> 
         split,
         &scale,
         &train_settings,
+        bench.seed,
         &mut |_| ControlFlow::Continue(()),
     )?;
     let kernel = match fold.taxel {
-        None => Some(Baselines::fit(&pairs, &teachers, bench.ports_mm, left_out)?),
+        None => Some(Baselines::fit(
+            &pairs,
+            &teachers,
+            &bench.taxels.ports_mm,
+            left_out,
+        )?),
         Some(_) => None,
     };
-    let chosen = choose(&trained).ok_or_else(|| DigitacError::TooFew {
-        expected: "a variant to train".into(),
-        found: "none".into(),
-    })?;
+    let chosen = choose(&trained)?;
     let twin = chosen.twin.clone();
     let variant = twin.variant();
 
@@ -186,7 +191,9 @@ impl Bench<'_> {
             contacts: self.contacts,
             bench: fitted,
             bench_settings: self.bench,
+            taxels: self.taxels,
             train: self.train,
+            seed: self.seed,
             block_mm,
             scale,
         };
@@ -214,7 +221,7 @@ impl Bench<'_> {
                 twin,
                 file,
                 self.bench.contact_offset_limit_mm,
-                &self.bench.left_out,
+                &self.taxels.left_out,
             )?;
             if let Some(contact) = contact {
                 test.retain(|press| !contact.used.contains(press));
@@ -231,7 +238,7 @@ impl Bench<'_> {
         let (Some(radius), true) = (found.tip_radius_mm, self.tables.len() > 1) else {
             return self.tables[0].clone();
         };
-        let ln_radii: Vec<f64> = self.bench.tip_radii_mm.iter().map(|radius| radius.ln()).collect();
+        let ln_radii: Vec<f64> = self.bench.radii_mm().iter().map(|radius| radius.ln()).collect();
         let weights = radius_weights(&ln_radii, radius.value.ln());
         let at = |place: usize| {
             let of_radii = self.tables.iter().map(|tables| &tables[place]);

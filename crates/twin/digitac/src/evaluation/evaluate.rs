@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
+use twintac_recording::null_as_nan;
 
 use super::{Errors, Kernel, Scale, Score, StaticPolynomial, baseline, score};
 use crate::{DigitacError, Features, PairedPress, Twin, Variant};
@@ -23,7 +24,8 @@ pub struct PressEvaluation {
     pub time_s: Vec<f64>,
     /// Depth below first touch, mm.
     pub depth_mm: Vec<f64>,
-    /// Readings, kPa; `[n_frames][n_taxels]`.
+    /// Readings, kPa, NaN where one is missing; `[n_frames][n_taxels]`.
+    #[serde(deserialize_with = "null_as_nan")]
     pub measured_kpa: Vec<Vec<f64>>,
     /// Predictions of the twin, kPa; `[n_frames][n_taxels]`.
     pub predicted_kpa: Vec<Vec<f64>>,

@@ -50,8 +50,8 @@ impl Scale {
 /// A mean and what it is the mean of, %.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mean {
-    /// The mean, %; zero if nothing was counted.
-    pub percent: f64,
+    /// The mean, %; `None` if nothing was counted.
+    pub percent: Option<f64>,
     /// How many values.
     pub count: usize,
 }
@@ -195,11 +195,7 @@ impl Sum {
 
     fn mean(&self) -> Mean {
         Mean {
-            percent: if self.count > 0 {
-                self.total / self.count as f64
-            } else {
-                0.0
-            },
+            percent: (self.count > 0).then(|| self.total / self.count as f64),
             count: self.count,
         }
     }
@@ -228,7 +224,7 @@ mod tests {
     use crate::synthetic::by_hand;
 
     fn near(mean: Mean, percent: f64, count: usize) -> bool {
-        (mean.percent - percent).abs() < 1e-9 && mean.count == count
+        mean.percent.is_some_and(|found| (found - percent).abs() < 1e-9) && mean.count == count
     }
 
     #[test]
@@ -275,10 +271,22 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_readings_is_no_division_by_zero() {
+    fn a_score_over_no_frames_is_none() {
         let press = by_hand("a", "file", [0.0, 0.0], &[(1.0, [0.0, -1.0])]);
         let scale = Scale::of([&press], BTreeSet::new());
         let score = score([&press], &[vec![vec![1.0, 1.0]]], &scale);
-        assert!(near(score.overall.all, 0.0, 0), "{score:?}");
+        assert_eq!(score.overall, Errors::default());
+        assert_eq!(score.overall.all.percent, None);
+        // In the air all the time: there are readings, but none in contact.
+        let press = by_hand("a", "file", [0.0, 0.0], &[(-1.0, [5.0, 1.0]), (-2.0, [2.0, 1.0])]);
+        let scale = Scale::of([&press], BTreeSet::new());
+        let found = super::score([&press], &[vec![vec![5.0, 1.0]; 2]], &scale).overall;
+        assert_eq!(found.nearest_in_contact, Mean::default());
+        assert_eq!(found.peak.percent, None);
+        assert_eq!(found.all.count, 4);
+        assert_eq!(
+            serde_json::to_value(found.peak).unwrap(),
+            serde_json::json!({"percent": null, "count": 0})
+        );
     }
 }

@@ -40,7 +40,7 @@ pub struct Recalibration {
 
 /// Fits the contact height of a file to three of its presses by least absolute deviations from the twin,
 /// within `limit_mm` of the bench's median. Taxels in `left_out` do not count. `None` if the file has no
-/// presses of prescribed pose, or too few presses.
+/// presses of prescribed pose, or too few presses, or none that the twin would feel.
 pub fn recalibrate(
     recording: &Recording,
     (places, tables): (&Places, &[DepthTable]),
@@ -64,6 +64,9 @@ pub fn recalibrate(
         return Ok(None);
     }
     let used = felt(&of_file, &|index| along(index, bench), twin, left_out, N_PRESSES)?;
+    if used.is_empty() {
+        return Ok(None);
+    }
     let physical = &twin.physics().gains;
     let deviation_kpa = |presses: &[usize], offset_mm: f64| -> Result<f64, DigitacError> {
         let mut bench = bench.clone();
@@ -150,6 +153,6 @@ fn felt(
     let enough = presses
         .iter()
         .zip(&felt_kpa)
-        .filter(|(_, felt)| **felt >= FELT * most_kpa);
+        .filter(|(_, felt)| **felt > 0.0 && **felt >= FELT * most_kpa);
     Ok(enough.map(|(&index, _)| index).take(count).collect())
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
+use twintac_config::Ranges;
 
 use super::{Features, overstress, port_law};
 
@@ -22,6 +23,19 @@ pub struct Gains {
 /// Time constants that fits start from, s: two are enough for barometers cast into rubber, one while the load
 /// moves and one in a hold.
 pub(crate) const TIME_CONSTANTS_S: [f64; 2] = [0.25, 4.0];
+
+/// The largest pressure that can be, kPa: that of a kilometre of granite is a fortieth of it.
+const LARGEST_KPA: f64 = 1e6;
+
+/// Whether a number can be a pressure or a reading, kPa: finite, and not larger than anything.
+pub(crate) fn is_pressure(kpa: f64) -> bool {
+    kpa.abs() <= LARGEST_KPA
+}
+
+/// What time constants may be: longer ones are drift, shorter ones nobody samples.
+pub(crate) fn check_time_constants(ranges: &mut Ranges, time_constants_s: &[f64]) {
+    ranges.numbers("time_constants_s", time_constants_s, 4, 1e-3..=1e4);
+}
 
 /// Readings of a press.
 pub(crate) struct Sample<'a> {
@@ -76,16 +90,56 @@ impl Remembered {
             overstresses[sensor * n_taxels..][..n_taxels].fill(0.0);
         }
     }
+
+    /// What one sensor remembers, and nothing of the others.
+    pub(crate) fn of_sensor(&self, sensor: usize) -> Self {
+        let own = self.taxels(sensor);
+        let overstresses = self.overstress_kpa.chunks_exact(self.relaxed_kpa.len().max(1));
+        Self {
+            rested: vec![self.rested[sensor]],
+            relaxed_kpa: self.relaxed_kpa[own.clone()].to_vec(),
+            overstress_kpa: overstresses
+                .flat_map(|all| all[own.clone()].iter().copied())
+                .collect(),
+            shares: self.shares.clone(),
+        }
+    }
+
+    /// Lets one sensor remember what another one of the same twin does, alone.
+    pub(crate) fn set_sensor(&mut self, sensor: usize, of_one: &Self) {
+        let (own, n_readings) = (self.taxels(sensor), self.relaxed_kpa.len().max(1));
+        assert_eq!(
+            self.overstress_kpa.len(),
+            of_one.overstress_kpa.len() * self.rested.len(),
+            "overstresses of as many time constants"
+        );
+        self.rested[sensor] = of_one.rested[0];
+        self.relaxed_kpa[own.clone()].copy_from_slice(&of_one.relaxed_kpa);
+        let overstresses = self.overstress_kpa.chunks_exact_mut(n_readings);
+        for (all, of_one) in overstresses.zip(of_one.overstress_kpa.chunks_exact(own.len().max(1))) {
+            all[own.clone()].copy_from_slice(of_one);
+        }
+    }
+
+    fn taxels(&self, sensor: usize) -> std::ops::Range<usize> {
+        let n_taxels = self.relaxed_kpa.len() / self.rested.len().max(1);
+        sensor * n_taxels..(sensor + 1) * n_taxels
+    }
 }
 
 impl Gains {
     /// One more frame of each sensor: turns gain × pressure of each taxel into readings, kPa; `[n_sensors * n_taxels]`. `since_s` is the
-    /// time since the last frame, of which sensors whose gel has rested until now take no notice.
+    /// time since the last frame, of which sensors whose gel has rested until now take no notice. What is not a pressure ([`is_pressure`]) is read as NaN, and the gel
+    /// remembers the frame before in its place.
     pub(crate) fn step(&self, remembered: &mut Remembered, since_s: f64, readings_kpa: &mut [f64]) {
         let n_taxels = self.gain.len().max(1);
         for row in readings_kpa.chunks_exact_mut(n_taxels) {
             for (reading, stiffening) in row.iter_mut().zip(&self.stiffening_per_kpa) {
-                *reading = port_law::reading(*stiffening, *reading);
+                let elastic = *reading;
+                *reading = port_law::reading(*stiffening, elastic);
+                if !(is_pressure(elastic) && is_pressure(*reading)) {
+                    *reading = f64::NAN;
+                }
             }
         }
         if self.time_constants_s.is_empty() {
@@ -95,7 +149,7 @@ impl Gains {
         let rows = readings_kpa.chunks_exact(n_taxels);
         for ((rested, relaxed), row) in remembered.rested.iter_mut().zip(relaxed).zip(rows) {
             if std::mem::take(rested) {
-                relaxed.copy_from_slice(row);
+                relaxed.copy_from_slice(row); // a NaN rests until its next frame
             }
         }
         let n_readings = readings_kpa.len().max(1);
@@ -104,10 +158,15 @@ impl Gains {
             let (kept, arrived) = overstress::step(since_s, *constant_s);
             let changes = readings_kpa.iter().zip(&remembered.relaxed_kpa);
             for (q, (now, before)) in overstresses.iter_mut().zip(changes) {
-                *q = kept * *q + arrived * (now - before);
+                let change = now - before;
+                *q = kept * *q + arrived * if change.is_nan() { 0.0 } else { change };
             }
         }
-        remembered.relaxed_kpa.copy_from_slice(readings_kpa);
+        for (relaxed, now) in remembered.relaxed_kpa.iter_mut().zip(&*readings_kpa) {
+            if !now.is_nan() {
+                *relaxed = *now;
+            }
+        }
         let overstresses = remembered.overstress_kpa.chunks_exact(n_readings);
         for (overstresses, shares) in overstresses.zip(remembered.shares.chunks_exact(n_taxels)) {
             let rows = readings_kpa.chunks_exact_mut(n_taxels);

@@ -1,7 +1,9 @@
 //! The card of a model: what people should know before they use it.
 
+use twintac_text::markdown;
+
 use super::Model;
-use crate::{Score, Variant};
+use crate::{Errors, Score, Variant};
 
 /// The card, in Markdown.
 pub(super) fn card(model: &Model) -> String {
@@ -41,13 +43,16 @@ pub(super) fn card(model: &Model) -> String {
          height says. Beyond the depths that taught it nothing was checked.\n",
         record.variant,
         split.train.len(),
-        record.files.join(", "),
-        record.taxels.join(", "),
+        markdown(&record.files.join(", ")),
+        markdown(&record.taxels.join(", ")),
         validation,
         record.validation.definition,
     );
     if !bench.doubts.is_empty() {
-        let doubts = bench.doubts.iter().map(|doubt| format!("- {doubt}\n"));
+        let doubts = bench
+            .doubts
+            .iter()
+            .map(|doubt| format!("- {}\n", markdown(doubt)));
         text.push_str(&format!("\nDoubts of the fit:\n\n{}", doubts.collect::<String>()));
     }
     text.push_str(
@@ -66,9 +71,14 @@ pub(super) fn card(model: &Model) -> String {
 }
 
 fn row(name: &str, n_presses: usize, score: &Score) -> String {
-    let figures = &score.overall;
-    format!(
-        "| {name} | {n_presses} | {:.2} | {:.2} | {:.2} |\n",
-        figures.nearest_in_contact.percent, figures.all.percent, figures.peak.percent
-    )
+    let Errors {
+        nearest_in_contact,
+        all,
+        peak,
+    } = score.overall;
+    let [nearest, all, peak] = [nearest_in_contact, all, peak].map(|mean| match mean.percent {
+        Some(percent) => format!("{percent:.2}"),
+        None => "none".to_owned(),
+    });
+    format!("| {name} | {n_presses} | {nearest} | {all} | {peak} |\n")
 }

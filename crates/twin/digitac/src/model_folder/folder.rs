@@ -1,12 +1,14 @@
-//! A model's folder: `weights.safetensors`, `twin.json`, `CARD.md` for people, and `checksums.json` with the SHA-256 of all.
+//! A model's folder: `weights.safetensors`, `twin.json`, `CARD.md` for people, the surfaces (STL) that the sensor description names, and `checksums.json` with the SHA-256 of all.
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use twintac_config::Checked;
+use twintac_store::{PartialFolder, write_file};
 
 use super::card::card;
 use super::{Model, ModelRecord};
@@ -17,6 +19,8 @@ const WEIGHTS: &str = "weights.safetensors";
 const RECORD: &str = "twin.json";
 const CARD: &str = "CARD.md";
 const CHECKSUMS: &str = "checksums.json";
+/// Begins the names of surfaces (STL) that the sensor description names.
+const SURFACES: &str = "surfaces/";
 /// Version of the folder's layout.
 const VERSION: u32 = 1;
 
@@ -31,37 +35,34 @@ struct Checksums {
 impl Model {
     /// Writes the model's folder, under a temporary name first. An older folder of that name is replaced.
     pub fn save(&self, folder: &Path) -> Result<(), DigitacError> {
-        let partial = with_suffix(folder, ".partial");
-        if partial.exists() {
-            fs::remove_dir_all(&partial).map_err(|source| DigitacError::file(&partial, source))?;
-        }
-        fs::create_dir_all(&partial).map_err(|source| DigitacError::file(&partial, source))?;
+        let partial = PartialFolder::create(folder)?;
         let mut checksums = Checksums {
             format: "twintac-twin".into(),
             version: VERSION,
             sha256: BTreeMap::new(),
         };
-        let contents = [
-            (WEIGHTS, pack(&self.twin.parameters().weights(), folder)?),
-            (RECORD, json(&self.record, folder)?),
-            (CARD, card(self).into_bytes()),
-        ];
-        for (name, bytes) in &contents {
-            checksums.sha256.insert((*name).to_owned(), sha256(bytes));
-            write(&partial.join(name), bytes)?;
+        let (weights, record) = (
+            pack(&self.twin.parameters().weights(), folder)?,
+            json(&self.record, folder)?,
+        );
+        let card = card(self).into_bytes();
+        let contents = [(WEIGHTS, &weights[..]), (RECORD, &record), (CARD, &card)];
+        let surfaces = self
+            .surfaces
+            .iter()
+            .map(|(name, bytes)| (name.as_str(), &**bytes));
+        for (name, bytes) in contents.into_iter().chain(surfaces) {
+            checksums.sha256.insert(name.to_owned(), sha256(bytes));
+            write_file(&partial.path().join(name), bytes)?;
         }
-        write(&partial.join(CHECKSUMS), &json(&checksums, folder)?)?;
-        if folder.exists() {
-            let old = with_suffix(folder, ".old");
-            fs::rename(folder, &old).map_err(|source| DigitacError::file(folder, source))?;
-            fs::rename(&partial, folder).map_err(|source| DigitacError::file(folder, source))?;
-            return fs::remove_dir_all(&old).map_err(|source| DigitacError::file(&old, source));
-        }
-        fs::rename(&partial, folder).map_err(|source| DigitacError::file(folder, source))
+        write_file(&partial.path().join(CHECKSUMS), &json(&checksums, folder)?)?;
+        Ok(partial.finish()?)
     }
 
-    /// Reads a model's folder. A file that is missing, altered, or of another version is an error that says
-    /// so.
+    /// Reads a model's folder.
+    ///
+    /// # Errors
+    /// A file that is missing, altered, or of another version; numbers that cannot be, and lists that do not go with the taxels: the file and the field are named.
     pub fn load(folder: &Path) -> Result<Self, DigitacError> {
         let path = folder.join(CHECKSUMS);
         let damaged =
@@ -89,6 +90,7 @@ impl Model {
         let path = folder.join(RECORD);
         let record: ModelRecord =
             serde_json::from_slice(&checked(RECORD)?).map_err(|e| damaged(&path, &e))?;
+        record.checked().map_err(|problem| damaged(&path, &problem))?;
         let path = folder.join(WEIGHTS);
         let weights = unpack(&checked(WEIGHTS)?).map_err(|problem| DigitacError::model(&path, problem))?;
         let start = &record.start;
@@ -99,9 +101,15 @@ impl Model {
             correction_limit: start.correction_limit,
         };
         let parameters = Parameters::with_weights(&physics, &start.hidden, &weights)
-            .map_err(|problem| DigitacError::model(&path, problem))?;
+            .map_err(|problem| damaged(&path, &problem))?;
         let twin = Twin::new(record.taxels.clone(), physics, parameters);
-        Ok(Self { record, twin })
+        let surfaces = checksums.sha256.keys().filter(|name| name.starts_with(SURFACES));
+        let surfaces = surfaces.map(|name| Ok((name.clone(), checked(name)?.into())));
+        Ok(Self {
+            surfaces: surfaces.collect::<Result<_, DigitacError>>()?,
+            record,
+            twin,
+        })
     }
 }
 
@@ -156,19 +164,9 @@ fn read(path: &Path) -> Result<Vec<u8>, DigitacError> {
     })
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), DigitacError> {
-    fs::write(path, bytes).map_err(|source| DigitacError::file(path, source))
-}
-
 fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes)
         .iter()
         .map(|byte| format!("{byte:02x}"))
         .collect()
-}
-
-fn with_suffix(folder: &Path, suffix: &str) -> PathBuf {
-    let mut name = folder.as_os_str().to_owned();
-    name.push(suffix);
-    PathBuf::from(name)
 }

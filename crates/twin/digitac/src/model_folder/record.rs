@@ -1,12 +1,13 @@
 //! A twin with all that is needed to use it, and to know where it comes from.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
 
 use crate::network::Normalization;
-use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainSettings, Twin, Variant};
+use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainedWith, Twin, Variant};
 
 /// A twin and its record.
 #[derive(Clone, Debug)]
@@ -15,6 +16,8 @@ pub struct Model {
     pub record: ModelRecord,
     /// The twin itself.
     pub twin: Twin,
+    /// The surfaces (STL) that the sensor description names: names relative to the model's folder, and contents.
+    pub surfaces: BTreeMap<String, Arc<[u8]>>,
 }
 
 /// Everything about a twin but its weights.
@@ -33,7 +36,7 @@ pub struct ModelRecord {
     /// Gains and memory as learned.
     pub gains: Gains,
     /// Settings of the training.
-    pub settings: TrainSettings,
+    pub settings: TrainedWith,
     /// Where the training data come from.
     pub provenance: Provenance,
     /// Files that the training presses were read from.
@@ -68,12 +71,14 @@ pub(crate) struct Start {
 pub struct Origin {
     /// The sensor description, as text.
     pub sensor: String,
+    /// The surfaces (STL) that it names: names relative to the model's folder, and contents.
+    pub surfaces: BTreeMap<String, Arc<[u8]>>,
     /// Settings of the mesh and the simulation.
     pub simulation: serde_json::Value,
     /// What was found about the bench.
     pub bench: BenchEstimate,
     /// Settings of the training.
-    pub settings: TrainSettings,
+    pub settings: TrainedWith,
     /// Where the training data come from.
     pub provenance: Provenance,
     /// Files that the training presses were read from.
@@ -113,6 +118,10 @@ impl Model {
                 hidden: twin.parameters().hidden(),
             },
         };
-        Self { record, twin }
+        Self {
+            record,
+            twin,
+            surfaces: origin.surfaces,
+        }
     }
 }

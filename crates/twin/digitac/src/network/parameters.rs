@@ -14,6 +14,11 @@ use super::{Physics, Variant};
 use crate::features::Gains;
 use crate::seed;
 
+/// Weights and biases of files are no larger.
+const LARGEST: f32 = 1e6;
+/// Changes of ln gain of files are no larger.
+const LARGEST_CHANGE: f32 = 50.0;
+
 /// Above this, ln(1 + exp(x)) is x.
 const SOFTPLUS_IS_LINEAR: f32 = 20.0;
 
@@ -186,7 +191,20 @@ impl Parameters {
         let expected = parameters.weights();
         for (name, (shape, _)) in &expected {
             match weights.get(name) {
-                Some((found, data)) if found == shape && data.len() == shape.iter().product::<usize>() => {}
+                Some((found, data)) if found == shape && data.len() == shape.iter().product::<usize>() => {
+                    let largest = if name == "gain_change" {
+                        LARGEST_CHANGE
+                    } else {
+                        LARGEST
+                    };
+                    let is_wrong = |number: &f32| !(-largest..=largest).contains(number);
+                    if let Some(index) = data.iter().position(is_wrong) {
+                        let found = data[index];
+                        return Err(format!(
+                            "`{name}[{index}]` is {found}, expected -{largest} to {largest}"
+                        ));
+                    }
+                }
                 Some((found, _)) => return Err(format!("`{name}` has shape {found:?}, expected {shape:?}")),
                 None => return Err(format!("`{name}` is missing")),
             }

@@ -1,5 +1,8 @@
 //! Golden-section search (Kiefer, Proc. AMS 4, 1953).
 
+/// Steps at most: by then an interval of any size is below what doubles tell apart.
+const MOST_STEPS: u32 = 200;
+
 /// The argument between two bounds, to a tolerance, at which a function is smallest, and its value there. Of several local minima it finds
 /// one.
 pub(crate) fn minimize(
@@ -11,7 +14,10 @@ pub(crate) fn minimize(
     let share = (5.0_f64.sqrt() - 1.0) / 2.0;
     let (mut left, mut right) = (high - share * (high - low), low + share * (high - low));
     let (mut at_left, mut at_right) = (value(left), value(right));
-    while high - low > tolerance {
+    for _ in 0..MOST_STEPS {
+        if high - low <= tolerance {
+            break;
+        }
         if at_left <= at_right {
             (high, right, at_right) = (right, left, at_left);
             left = high - share * (high - low);
@@ -36,5 +42,12 @@ mod tests {
         let (at, value) = super::minimize(-3.0, 5.0, 1e-6, |x| (x - 1.3).abs() + 2.0);
         assert!((at - 1.3).abs() < 1e-6 && (value - 2.0).abs() < 1e-6);
         assert!((super::minimize(-3.0, 5.0, 1e-6, |x| x).0 + 3.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_valley_that_is_wider_than_numbers_can_be_narrowed_ends() {
+        let (at, _) = super::minimize(-1e300, 1e300, 1e-6, |x| (x - 1e299).abs());
+        assert!((at / 1e299 - 1.0).abs() < 1e-6, "{at}");
+        super::minimize(-1.0, 1.0, 0.0, |_| f64::NAN);
     }
 }

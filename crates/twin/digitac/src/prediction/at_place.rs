@@ -45,7 +45,11 @@ impl Sureness {
             };
         }
         self.has_begun = true;
-        self.before_kpa.copy_from_slice(readings_kpa);
+        for (before, now) in self.before_kpa.iter_mut().zip(readings_kpa) {
+            if !now.is_nan() {
+                *before = *now;
+            }
+        }
         self.unlikeness = self.certainty.unlikeness(&self.contact, depth_mm);
         let contact = (self.unlikeness, depth_mm);
         let rates = &self.rates_kpa_per_s;

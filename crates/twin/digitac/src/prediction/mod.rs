@@ -9,5 +9,5 @@ mod undo;
 
 pub use at_place::TwinAtPlace;
 pub use planned::{Prediction, at_place, predict, simulated_recording, unread_press};
-pub use state::TwinState;
+pub use state::{TwinMemory, TwinState};
 pub use undo::WithoutMemory;

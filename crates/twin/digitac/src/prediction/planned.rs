@@ -1,7 +1,7 @@
 //! What barometers would read along presses that nobody has made yet.
 
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_protocol::PressPlan;
 use twintac_recording::{Control, Press, Provenance, Recording};
@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// What a twin would read along a press. All vectors have the same length, `n_frames`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// The press's name.
     pub name: String,

@@ -1,6 +1,6 @@
 //! A twin in use: what it remembers of the frames before, and what it reads next.
 
-use crate::features::{Remembered, along};
+use crate::features::{Remembered, along, is_pressure};
 use crate::network::ElasticRows;
 use crate::{Features, Twin};
 
@@ -23,6 +23,15 @@ pub struct TwinState {
     /// The last readings, with no zero taken off, kPa; `[n_sensors * n_taxels]`.
     untared_kpa: Vec<f64>,
     /// What is read as zero, kPa; `[n_sensors * n_taxels]`.
+    zero_kpa: Vec<f64>,
+}
+
+/// What the gel of one sensor remembers, and what it reads as zero: see [`TwinState::memory`].
+#[derive(Clone, Debug)]
+pub struct TwinMemory {
+    remembered: Remembered,
+    /// `[n_taxels]`
+    untared_kpa: Vec<f64>,
     zero_kpa: Vec<f64>,
 }
 
@@ -73,9 +82,13 @@ impl TwinState {
     ///   taxel, kPa/mm. `[n_sensors * n_taxels]`, sensor by sensor.
     /// - `readings_kpa`: is written; above the zero that was last set, or above what the twin calls zero. `[n_sensors * n_taxels]`.
     ///
+    /// What is not a pressure (NaN, infinite, or beyond 1 GPa) is read as NaN, in this frame alone: the gel remembers that nothing changed. Where a perceptron
+    /// sees all ports, all taxels of the sensor are.
+    ///
     /// # Panics
-    /// Slices of another length.
+    /// Slices of another length; a time that is negative or NaN.
     pub fn step(&mut self, since_previous_s: f64, seen: &[f64], readings_kpa: &mut [f64]) {
+        assert!(since_previous_s >= 0.0, "a time that does not run backwards");
         let n_readings = self.zero_kpa.len();
         assert_eq!(
             [seen.len(), readings_kpa.len()],
@@ -96,7 +109,11 @@ impl TwinState {
         }
         let gains = self.twin.gains();
         gains.step(&mut self.remembered, since_previous_s, readings_kpa);
-        self.untared_kpa.copy_from_slice(readings_kpa);
+        for (untared, reading) in self.untared_kpa.iter_mut().zip(&*readings_kpa) {
+            if !reading.is_nan() {
+                *untared = *reading;
+            }
+        }
         for (reading, zero) in readings_kpa.iter_mut().zip(&self.zero_kpa) {
             *reading -= zero;
         }
@@ -109,9 +126,22 @@ impl TwinState {
         for (reading, elastic) in readings_kpa.iter_mut().zip(elastic) {
             *reading = reading_kpa * f64::from(*elastic);
         }
+        let n_taxels = self.gains.len().max(1);
+        let sees_all = physics.variant.has_perceptron();
+        let rows = readings_kpa.chunks_exact_mut(n_taxels);
+        for (row, seen) in rows.zip(seen.chunks_exact(n_taxels)) {
+            if seen.iter().copied().all(is_pressure) {
+                continue;
+            }
+            for (reading, seen) in row.iter_mut().zip(seen) {
+                if sees_all || !is_pressure(*seen) {
+                    *reading = f64::NAN;
+                }
+            }
+        }
     }
 
-    /// Takes what is read now as zero, as a tare of a real sensor does. Before the first frame it does nothing.
+    /// Takes what was last read as zero, as a tare of a real sensor does. Before the first frame it does nothing.
     pub fn tare(&mut self) {
         self.zero_kpa.copy_from_slice(&self.untared_kpa);
     }
@@ -132,6 +162,37 @@ impl TwinState {
     /// A sensor that is not there.
     pub fn rest(&mut self, sensor: usize) {
         self.remembered.rest(sensor);
+    }
+
+    /// What one sensor, counted from 0, remembers now.
+    ///
+    /// # Panics
+    /// A sensor that is not there.
+    #[must_use]
+    pub fn memory(&self, sensor: usize) -> TwinMemory {
+        let own = self.taxels(sensor);
+        TwinMemory {
+            remembered: self.remembered.of_sensor(sensor),
+            untared_kpa: self.untared_kpa[own.clone()].to_vec(),
+            zero_kpa: self.zero_kpa[own].to_vec(),
+        }
+    }
+
+    /// Lets one sensor, counted from 0, go on from a memory of the same twin.
+    ///
+    /// # Panics
+    /// A sensor that is not there, a memory of a twin of another number of taxels or time
+    /// constants.
+    pub fn set_memory(&mut self, sensor: usize, memory: &TwinMemory) {
+        let own = self.taxels(sensor);
+        self.remembered.set_sensor(sensor, &memory.remembered);
+        self.untared_kpa[own.clone()].copy_from_slice(&memory.untared_kpa);
+        self.zero_kpa[own].copy_from_slice(&memory.zero_kpa);
+    }
+
+    fn taxels(&self, sensor: usize) -> std::ops::Range<usize> {
+        let n_taxels = self.gains.len();
+        sensor * n_taxels..(sensor + 1) * n_taxels
     }
 
     /// The twin that is stepped.

@@ -247,3 +247,88 @@ fn poses_at_a_place_read_what_the_whole_press_reads() {
         assert_eq!(readings_kpa[..], whole[0][..]);
     }
 }
+
+/// What is not a pressure, or no reading.
+const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e39, -1e300, 2e6];
+
+#[test]
+fn what_is_not_a_pressure_is_read_as_nan_in_its_frame_alone() {
+    let seen = |frame: usize| [8.0, 20.0, 3.0].map(|kpa| kpa * (1.0 + (frame as f64).sin()));
+    for (variant, bad) in Variant::ALL
+        .into_iter()
+        .flat_map(|variant| BAD.map(|bad| (variant, bad)))
+    {
+        let twin = twin(variant, 3, N_TAXELS);
+        for at in [0, 4] {
+            let (mut state, mut held) = (twin.state(), twin.state());
+            for frame in 0..9 {
+                let (mut read, mut expected) = ([0.0; N_TAXELS], [0.0; N_TAXELS]);
+                let good = seen(if frame == at && at > 0 { frame - 1 } else { frame });
+                let mut given = seen(frame);
+                if frame == at {
+                    given[1] = bad;
+                }
+                state.step(0.02, &given, &mut read);
+                if frame == at {
+                    assert!(read[1].is_nan(), "{variant} {bad}: {read:?}");
+                    if at == 0 {
+                        continue; // the gel begins to be seen a frame later
+                    }
+                }
+                held.step(0.02, &good, &mut expected);
+                if frame > at {
+                    assert!(
+                        read.iter().all(|kpa| kpa.is_finite()),
+                        "{variant} {bad}: {read:?}"
+                    );
+                    // The taxel remembers what it read before.
+                    assert_eq!(read[1], expected[1], "{variant} {bad}, frame {frame}");
+                }
+            }
+            state.tare();
+            let mut read = [0.0; N_TAXELS];
+            state.step(0.02, &[bad; N_TAXELS], &mut read);
+            state.tare();
+            state.step(0.02, &seen(0), &mut read);
+            assert!(
+                read.iter().all(|kpa| kpa.is_finite()),
+                "{variant} {bad}: {read:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_no_reading_is_nothing_in_its_frame_alone() {
+    let twin = twin(Variant::PressureMemory, 3, N_TAXELS);
+    for bad in BAD {
+        let mut relaxed = twin.without_memory();
+        for frame in 0..12 {
+            let mut readings = [5.0, 50.0, 0.5].map(|kpa| 100.0 + if frame == 0 { 0.0 } else { kpa });
+            if frame == 3 {
+                readings[2] = bad;
+            }
+            relaxed.step(0.02, &mut readings);
+            assert_eq!(readings[2].is_nan(), frame == 3, "{bad}: {readings:?}");
+            assert!(readings[0].is_finite() && readings[1].is_finite());
+        }
+        // Where the untouched frame is missing, the next one is taken.
+        relaxed.tare();
+        let mut readings = [7.0, bad, 7.0];
+        relaxed.step(0.02, &mut readings);
+        readings = [7.0; 3];
+        relaxed.step(0.02, &mut readings);
+        let mut later = [9.0; 3];
+        relaxed.step(0.02, &mut later);
+        assert!(later.iter().all(|kpa| kpa.is_finite()), "{bad}: {later:?}");
+        assert!(later[1] - readings[1] > 1.0, "{bad}: {readings:?} {later:?}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "a time that does not run backwards")]
+fn time_does_not_run_backwards() {
+    twin(Variant::PressureMemory, 3, N_TAXELS)
+        .state()
+        .step(-0.1, &[0.0; N_TAXELS], &mut [0.0; N_TAXELS]);
+}

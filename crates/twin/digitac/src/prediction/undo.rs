@@ -4,7 +4,7 @@
 //! taxel by taxel and frame by frame, whatever touches the gel.
 
 use crate::Twin;
-use crate::features::overstress_step;
+use crate::features::{is_pressure, overstress_step};
 
 /// Turns readings as they come into those of a gel that has always rested: what a [`TwinState`](crate::TwinState) reads in its first frame after
 /// [`rest`](crate::TwinState::rest). Frames allocate nothing.
@@ -16,7 +16,8 @@ pub struct WithoutMemory {
     /// Share of each overstress in the reading; `[n_taxels][n_time_constants]`.
     shares: Vec<Vec<f64>>,
     time_constants_s: Vec<f64>,
-    is_untouched: bool,
+    /// Whether the next reading is of an untouched sensor; `[n_taxels]`.
+    is_untouched: Vec<bool>,
     /// `[n_taxels]`
     zero_kpa: Vec<f64>,
     /// `[n_taxels]`
@@ -36,7 +37,7 @@ impl Twin {
                 .map(|taxel| gains.memory.get(taxel).cloned().unwrap_or_default())
                 .collect(),
             time_constants_s: gains.time_constants_s.clone(),
-            is_untouched: true,
+            is_untouched: vec![true; n_taxels],
             zero_kpa: vec![0.0; n_taxels],
             relaxed_kpa: vec![0.0; n_taxels],
             overstress_kpa: vec![vec![0.0; gains.time_constants_s.len()]; n_taxels],
@@ -47,16 +48,18 @@ impl Twin {
 impl WithoutMemory {
     /// One more frame: readings, kPa above anything that stays the same, become those of the relaxed gel above its zero. `[n_taxels]`
     ///
-    /// `since_previous_s` is the time since the last frame, s, not negative.
+    /// `since_previous_s` is the time since the last frame, s, not negative. What is no reading (NaN, infinite, or beyond 1 GPa) becomes NaN, in this frame alone: the
+    /// gel remembers that nothing changed. A taxel that should have been untouched in such a frame takes its zero in its next one.
     ///
     /// # Panics
-    /// Readings of another length.
+    /// Readings of another length; a time that is negative or NaN.
     pub fn step(&mut self, since_previous_s: f64, readings_kpa: &mut [f64]) {
         assert_eq!(
             readings_kpa.len(),
             self.zero_kpa.len(),
             "a reading for each taxel"
         );
+        assert!(since_previous_s >= 0.0, "a time that does not run backwards");
         for (taxel, reading) in readings_kpa.iter_mut().enumerate() {
             let shares = &self.shares[taxel];
             let overstresses = &mut self.overstress_kpa[taxel];
@@ -68,17 +71,21 @@ impl WithoutMemory {
                 remembered += share * *q;
                 at_once += share * arrived;
             }
-            if self.is_untouched {
+            let is_read = is_pressure(*reading);
+            if is_read && std::mem::take(&mut self.is_untouched[taxel]) {
                 self.zero_kpa[taxel] = *reading - remembered;
             }
-            let relaxed = (*reading - self.zero_kpa[taxel] - remembered) / at_once;
+            let relaxed = if is_read {
+                (*reading - self.zero_kpa[taxel] - remembered) / at_once
+            } else {
+                before
+            };
             for (q, constant_s) in overstresses.iter_mut().zip(&self.time_constants_s) {
                 *q += overstress_step(since_previous_s, *constant_s).1 * relaxed;
             }
             self.relaxed_kpa[taxel] = relaxed;
-            *reading = relaxed;
+            *reading = if is_read { relaxed } else { f64::NAN };
         }
-        self.is_untouched = false;
     }
 
     /// Nothing touched the sensor in the last frame: the zero moves by a part, from 0 to 1, of the way to what was read.
@@ -92,6 +99,6 @@ impl WithoutMemory {
     /// The next frame is of an untouched sensor, and what stays the same in readings may be another: a recording goes on elsewhere. What the gel
     /// remembers stays.
     pub fn tare(&mut self) {
-        self.is_untouched = true;
+        self.is_untouched.fill(true);
     }
 }

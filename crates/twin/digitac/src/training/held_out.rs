@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
+use twintac_config::Checked;
 use twintac_recording::{Press, Recording};
 
 use super::{Split, SplitSettings};
@@ -99,9 +100,11 @@ impl Fold {
     pub fn all(
         recording: &Recording,
         by: HeldOut,
-        settings: &SplitSettings,
+        (settings, seed): (&SplitSettings, u64),
         left_out: &BTreeSet<usize>,
     ) -> Result<Vec<Self>, DigitacError> {
+        settings.checked()?;
+        let around = |test| Split::around(recording, test, false, settings, seed);
         let fold = |held_out: &str, split: Split| Self {
             by,
             held_out: held_out.to_owned(),
@@ -109,27 +112,26 @@ impl Fold {
             taxel: None,
         };
         match by {
-            HeldOut::Place => Ok(vec![fold("", Split::new(recording, settings)?)]),
+            HeldOut::Place => Ok(vec![fold("", Split::new(recording, settings, seed)?)]),
             HeldOut::Press => {
-                let test = drawn(recording, settings);
-                Ok(vec![fold("", Split::around(recording, test, false, settings)?)])
+                let test = drawn(recording, settings, seed);
+                Ok(vec![fold("", around(test)?)])
             }
             HeldOut::Depth => {
                 let test = deepest(recording)?;
-                Ok(vec![fold("", Split::around(recording, test, false, settings)?)])
+                Ok(vec![fold("", around(test)?)])
             }
             HeldOut::Region => {
-                let around = |test| Split::around(recording, test, false, settings);
                 let [low, high] = ends(recording)?;
                 Ok(vec![
                     fold("low end", around(low)?),
                     fold("high end", around(high)?),
                 ])
             }
-            HeldOut::File => one_by_one(recording, by, settings, |press| &press.mounting),
-            HeldOut::Indenter => one_by_one(recording, by, settings, |press| &press.indenter),
+            HeldOut::File => one_by_one(recording, by, &around, |press| &press.mounting),
+            HeldOut::Indenter => one_by_one(recording, by, &around, |press| &press.indenter),
             HeldOut::Taxel => {
-                let split = Split::new(recording, settings)?;
+                let split = Split::new(recording, settings, seed)?;
                 let taxels = recording.taxels.iter().enumerate();
                 Ok(taxels
                     .filter(|(taxel, _)| !left_out.contains(taxel))
@@ -146,7 +148,7 @@ impl Fold {
 fn one_by_one(
     recording: &Recording,
     by: HeldOut,
-    settings: &SplitSettings,
+    around: &dyn Fn(BTreeSet<usize>) -> Result<Split, DigitacError>,
     name: impl Fn(&Press) -> &String,
 ) -> Result<Vec<Fold>, DigitacError> {
     let mut groups: BTreeMap<&str, BTreeSet<usize>> = BTreeMap::new();
@@ -163,16 +165,16 @@ fn one_by_one(
         Ok(Fold {
             by,
             held_out: name.to_owned(),
-            split: Split::around(recording, test, false, settings)?,
+            split: around(test)?,
             taxel: None,
         })
     };
     groups.into_iter().map(fold).collect()
 }
 
-fn drawn(recording: &Recording, settings: &SplitSettings) -> BTreeSet<usize> {
+fn drawn(recording: &Recording, settings: &SplitSettings, seed_number: u64) -> BTreeSet<usize> {
     let mut presses: Vec<usize> = (0..recording.presses.len()).collect();
-    presses.shuffle(&mut seed::stream(settings.seed, "split/press"));
+    presses.shuffle(&mut seed::stream(seed_number, "split/press"));
     presses.truncate(presses.len() / settings.test_one_in);
     presses.into_iter().collect()
 }
@@ -233,7 +235,15 @@ mod tests {
     #[test]
     fn folds_hold_out_what_they_say() {
         let recording = Truth::new().recording(12);
-        let folds = |by| Fold::all(&recording, by, &SplitSettings::default(), &BTreeSet::from([0])).unwrap();
+        let folds = |by| {
+            Fold::all(
+                &recording,
+                by,
+                (&SplitSettings::default(), 1),
+                &BTreeSet::from([0]),
+            )
+            .unwrap()
+        };
         for by in [HeldOut::Press, HeldOut::Place] {
             let [fold] = &folds(by)[..] else { panic!("{by}") };
             let n_test = fold.split.test.len();
@@ -255,7 +265,7 @@ mod tests {
         let all = Fold::all(
             &recording,
             HeldOut::Indenter,
-            &SplitSettings::default(),
+            (&SplitSettings::default(), 1),
             &BTreeSet::new(),
         );
         assert!(all.unwrap_err().to_string().contains("held out by indenter"));
@@ -272,7 +282,7 @@ mod tests {
         let folds = Fold::all(
             &recording,
             HeldOut::Depth,
-            &SplitSettings::default(),
+            (&SplitSettings::default(), 1),
             &BTreeSet::new(),
         )
         .unwrap();

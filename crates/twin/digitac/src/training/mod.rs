@@ -7,6 +7,7 @@ mod split;
 mod train;
 
 pub use held_out::{Fold, HeldOut};
-pub use settings::TrainSettings;
+pub(crate) use settings::{MOST_LAYERS, MOST_WIDTH};
+pub use settings::{TrainSettings, TrainedWith};
 pub use split::{Split, SplitSettings};
 pub use train::{Epoch, Progress, Trained, choose, train};

@@ -1,19 +1,25 @@
 //! How variants are trained.
 
-use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
-use crate::features::TIME_CONSTANTS_S;
-use crate::{DigitacError, Variant};
+use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Ranges};
+
+use crate::Variant;
+use crate::features::{TIME_CONSTANTS_S, check_time_constants};
+
+/// Hidden layers of a perceptron, and their width, at most.
+pub(crate) const MOST_LAYERS: usize = 8;
+pub(crate) const MOST_WIDTH: f64 = 1024.0;
 
 /// How variants are trained. Loss, optimizer, rate, its decay, clipping and noise are the TwinTac paper's
 /// (arXiv 2509.10063, section III-C).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrainSettings {
-    /// What to train.
-    pub variants: Vec<Variant>,
-    /// Seed of weights, batches and noise.
-    pub seed: u64,
+    /// What to train. Default: all variants; on a fast gel without the paper's, which reads stresses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variants: Option<Vec<Variant>>,
     /// Passes over the training presses, at most.
     pub epochs: usize,
     /// Initial learning rate.
@@ -52,8 +58,7 @@ pub struct TrainSettings {
 impl Default for TrainSettings {
     fn default() -> Self {
         Self {
-            variants: Variant::ALL.to_vec(),
-            seed: 1,
+            variants: None,
             epochs: 600,
             learning_rate: 1e-3,
             rate_factor: 0.3,
@@ -74,45 +79,65 @@ impl Default for TrainSettings {
     }
 }
 
+impl Checked for TrainSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            variants,
+            epochs,
+            learning_rate,
+            rate_factor,
+            patience,
+            stop_patience,
+            gradient_norm,
+            weight_decay,
+            paper_noise,
+            correction_noise,
+            paper_hidden,
+            correction_hidden,
+            correction_limit,
+            time_constants_s,
+            port_law: _,
+            batch_frames,
+            max_frames,
+        } = self;
+        if let Some(variants) = variants {
+            let is_right = !variants.is_empty() && variants.len() == BTreeSet::from_iter(variants).len();
+            let names = || variants.iter().map(|variant| variant.name()).collect::<Vec<_>>();
+            let problem = || format!("is {:?}", names());
+            ranges.that(
+                "variants",
+                is_right,
+                problem,
+                || "name one variant or more, each once",
+            );
+        }
+        ranges.number("epochs", *epochs, 1.0..=100_000.0);
+        ranges.number("learning_rate", *learning_rate, 1e-6..=1.0);
+        ranges.number("rate_factor", *rate_factor, 0.01..=1.0);
+        ranges.number("patience", *patience, 1.0..=100_000.0);
+        ranges.number("stop_patience", *stop_patience, 1.0..=100_000.0);
+        ranges.number("gradient_norm", *gradient_norm, 1e-6..=1e6);
+        ranges.zero_or("weight_decay", *weight_decay, 1e-9..=10.0);
+        ranges.zero_or("paper_noise", *paper_noise, 1e-6..=1.0);
+        ranges.zero_or("correction_noise", *correction_noise, 1e-6..=1.0);
+        for (field, widths) in [
+            ("paper_hidden", paper_hidden),
+            ("correction_hidden", correction_hidden),
+        ] {
+            ranges.numbers(field, widths, MOST_LAYERS, 1.0..=MOST_WIDTH);
+        }
+        ranges.zero_or("correction_limit", *correction_limit, 1e-3..=10.0);
+        check_time_constants(ranges, time_constants_s);
+        ranges.number("batch_frames", *batch_frames, 1.0..=1e6);
+        // A press's memory is a matrix of frames by frames.
+        ranges.number("max_frames", *max_frames, 2.0..=4000.0);
+    }
+}
+
 impl TrainSettings {
-    pub(crate) fn check(&self) -> Result<(), DigitacError> {
-        let wrong = |setting, expected, found: String| {
-            Err(DigitacError::Setting {
-                setting,
-                expected,
-                found,
-            })
-        };
-        if self.learning_rate.is_nan() || self.learning_rate <= 0.0 {
-            return wrong(
-                "learning_rate",
-                "a number above zero",
-                self.learning_rate.to_string(),
-            );
-        }
-        if self.max_frames == 0 || self.batch_frames == 0 {
-            let found = format!("{}, {}", self.max_frames, self.batch_frames);
-            return wrong("max_frames, batch_frames", "1 or more", found);
-        }
-        if self
-            .time_constants_s
-            .iter()
-            .any(|tau| tau.is_nan() || *tau <= 0.0)
-        {
-            return wrong(
-                "time_constants_s",
-                "times above zero",
-                format!("{:?}", self.time_constants_s),
-            );
-        }
-        if self.paper_hidden.contains(&0) || self.correction_hidden.contains(&0) {
-            return wrong(
-                "paper_hidden, correction_hidden",
-                "widths above zero",
-                "a width of zero".into(),
-            );
-        }
-        Ok(())
+    /// What to train.
+    pub(crate) fn variants(&self) -> &[Variant] {
+        self.variants.as_deref().unwrap_or(&Variant::ALL)
     }
 
     /// Widths of a variant's hidden layers.
@@ -130,4 +155,14 @@ impl TrainSettings {
             _ => self.correction_noise,
         }
     }
+}
+
+/// What twins were trained with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrainedWith {
+    /// The settings.
+    #[serde(flatten)]
+    pub settings: TrainSettings,
+    /// Seed of weights, batches and noise.
+    pub seed: u64,
 }

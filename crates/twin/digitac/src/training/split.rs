@@ -9,42 +9,98 @@ use std::collections::{BTreeMap, BTreeSet};
 use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
+use twintac_config::{Checked, Problem, Ranges};
+use twintac_recording::{Control, Press, Recording};
 
-use twintac_recording::{Press, Recording};
-
-use crate::bench_fit::deepest_pose;
+use crate::bench_fit::{deepest_pose, n_places};
 use crate::{DigitacError, seed};
+
+/// Side of the square in which presses belong together, mm.
+const BLOCK_MM: f64 = 0.1;
+/// The same on dense grids, whose neighbours know too much of each other.
+const DENSE_BLOCK_MM: f64 = 3.0;
+/// Static presses are on a dense grid from so many places on.
+const DENSE_FROM: usize = 150;
 
 /// How presses are divided.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SplitSettings {
     /// Presses whose places fall into the same square of this side belong together, mm. Dense grids want
-    /// several of their steps.
-    pub block_mm: f64,
+    /// several of their steps. Default: 0.1; 3 from 150 places on, if each press is one frame under a prescribed force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block_mm: Option<f64>,
     /// One of so many places is held out for testing.
     pub test_one_in: usize,
     /// One of so many of the remaining places is held out for validation.
     pub validation_one_in: usize,
     /// So many places teach at most, drawn at random; presses at the others are not used. Default: all that are not held out for testing.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub teaching_places: Option<usize>,
     /// Mountings that are held out for testing as a whole; if there are any, no places are.
     #[serde(alias = "test_files")]
     pub test_mountings: BTreeSet<String>,
-    /// Seed.
-    pub seed: u64,
 }
 
 impl Default for SplitSettings {
     fn default() -> Self {
         Self {
-            block_mm: 0.1,
+            block_mm: None,
             test_one_in: 4,
             validation_one_in: 5,
             teaching_places: None,
             test_mountings: BTreeSet::new(),
-            seed: 1,
         }
+    }
+}
+
+impl Checked for SplitSettings {
+    fn check(&self, ranges: &mut Ranges) {
+        let Self {
+            block_mm,
+            test_one_in,
+            validation_one_in,
+            teaching_places,
+            test_mountings: _,
+        } = self;
+        if let Some(block_mm) = block_mm {
+            ranges.number("block_mm", *block_mm, 0.01..=100.0);
+        }
+        ranges.number("test_one_in", *test_one_in, 2.0..=1000.0);
+        ranges.number("validation_one_in", *validation_one_in, 2.0..=1000.0);
+        if let Some(teaching_places) = teaching_places {
+            ranges.number("teaching_places", *teaching_places, 2.0..=1e6);
+        }
+    }
+}
+
+impl SplitSettings {
+    /// Side of the square in which presses of a recording belong together, mm.
+    ///
+    /// # Errors
+    /// A press without frames.
+    pub fn block_mm_of(&self, recording: &Recording) -> Result<f64, DigitacError> {
+        if let Some(block_mm) = self.block_mm {
+            return Ok(block_mm);
+        }
+        let is_static = |press: &Press| press.control == Control::Force && press.time_s.len() == 1;
+        let is_dense = recording.presses.iter().all(is_static) && n_places(recording)? >= DENSE_FROM;
+        Ok(if is_dense { DENSE_BLOCK_MM } else { BLOCK_MM })
+    }
+
+    /// Whether the mountings that are to be held out are there.
+    fn check_mountings(&self, recording: &Recording) -> Result<(), DigitacError> {
+        let there: BTreeSet<&String> = recording.presses.iter().map(|press| &press.mounting).collect();
+        let Some(unknown) = self.test_mountings.iter().find(|name| !there.contains(name)) else {
+            return Ok(());
+        };
+        let names: Vec<&str> = there.iter().map(|name| name.as_str()).collect();
+        let hint = match &names[..] {
+            [] => "there is no press at all".to_owned(),
+            names => format!("there are `{}`", names.join("`, `")),
+        };
+        let problem = format!("names `{unknown}`, of which there is no press");
+        Err(Problem::new("test_mountings", problem, hint).into())
     }
 }
 
@@ -63,22 +119,20 @@ type Place<'a> = (&'a str, i64, i64);
 
 impl Split {
     /// Divides the presses of a recording by place. The outermost places of each file are always used for training: a twin is tested
-    /// between the places that it was trained on.
-    pub fn new(recording: &Recording, settings: &SplitSettings) -> Result<Self, DigitacError> {
+    /// between the places that it was trained on. `seed` draws the others.
+    ///
+    /// # Errors
+    /// Settings that cannot be; mountings to hold out that are not there; a press without frames; too few places.
+    pub fn new(recording: &Recording, settings: &SplitSettings, seed: u64) -> Result<Self, DigitacError> {
         let presses = &recording.presses;
-        if settings.test_one_in < 2 || settings.validation_one_in < 2 {
-            return Err(DigitacError::Setting {
-                setting: "test_one_in, validation_one_in",
-                expected: "2 or more",
-                found: format!("{}, {}", settings.test_one_in, settings.validation_one_in),
-            });
-        }
+        settings.checked()?;
+        settings.check_mountings(recording)?;
         let of_mountings = |press: &Press| settings.test_mountings.contains(&press.mounting);
         let test: BTreeSet<usize> = (0..presses.len())
             .filter(|index| of_mountings(&presses[*index]))
             .collect();
         let drawn = test.is_empty();
-        Self::around(recording, test, drawn, settings)
+        Self::around(recording, test, drawn, settings, seed)
     }
 
     /// Divides what is left beside test presses, which are drawn by place if they are not given.
@@ -87,15 +141,14 @@ impl Split {
         test: BTreeSet<usize>,
         is_drawn: bool,
         settings: &SplitSettings,
+        seed_number: u64,
     ) -> Result<Self, DigitacError> {
         let presses = &recording.presses;
+        let block_mm = settings.block_mm_of(recording)?;
         let mut groups: BTreeMap<Place<'_>, Vec<usize>> = BTreeMap::new();
         for (index, press) in presses.iter().enumerate() {
             if !test.contains(&index) {
-                groups
-                    .entry(place(press, settings.block_mm)?)
-                    .or_default()
-                    .push(index);
+                groups.entry(place(press, block_mm)?).or_default().push(index);
             }
         }
         let n_places = groups.len();
@@ -104,7 +157,7 @@ impl Split {
             in_file
                 .entry(&press.mounting)
                 .or_default()
-                .push(place(press, settings.block_mm)?);
+                .push(place(press, block_mm)?);
         }
         let outermost: BTreeSet<Place<'_>> = in_file.values().flat_map(|places| outermost(places)).collect();
         let (outer, inner): (Vec<_>, Vec<_>) = groups
@@ -117,20 +170,15 @@ impl Split {
             test: test.into_iter().collect(),
         };
         if is_drawn {
-            split.test = draw(&mut inner, settings.test_one_in, settings.seed, "test");
+            split.test = draw(&mut inner, settings.test_one_in, seed_number, "test");
         }
         let mut outer: Vec<Vec<usize>> = outer.into_iter().map(|(_, presses)| presses).collect();
         if let Some(n_teaching) = settings.teaching_places {
             inner.append(&mut outer);
-            inner.shuffle(&mut seed::stream(settings.seed, "split/teaching"));
+            inner.shuffle(&mut seed::stream(seed_number, "split/teaching"));
             inner.truncate(n_teaching);
         }
-        split.validation = draw(
-            &mut inner,
-            settings.validation_one_in,
-            settings.seed,
-            "validation",
-        );
+        split.validation = draw(&mut inner, settings.validation_one_in, seed_number, "validation");
         split.train = inner.into_iter().chain(outer).flatten().collect();
         for part in [&mut split.train, &mut split.validation, &mut split.test] {
             part.sort_unstable();
@@ -224,7 +272,7 @@ mod tests {
         #[test]
         fn every_press_is_somewhere_and_repeats_stay_together(n_places in 7_usize..60, repeats in 1_usize..4, seed in 0_u64..99) {
             let recording = line(n_places, repeats);
-            let split = Split::new(&recording, &SplitSettings { seed, ..SplitSettings::default() }).unwrap();
+            let split = Split::new(&recording, &SplitSettings::default(), seed).unwrap();
             let mut all = [&split.train[..], &split.validation, &split.test].concat();
             all.sort_unstable();
             prop_assert_eq!(all, (0..recording.presses.len()).collect::<Vec<_>>());
@@ -249,6 +297,7 @@ mod tests {
                 test_mountings,
                 ..SplitSettings::default()
             },
+            1,
         )
         .unwrap();
         assert_eq!(split.test, (12..24).collect::<Vec<_>>());
@@ -263,8 +312,8 @@ mod tests {
         let (all, few) = (SplitSettings::default(), settings);
         let recording = line(24, 1);
         let (all, few) = (
-            Split::new(&recording, &all).unwrap(),
-            Split::new(&recording, &few).unwrap(),
+            Split::new(&recording, &all, 1).unwrap(),
+            Split::new(&recording, &few, 1).unwrap(),
         );
         assert_eq!(all.test, few.test);
         assert_eq!(few.train.len() + few.validation.len(), 6);
@@ -273,7 +322,40 @@ mod tests {
 
     #[test]
     fn too_few_places_are_an_error() {
-        assert!(Split::new(&line(3, 5), &SplitSettings::default()).is_err());
-        assert!(Split::new(&line(3, 0), &SplitSettings::default()).is_err());
+        assert!(Split::new(&line(3, 5), &SplitSettings::default(), 1).is_err());
+        assert!(Split::new(&line(3, 0), &SplitSettings::default(), 1).is_err());
+    }
+
+    #[test]
+    fn a_mounting_that_is_not_there_cannot_be_held_out() {
+        let settings = SplitSettings {
+            test_mountings: BTreeSet::from(["file".to_owned(), "nosuchfile.csv".to_owned()]),
+            ..SplitSettings::default()
+        };
+        let error = Split::new(&line(12, 1), &settings, 1).unwrap_err().to_string();
+        let expected =
+            "setting `test_mountings` names `nosuchfile.csv`, of which there is no press; there are `file`";
+        assert_eq!(error, expected);
+    }
+
+    #[test]
+    fn presses_of_a_dense_grid_belong_together_in_larger_squares_unless_settings_say_otherwise() {
+        let mut recording = line(DENSE_FROM, 1);
+        let block_mm = |recording: &Recording, block_mm| {
+            let settings = SplitSettings {
+                block_mm,
+                ..SplitSettings::default()
+            };
+            settings.block_mm_of(recording).unwrap()
+        };
+        assert_eq!(block_mm(&recording, None), BLOCK_MM);
+        for press in &mut recording.presses {
+            press.control = Control::Force;
+            press.time_s.truncate(1);
+        }
+        assert_eq!(block_mm(&recording, None), DENSE_BLOCK_MM);
+        assert_eq!(block_mm(&recording, Some(0.5)), 0.5);
+        recording.presses.pop();
+        assert_eq!(block_mm(&recording, None), BLOCK_MM);
     }
 }

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
+use twintac_config::Checked;
 use twintac_learn::{AdamW, AdamWSettings};
 
 use super::batch::{Batch, batches};
@@ -56,16 +57,20 @@ pub struct Trained {
 }
 
 /// Trains every variant of the settings, in their order, unless `progress` breaks it off. `presses` are all presses of the recording: the gel remembers those that do not
-/// teach.
+/// teach. `seed` draws weights, batches and noise.
+///
+/// # Errors
+/// Settings that cannot be; presses without a usable reading above zero; a loss that is no number; [`DigitacError::Stopped`].
 pub fn train(
     presses: &[PairedPress],
     taxels: &[String],
     split: &Split,
     scale: &Scale,
     settings: &TrainSettings,
+    seed: u64,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<Trained>, DigitacError> {
-    settings.check()?;
+    settings.checked()?;
     let parts = Parts::new(presses, taxels, split)?;
     let no_scale = || DigitacError::TooFew {
         expected: "usable readings above zero to train with".into(),
@@ -74,7 +79,7 @@ pub fn train(
     let normalization = Normalization::of(&parts.of(&split.train)).ok_or_else(no_scale)?;
     let both = [&split.train[..], &split.validation].concat();
     settings
-        .variants
+        .variants()
         .iter()
         .map(|&variant| {
             let physics = |teachers: &[usize]| -> Result<Physics, DigitacError> {
@@ -88,18 +93,19 @@ pub fn train(
             let of_train = physics(&split.train)?;
             let mut history = Vec::new();
             let parameters = if variant.has_perceptron() {
-                let (parameters, losses) = train_variant(&of_train, &parts, split, settings, progress)?;
+                let (parameters, losses) =
+                    train_variant(&of_train, &parts, split, (settings, seed), progress)?;
                 history = losses;
                 parameters
             } else {
-                Parameters::new(&of_train, &[], settings.seed)
+                Parameters::new(&of_train, &[], seed)
             };
             let mut twin = Twin::new(taxels.to_vec(), of_train, parameters);
             let validation = score_some(&twin, presses, &split.validation, scale);
             if !variant.has_perceptron() {
                 // Nothing that the validation presses stopped: they may teach as well, now that they have judged.
                 let of_both = physics(&both)?;
-                let parameters = Parameters::new(&of_both, &[], settings.seed);
+                let parameters = Parameters::new(&of_both, &[], seed);
                 twin = Twin::new(taxels.to_vec(), of_both, parameters);
             }
             Ok(Trained {
@@ -113,10 +119,26 @@ pub fn train(
 
 /// The variant with the smallest headline error on validation presses; never chosen by test presses. Of
 /// equals, the first.
-#[must_use]
-pub fn choose(trained: &[Trained]) -> Option<&Trained> {
+///
+/// # Errors
+/// Nothing was trained, or no validation press is in contact: nothing tells which variant is the best.
+pub fn choose(trained: &[Trained]) -> Result<&Trained, DigitacError> {
+    if trained.is_empty() {
+        return Err(DigitacError::TooFew {
+            expected: "a variant to choose".into(),
+            found: "none".into(),
+        });
+    }
     let error = |t: &Trained| t.validation.overall.nearest_in_contact.percent;
-    trained.iter().min_by(|a, b| error(a).total_cmp(&error(b)))
+    let judged = trained
+        .iter()
+        .filter_map(|trained| Some((trained, error(trained)?)));
+    let best = judged.min_by(|a, b| a.1.total_cmp(&b.1));
+    best.map(|(trained, _)| trained)
+        .ok_or_else(|| DigitacError::TooFew {
+            expected: "validation presses in contact, to choose a variant by".into(),
+            found: "none".into(),
+        })
 }
 
 struct Parts<'a> {
@@ -223,14 +245,14 @@ fn train_variant(
     physics: &Physics,
     parts: &Parts<'_>,
     split: &Split,
-    settings: &TrainSettings,
+    (settings, seed_number): (&TrainSettings, u64),
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(Parameters, Vec<Epoch>), DigitacError> {
     let variant = physics.variant;
-    let train = gather(physics, &parts.rested(physics, &split.train), settings);
-    let validation = gather(physics, &parts.rested(physics, &split.validation), settings);
-    let mut random = seed::stream(settings.seed, &format!("training/{variant}"));
-    let mut parameters = Parameters::new(physics, settings.hidden(variant), settings.seed);
+    let gather = |presses: &[usize]| gather(physics, &parts.rested(physics, presses), settings, seed_number);
+    let (train, validation) = (gather(&split.train), gather(&split.validation));
+    let mut random = seed::stream(seed_number, &format!("training/{variant}"));
+    let mut parameters = Parameters::new(physics, settings.hidden(variant), seed_number);
     let mut optimizer = AdamW::new(
         parameters.arrays(),
         AdamWSettings {
@@ -281,7 +303,7 @@ fn train_variant(
             continue;
         }
         since_best += 1;
-        if since_best % settings.patience.max(1) == 0 {
+        if since_best % settings.patience == 0 {
             learning_rate = (learning_rate * settings.rate_factor).max(SMALLEST_RATE);
         }
         if since_best >= settings.stop_patience {
@@ -292,14 +314,19 @@ fn train_variant(
 }
 
 /// Presses in batches of about the size of the settings.
-fn gather(physics: &Physics, presses: &[PairedPress], settings: &TrainSettings) -> Vec<Batch> {
+fn gather(
+    physics: &Physics,
+    presses: &[PairedPress],
+    settings: &TrainSettings,
+    seed_number: u64,
+) -> Vec<Batch> {
     let n_frames = presses
         .iter()
         .map(|p| p.features.n_frames().min(settings.max_frames))
         .max()
         .unwrap_or(1);
     let size = settings.batch_frames.div_ceil(n_frames.max(1));
-    batches(&(0..presses.len()).collect::<Vec<_>>(), size, settings.seed)
+    batches(&(0..presses.len()).collect::<Vec<_>>(), size, seed_number)
         .iter()
         .map(|batch| {
             let chosen: Vec<&PairedPress> = batch.iter().map(|&index| &presses[index]).collect();

@@ -4,7 +4,7 @@ use pulp::Simd;
 use twintac_learn::Linear;
 
 use super::product::Weights;
-use super::simd::lanes;
+use crate::simd::lanes;
 
 /// Rows that go through a layer together.
 const ROWS: usize = 2;

@@ -3,7 +3,6 @@
 mod dense;
 mod places;
 mod product;
-mod simd;
 mod sparse;
 
 use glam::DVec2;
@@ -15,11 +14,10 @@ use crate::contact::N_CHANNELS;
 use crate::layout::Layout;
 use crate::network::{LocalNetwork, Turn};
 use crate::networks::{PRESSURE_KPA, WRENCH};
+use crate::simd::dispatch;
 use dense::padded;
 use places::Places;
 use sparse::{Near, Sparse};
-
-pub(crate) use simd::dispatch;
 
 /// Ports that are evaluated together at most, but for those of a single sensor.
 const MOST_PORTS: usize = 64;

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::simd::{lanes, vectors};
+use crate::simd::{lanes, vectors};
 
 /// Vectors of a row of sums that stay in the processor's registers: the first that divides a row.
 const WIDTHS: [usize; 3] = [4, 2, 1];

@@ -5,9 +5,9 @@ use pulp::Simd;
 use super::dense::{Dense, padded, padded_rows};
 use super::places::Places;
 use super::product::Weights;
-use super::simd::lanes;
 use crate::contact::N_CHANNELS;
 use crate::network::{LocalNetwork, silu};
+use crate::simd::lanes;
 
 /// Points whose features are finished together.
 const POINTS: usize = 8;

@@ -12,9 +12,9 @@ const ONE_ASKED_OF: usize = 8;
 /// The part of those contacts whose novelty is at most 1.
 const FAMILIAR: f64 = 0.99;
 
-/// What was taught, as far as it tells what is new.
+/// The contacts that were taught, wherever they were.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Novelty {
+pub(crate) struct Nearest {
     /// Traits of all contacts that were taught, each over its deviation among those that press. `[n_kept][N_TRAITS]`
     pub(crate) kept: Matrix,
     /// One over the deviation of each trait. `[N_TRAITS]`
@@ -23,7 +23,7 @@ pub(crate) struct Novelty {
     pub(crate) unit: f32,
 }
 
-impl Novelty {
+impl Nearest {
     /// Of the frames of lessons.
     pub(crate) fn of(frames: &Frames, grid: &SurfaceGrid) -> Self {
         let contacts: Vec<(&TaughtFrame, [f32; N_TRAITS])> = frames
@@ -84,7 +84,7 @@ fn nearest<'a>(contacts: impl IntoIterator<Item = &'a [f32; N_TRAITS]>, traits: 
 }
 
 /// The inputs of the first grid.
-fn of_grid<'a>(grid: &SurfaceGrid, inputs: &'a [f32]) -> &'a [f32] {
+pub(super) fn of_grid<'a>(grid: &SurfaceGrid, inputs: &'a [f32]) -> &'a [f32] {
     &inputs[..grid.len() * crate::contact::N_CHANNELS]
 }
 

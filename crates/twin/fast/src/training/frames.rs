@@ -73,11 +73,12 @@ impl Frames {
         layout: &Layout,
         (places_mm, n_taxels): (&[DVec2], usize),
         center_mm: DVec3,
+        surfaces: &Surfaces,
     ) -> Result<Self, ShapeError> {
         let points = ContactPoints::new(&layout.grids);
         let mut frames = Vec::new();
         for (number, lesson) in lessons.iter().enumerate() {
-            let body = Body::new(&lesson.shape, &Surfaces::new())?;
+            let body = Body::new(&lesson.shape, surfaces)?;
             let largest = |n: usize| {
                 let floor = lesson.frames.iter().flat_map(|frame| &frame.floor_kpa[..n]);
                 floor.copied().fold(f32::MIN_POSITIVE, f32::max)

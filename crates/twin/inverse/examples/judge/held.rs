@@ -107,7 +107,7 @@ impl Judge {
                     .map(|true_kpa| f64::from(*true_kpa) + normal(random, NOISE_KPA))
                     .collect();
                 let start = Instant::now();
-                let contact = tracker.update(1.0 / RATE_HZ, &readings_kpa);
+                let contact = tracker.update(1.0 / RATE_HZ, &readings_kpa)?;
                 let seconds = start.elapsed().as_secs_f64();
                 if is_timed && contact.is_some() {
                     self.times.push((seconds, is_first));

@@ -82,7 +82,10 @@ fn response(sensor: &Sensor, place_mm: [f64; 2], depth_mm: f64) -> Vec<f64> {
 }
 
 fn errors(percent: f64) -> Errors {
-    let mean = |percent| Mean { percent, count: 900 };
+    let mean = |percent| Mean {
+        percent: Some(percent),
+        count: 900,
+    };
     Errors {
         nearest_in_contact: mean(percent),
         all: mean(0.4 * percent),

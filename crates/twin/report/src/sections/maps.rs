@@ -14,7 +14,7 @@ const MARK_MM: f64 = 1.0;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     let shown = three(report.evaluation).into_iter();
-    let maps = shown.filter_map(|(label, press)| peak(label, press, report.sensor));
+    let maps = shown.filter_map(|(label, (press, _))| peak(label, press, report.sensor));
     let caption = "Sensor and twin at the peak of the press.";
     let pictures = maps.map(|maps| figure(maps.scene(), report.provenance, caption));
     explained(

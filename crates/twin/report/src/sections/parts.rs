@@ -39,7 +39,7 @@ pub(super) fn words(text: impl Into<String>) -> Cell {
     Cell::Words(text.into())
 }
 
-pub(super) fn percent_cell(value: f64) -> Cell {
+pub(super) fn percent_cell(value: impl Into<Option<f64>>) -> Cell {
     Cell::Number(percent(value))
 }
 
@@ -47,8 +47,11 @@ pub(super) fn head<const N: usize>(names: [&str; N]) -> Vec<String> {
     names.map(str::to_owned).to_vec()
 }
 
-/// An error in %, kept on one line, with three significant digits or so.
-pub(super) fn percent(value: f64) -> String {
+/// An error in %, kept on one line, with three significant digits or so; none over nothing.
+pub(super) fn percent(value: impl Into<Option<f64>>) -> String {
+    let Some(value) = value.into() else {
+        return "none".into();
+    };
     if !value.is_finite() {
         return "–".into();
     }
@@ -56,10 +59,11 @@ pub(super) fn percent(value: f64) -> String {
     format!("{}\u{a0}%", fixed(value, decimals))
 }
 
-pub(super) fn bar(name: impl Into<String>, value: f64, ink: Ink) -> Bar {
+pub(super) fn bar(name: impl Into<String>, value: impl Into<Option<f64>>, ink: Ink) -> Bar {
+    let value = value.into();
     Bar {
         name: name.into(),
-        value,
+        value: value.unwrap_or(f64::NAN),
         uncertainty: None,
         text: percent(value),
         ink,
@@ -107,21 +111,17 @@ pub(super) fn taxels_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
     sensor.taxels.iter().map(place).collect()
 }
 
-/// Error of a press, nearest taxel in contact, %.
-pub(super) fn error_percent(press: &PressEvaluation) -> f64 {
-    press.errors.nearest_in_contact.percent
-}
-
-/// Presses that touched, from the best to the worst.
-pub(super) fn ranked(evaluation: &Evaluation) -> Vec<&PressEvaluation> {
-    let touched = |press: &&PressEvaluation| press.errors.nearest_in_contact.count > 0;
-    let mut presses: Vec<_> = evaluation.presses.iter().filter(touched).collect();
-    presses.sort_by(|a, b| error_percent(a).total_cmp(&error_percent(b)));
-    presses
+/// Presses that touched and their errors, nearest taxel in contact, %, from the best to the worst.
+pub(super) fn ranked(evaluation: &Evaluation) -> Vec<(&PressEvaluation, f64)> {
+    let presses = evaluation.presses.iter();
+    let touched = presses.filter_map(|press| Some((press, press.errors.nearest_in_contact.percent?)));
+    let mut touched: Vec<_> = touched.collect();
+    touched.sort_by(|a, b| a.1.total_cmp(&b.1));
+    touched
 }
 
 /// The best press, the median and the worst.
-pub(super) fn three(evaluation: &Evaluation) -> Vec<(&'static str, &PressEvaluation)> {
+pub(super) fn three(evaluation: &Evaluation) -> Vec<(&'static str, (&PressEvaluation, f64))> {
     let ranked = ranked(evaluation);
     match ranked.len() {
         0 => Vec::new(),
@@ -165,5 +165,6 @@ mod tests {
         assert_eq!(percent(1.274), "1.27\u{a0}%");
         assert_eq!(percent(12.34), "12.3\u{a0}%");
         assert_eq!(percent(f64::NAN), "–");
+        assert_eq!(percent(None), "none");
     }
 }

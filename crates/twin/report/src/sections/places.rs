@@ -1,9 +1,10 @@
 //! Errors over the gel, for presses that are one frame each.
 
+use digitac::PressEvaluation;
 use twintac_plot::Places;
 use twintac_plot::page::Block;
 
-use super::parts::{error_percent, figure, ranked, taxels_mm};
+use super::parts::{figure, ranked, taxels_mm};
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
@@ -16,13 +17,14 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     if !is_static || touched.is_empty() {
         return Vec::new();
     }
-    let nearest: Vec<f64> = touched.iter().map(|press| error_percent(press)).collect();
-    let all: Vec<f64> = touched.iter().map(|press| press.errors.all.percent).collect();
+    let nearest: Vec<f64> = touched.iter().map(|(_, percent)| *percent).collect();
+    let all = |(press, _): &(&PressEvaluation, f64)| press.errors.all.percent.unwrap_or(f64::NAN);
+    let all: Vec<f64> = touched.iter().map(all).collect();
     let picture = |(title, values): (&str, Vec<f64>)| {
         let places = Places {
             title: title.into(),
             unit: "%".into(),
-            places_mm: touched.iter().map(|press| press.place_mm).collect(),
+            places_mm: touched.iter().map(|(press, _)| press.place_mm).collect(),
             values,
             marks_mm: taxels_mm(report.sensor),
         };

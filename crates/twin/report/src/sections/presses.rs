@@ -4,16 +4,16 @@ use digitac::{PairedPress, PressEvaluation};
 use twintac_plot::page::Block;
 use twintac_plot::{Ink, Panel, Panels, Series, extent, padded};
 
-use super::parts::{error_percent, explained, figure, line, percent, three};
+use super::parts::{explained, figure, line, percent, three};
 use crate::TwinReport;
 
 pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     let shown = three(report.evaluation).into_iter();
-    let shown = shown.filter(|(_, press)| press.time_s.len() > 1);
-    let pictures = shown.map(|(label, press)| {
+    let shown = shown.filter(|(_, (press, _))| press.time_s.len() > 1);
+    let pictures = shown.map(|(label, (press, error))| {
         let paired = report.presses.iter().find(|paired| paired.name == press.name);
         let panels = panels(label, press, paired, &report.evaluation.taxels);
-        let error = percent(error_percent(press));
+        let error = percent(error);
         let caption = format!("{}: error {error}, nearest taxel in contact.", press.name);
         figure(panels.scene(), report.provenance, caption)
     });

@@ -80,7 +80,7 @@ fn comparison(report: &TwinReport<'_>) -> Scene {
 }
 
 fn table(report: &TwinReport<'_>) -> Table {
-    let row = |name: &str, nearest: f64, all: f64, source: Provenance| -> Row {
+    let row = |name: &str, nearest: Option<f64>, all: Option<f64>, source: Provenance| -> Row {
         let source = Cell::Badge(badge(source));
         vec![words(name), percent_cell(nearest), percent_cell(all), source].into()
     };
@@ -93,7 +93,12 @@ fn table(report: &TwinReport<'_>) -> Table {
         .collect();
     rows[0].is_chosen = true;
     // The paper does not say which frames and taxels its mean is over.
-    rows.push(row("paper", PAPER_ERROR_PERCENT, f64::NAN, Provenance::Real));
+    rows.push(row(
+        "paper",
+        Some(PAPER_ERROR_PERCENT),
+        Some(f64::NAN),
+        Provenance::Real,
+    ));
     Table {
         caption: "The same in numbers".into(),
         head: head(["", "nearest", "all", "source"]),

@@ -32,11 +32,10 @@ fn result(report: &TwinReport<'_>) -> String {
         Provenance::Emulated => "emulated data, which says nothing about a physical sensor",
         Provenance::Simulated => "simulated data, which says nothing about a physical sensor",
     };
-    let error = report.evaluation.twin.overall.nearest_in_contact;
-    if error.count == 0 || !error.percent.is_finite() {
+    let Some(error) = report.evaluation.twin.overall.nearest_in_contact.percent else {
         return format!("No error could be computed for the {presses} ({source}).");
-    }
-    let error = percent(error.percent);
+    };
+    let error = percent(error);
     format!("The twin predicts the nearest taxel’s reading on {presses} with {error} error ({source}).")
 }
 

@@ -34,17 +34,11 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     }
 
     let rows = taxels().enumerate().map(|(index, (name, found))| -> Row {
-        let nearest = found.nearest_in_contact;
-        let nearest = if nearest.count == 0 {
-            f64::NAN
-        } else {
-            nearest.percent
-        };
         let described = report.sensor.taxels.iter().find(|taxel| taxel.name == *name);
         let note = described.and_then(|taxel| taxel.doubtful.clone());
         vec![
             words(name),
-            percent_cell(nearest),
+            percent_cell(found.nearest_in_contact.percent),
             percent_cell(found.all.percent),
             percent_cell(bias_percent(report, index)),
             words(note.unwrap_or_default()),
@@ -60,15 +54,15 @@ pub(super) fn blocks(report: &TwinReport<'_>) -> Vec<Block> {
     vec![Block::Figures(pictures), Block::Table(table)]
 }
 
-/// Mean signed error of a taxel, % of the largest reading of all presses.
-fn bias_percent(report: &TwinReport<'_>, taxel: usize) -> f64 {
+/// Mean signed error of a taxel, % of the largest reading of all presses; `None` without a usable reading.
+fn bias_percent(report: &TwinReport<'_>, taxel: usize) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0_f64);
     for (_, [measured, predicted]) in usable(report.evaluation).filter(|(of, _)| *of == taxel) {
         sum += predicted - measured;
         count += 1.0;
     }
-    let largest_kpa = largest_kpa(&report.evaluation.presses).max(f64::MIN_POSITIVE);
-    100.0 * sum / count.max(1.0) / largest_kpa
+    let largest_kpa = largest_kpa(&report.evaluation.presses);
+    (count > 0.0 && largest_kpa > 0.0).then(|| 100.0 * sum / count / largest_kpa)
 }
 
 /// Errors of the frames between two depths.

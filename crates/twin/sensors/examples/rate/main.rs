@@ -20,7 +20,7 @@ use std::path::Path;
 
 use digitac::Variant;
 use serde::{Deserialize, Serialize};
-use twintac_files::write_whole;
+use twintac_store::write_whole;
 
 use machine::Machine;
 use measure::{Latency, Rate};

@@ -6,7 +6,7 @@ use digitac::Twin;
 use glam::{DQuat, DVec3};
 use twintac_fast::{Body, FastGel, Touch};
 use twintac_sensors::{Imperfection, SensorBatch};
-use twintac_shape::{Pose, Shape, Surfaces};
+use twintac_shape::{Pose, Shape, SurfaceFile, Surfaces};
 
 /// Taxels of a sensor.
 pub(crate) const N_TAXELS: usize = 8;
@@ -72,7 +72,7 @@ impl Kind {
             Self::Boulder => {
                 let surfaces = twintac_teach::exam_surfaces()?;
                 let (path, _) = surfaces.iter().next().ok_or("no boulder")?;
-                let shape = Shape::Stl { path: path.clone() };
+                let shape = Shape::Stl(SurfaceFile::new(path));
                 return Ok(Body::new(&shape, &surfaces)?);
             }
         };

@@ -21,7 +21,7 @@ use crate::RunError;
 use crate::characterization::Recorded;
 use crate::doubtful::left_out;
 use crate::files::write_file;
-use crate::unseen::refuse_other_taxels;
+use crate::unseen::refuse_other_sensor;
 
 /// What imperfections are found from. Without a model or without recordings, what they would tell is left out.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +73,11 @@ pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImper
     }
     let sensor = &sources.sensor.sensor;
     let model = sources.model.map(Model::load).transpose()?;
-    if let (Some(model), Some(recorded)) = (&model, sources.recorded) {
-        refuse_other_taxels(&recorded.recording, &model.record)?;
+    if let Some(recorded) = sources.recorded {
+        refuse_other_sensor(&recorded.recording, sensor)?;
+    }
+    if let Some(folder) = sources.model {
+        refuse_other_gel(&sensor_of_model(folder)?, sources.sensor, folder)?;
     }
     let casting = model.as_ref().map(|model| Casting {
         provenance: model.record.provenance,
@@ -110,12 +113,30 @@ pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImper
     })
 }
 
+/// A description beside a model is that of the model's sensor: by its taxels, and by their places.
+fn refuse_other_gel(of_model: &SensorFile, described: &SensorFile, folder: &Path) -> Result<(), RunError> {
+    let taxels = |of: &SensorFile| {
+        let taxels = of.sensor.taxels.iter();
+        let places = taxels.map(|taxel| (taxel.name.clone(), taxel.position_mm));
+        places.collect::<Vec<_>>()
+    };
+    if taxels(of_model) == taxels(described) {
+        return Ok(());
+    }
+    Err(RunError::Input(format!(
+        "the model in {} is of the sensor `{}`, whose taxels are others than those of `{}`: leave --sensor out",
+        folder.display(),
+        of_model.sensor.name,
+        described.sensor.name
+    )))
+}
+
 impl FoundImperfection {
     /// Writes the file.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), RunError> {
-        write_file(path, self.text.as_bytes())
+        Ok(write_file(path, self.text.as_bytes())?)
     }
 }

@@ -64,7 +64,7 @@ fn remove(partial: &Path) {
 }
 
 /// `<name>.partial` beside `path`: what a file or a folder is called until it is complete.
-fn partial_path(path: &Path) -> PathBuf {
+pub(crate) fn partial_path(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".partial");
     path.with_file_name(name)

@@ -1,0 +1,67 @@
+//! What is typed is used or refused.
+
+use clap::Parser;
+
+use super::Arguments;
+
+/// Whether a command line is taken.
+fn is_taken(line: &str) -> bool {
+    Arguments::try_parse_from(["twintac"].into_iter().chain(line.split(' '))).is_ok()
+}
+
+/// An argument that needs another one is not checked by clap where a third one rules the other out: it would be ignored.
+#[test]
+fn no_argument_is_ignored_beside_another() {
+    for line in [
+        "simulate --run r --settings s.toml",
+        "simulate --run r --out o",
+        "simulate --run r --seed 3",
+        "simulate --run r --vtk",
+        "simulate --run r --profile",
+        "simulate --run r --json",
+        "simulate --sensor s --protocol p --out o --json",
+        "simulate --sensor s --protocol p --out o --profile",
+        "simulate --sensor s --path p --vtk",
+        "simulate --sensor s --path p --out o",
+        "simulate --sensor s --path p --seed 3",
+        "reproduce --quick --sensor s --recordings r.csv",
+        "reproduce --json --sensor s --recordings r.csv",
+        "reproduce --paper --sensor s",
+        "mesh --check m.msh --out o",
+        "calibrate --sensor s --curves c --free mu --x-mm 3",
+        "record --protocol p --bench b --scale 5 --faults f",
+        "record --protocol p --bench b --altitude-m 5 --faults f",
+        "record --protocol p --at-once --scale 5",
+        "adapt --model m --out o --recordings r --curve 3",
+        "adapt --model m --out o --recordings r --seeds 3",
+        "predict --model m --path p --seed 3",
+        "stream --lab --out o --frames 3",
+        "stream --lab --out o --seconds 3",
+    ] {
+        assert!(!is_taken(line), "{line}");
+    }
+}
+
+#[test]
+fn what_goes_together_is_taken() {
+    for line in [
+        "simulate --run r",
+        "simulate --sensor s --protocol p --out o --seed 3 --vtk --settings t",
+        "simulate --sensor s --path p --json --profile --settings t",
+        "reproduce --paper --quick --json --seed 3",
+        "reproduce --sensor s --recordings r.csv --settings t --seed 3",
+        "mesh --sensor s --out o",
+        "calibrate --sensor s --csv a.csv --indenter ball --x-mm 3 --free mu",
+        "record --protocol p --lab --faults f",
+        "record --protocol p --lab --at-once",
+        "adapt --model m --out o --recordings r --presses 3 --seed 2",
+        "adapt --model m --out o --run r --curve 3,5 --seeds 2",
+        "predict --model m --protocol p --seed 3",
+        "predict --model m --path p",
+        "stream --lab --out o",
+        "stream --lab --format csv --frames 3 --seconds 2",
+        "dataset --out o --settings t",
+    ] {
+        assert!(is_taken(line), "{line}");
+    }
+}

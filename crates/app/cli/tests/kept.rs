@@ -1,0 +1,416 @@
+//! What a folder keeps never stands for something else. Whatever is changed between two calls of a command in one folder, the second call leaves there what it leaves in a
+//! fresh folder, to the last bit, or is refused with the difference named.
+
+#![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..")
+}
+
+/// A box as an STL file: its origin is in the middle of its lowest face.
+fn box_stl(half_mm: f64) -> String {
+    let corner = |index: usize| {
+        let side = |bit: usize| {
+            if index & (1 << bit) == 0 {
+                -half_mm
+            } else {
+                half_mm
+            }
+        };
+        [side(0), side(1), if index & 4 == 0 { 0.0 } else { 6.0 }]
+    };
+    let faces: [[usize; 3]; 12] = [
+        [0, 2, 1],
+        [1, 2, 3],
+        [4, 5, 6],
+        [5, 7, 6],
+        [0, 1, 4],
+        [1, 5, 4],
+        [2, 6, 3],
+        [3, 6, 7],
+        [0, 4, 2],
+        [2, 4, 6],
+        [1, 3, 5],
+        [3, 7, 5],
+    ];
+    let mut text = String::from("solid box\n");
+    for face in faces {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in face.map(corner) {
+            writeln!(text, "vertex {x} {y} {z}").unwrap();
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid box\n"
+}
+
+/// The files that commands read, as coarse and short as will go.
+fn inputs() -> BTreeMap<&'static str, String> {
+    let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
+    let sensor = read("sensors/phystac.toml");
+    let (before, after) = sensor.split_once("[gel.material]").unwrap();
+    let (material, after) = after.split_once("\n\n").unwrap();
+    let before = before
+        .replace("  \"gel.material.shear_modulus_kpa\",\n", "")
+        .replace("  \"gel.material.poissons_ratio\",\n", "")
+        .replace("[gel.solid]", "[gel]\nmaterial = \"gel.toml\"\n\n[gel.solid]");
+    let block = "[[indenters]]\nname = \"block\"\nshape = { kind = \"stl\", path = \"block.stl\" }\n";
+    let sensor = format!("{before}{after}\n{block}").replace("depth_mm = 5.0", "depth_mm = 1.0");
+    let reality = read("realities/default.toml")
+        .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
+        .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
+    BTreeMap::from([
+        ("sensor.toml", sensor),
+        ("gel.toml", material.trim().to_owned()),
+        ("block.stl", box_stl(5.0)),
+        ("reality.toml", reality),
+        (
+            "settings.toml",
+            "[simulate]\nedges_per_height = 2.0\nedges_per_contact_radius = 1.0\ndepth_step_mm = 0.5\n[bench]\nn_places = 2\n[train]\nepochs = 3\n"
+                .to_owned(),
+        ),
+        (
+            "simulate.toml",
+            "[simulate]\nedges_per_height = 2.0\nedges_per_contact_radius = 1.0\ndepth_step_mm = 0.5\n".to_owned(),
+        ),
+        (
+            "protocol.toml",
+            "summary = \"A few presses\"\nindenters = [\"block\"]\nplaces = { kind = \"random\", x_mm = [-9.0, 9.0], y_mm = [-4.0, 4.0], count = 8 }\ndepth_mm = [0.5, 0.9]\nspeed_mm_per_s = 4.0\nhold_s = 0.2\nclearance_mm = 0.3\n"
+                .to_owned(),
+        ),
+    ])
+}
+
+/// What is changed between two calls: a file, and what in it.
+const CHANGES: [(&str, &str, &str, &str); 9] = [
+    (
+        "the gel's material",
+        "gel.toml",
+        "shear_modulus_kpa = 15.2",
+        "shear_modulus_kpa = 19.0",
+    ),
+    ("the indenter's surface", "block.stl", "", ""),
+    (
+        "the gel's size",
+        "sensor.toml",
+        "[34.0, 18.0, 8.5]",
+        "[34.0, 18.0, 8.0]",
+    ),
+    (
+        "a taxel's name",
+        "sensor.toml",
+        "name = \"t0\"",
+        "name = \"first\"",
+    ),
+    (
+        "the sensor's name",
+        "sensor.toml",
+        "name = \"phystac\"",
+        "name = \"other\"",
+    ),
+    (
+        "the meshes",
+        "settings.toml",
+        "edges_per_height = 2.0",
+        "edges_per_height = 2.2",
+    ),
+    ("the training", "settings.toml", "epochs = 3", "epochs = 4"),
+    ("the bench", "reality.toml", "seed = 7", "seed = 8"),
+    ("the protocol", "protocol.toml", "[0.5, 0.9]", "[0.4, 0.8]"),
+];
+
+/// Inputs, and a folder that commands write to.
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self(tempfile::tempdir().unwrap());
+        for (name, text) in inputs() {
+            fs::write(desk.path(name), text).unwrap();
+        }
+        desk
+    }
+
+    /// The same, with all that commands have written: elsewhere.
+    fn copied(&self) -> Self {
+        let desk = Self(tempfile::tempdir().unwrap());
+        copy(self.0.path(), desk.0.path());
+        desk
+    }
+
+    /// Gives another desk its own runs: a model, and recordings that the model has not seen.
+    fn give(&self, other: &Self) {
+        copy(&self.path("run"), &other.path("first"));
+        copy(&self.path("second"), &other.path("second"));
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn change(&self, (_, file, from, to): (&str, &str, &str, &str)) {
+        let path = self.path(file);
+        let text = fs::read_to_string(&path).unwrap();
+        let changed = if file == "block.stl" {
+            box_stl(4.0)
+        } else {
+            text.replacen(from, to, 1)
+        };
+        assert_ne!(text, changed, "{file}");
+        fs::write(path, changed).unwrap();
+        let simulate = self.path("simulate.toml");
+        if file == "settings.toml" && from.starts_with("edges") {
+            let text = fs::read_to_string(&simulate).unwrap();
+            fs::write(simulate, text.replacen(from, to, 1)).unwrap();
+        }
+    }
+
+    /// Runs a command; words that are the names of inputs or outputs become paths.
+    fn call(&self, command: &str) -> Output {
+        let words = command
+            .split_whitespace()
+            .map(|word| match word.strip_prefix('@') {
+                Some(name) => self.path(name).display().to_string(),
+                None => word.to_owned(),
+            });
+        Command::new(env!("CARGO_BIN_EXE_twintac"))
+            .args(words)
+            .current_dir(self.0.path())
+            .output()
+            .unwrap()
+    }
+
+    /// Runs commands until one is refused; what that says.
+    fn all(&self, commands: &[&str]) -> Result<(), String> {
+        for command in commands {
+            let output = self.call(command);
+            if !output.status.success() {
+                return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+            }
+        }
+        Ok(())
+    }
+
+    /// What files have, but for where the desk stands.
+    fn results(&self, files: &[&str]) -> Vec<Vec<u8>> {
+        let here = self.0.path().display().to_string();
+        let read = |file: &&str| {
+            let bytes = fs::read(self.path(file)).unwrap_or_default();
+            String::from_utf8(bytes).map_or_else(
+                |binary| binary.into_bytes(),
+                |text| text.replace(&here, "").into_bytes(),
+            )
+        };
+        files.iter().map(read).collect()
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).unwrap();
+        }
+    }
+}
+
+/// Commands that work in one folder, and the files that say what came of it.
+struct Work {
+    commands: &'static [&'static str],
+    results: &'static [&'static str],
+    /// Commands that another change does not reach.
+    untouched_by: &'static [&'static str],
+}
+
+const RECORD: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --out @run";
+
+/// Presses that nothing is taught by.
+const UNSEEN: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --seed 2 --out @second";
+
+const WORKS: [Work; 5] = [
+    Work {
+        commands: &[
+            RECORD,
+            "align --run @run",
+            "train --run @run",
+            "evaluate --run @run",
+            "report --run @run",
+            "cross-validate --run @run --seeds 1",
+        ],
+        results: &[
+            "run/recordings/presses.parquet",
+            "run/simulation/tables.json",
+            "run/metrics.json",
+            "run/model/weights.safetensors",
+            "run/cross_validation/result.json",
+        ],
+        untouched_by: &[],
+    },
+    // The model is that of a first run, the recordings are those of a second one, and the sensor is another.
+    Work {
+        commands: &[
+            "adapt --model @first/model --recordings @second/recordings/presses.parquet --sensor @sensor.toml --presses 3 --out @adapted",
+        ],
+        results: &["adapted/model/weights.safetensors", "adapted/adaptation.json"],
+        untouched_by: &["settings.toml", "reality.toml", "protocol.toml"],
+    },
+    Work {
+        commands: &[
+            "fast train --sensor @sensor.toml --own-indenters --lessons 20 --exams 1 --steps 20 --out @fast",
+        ],
+        results: &["fast/fast.safetensors", "fast/judgement.json"],
+        untouched_by: &["settings.toml", "reality.toml", "protocol.toml"],
+    },
+    Work {
+        commands: &[
+            "dataset --sensor @sensor.toml --protocol @protocol.toml --settings @simulate.toml --presses 2 --out @data",
+        ],
+        results: &["data/shard-000001-of-000001.parquet"],
+        untouched_by: &["reality.toml"],
+    },
+    Work {
+        commands: &[
+            "simulate --sensor @sensor.toml --protocol @protocol.toml --settings @simulate.toml --out @simulated",
+        ],
+        results: &["simulated/block-000.json"],
+        untouched_by: &["reality.toml"],
+    },
+];
+
+/// Words that name a difference.
+const REFUSALS: [&str; 6] = [
+    "another",
+    "other settings",
+    "are of sensor",
+    "are of the sensor",
+    "taxels",
+    "is of the sensor",
+];
+
+#[test]
+fn what_is_kept_is_what_a_fresh_folder_has() {
+    let first = Desk::new();
+    first.all(WORKS[0].commands).unwrap();
+    first.all(&[UNSEEN]).unwrap();
+    let base = Desk::new();
+    first.give(&base);
+    for work in &WORKS {
+        base.all(work.commands).unwrap();
+    }
+    let mut wrong = String::new();
+    for change in CHANGES {
+        let (name, file, ..) = change;
+        let (again, fresh) = (base.copied(), Desk::new());
+        first.give(&fresh);
+        again.change(change);
+        fresh.change(change);
+        for work in WORKS.iter().filter(|work| !work.untouched_by.contains(&file)) {
+            let was = again.results(work.results);
+            let (kept, made) = (again.all(work.commands), fresh.all(work.commands));
+            match (&kept, &made) {
+                (Err(refused), _) if REFUSALS.iter().any(|words| refused.contains(words)) => {}
+                (Ok(()), Ok(())) if again.results(work.results) == fresh.results(work.results) => {
+                    let is_same = again.results(work.results) == was;
+                    if is_same && file != "settings.toml" && !name.ends_with("name") {
+                        writeln!(wrong, "{name}, {}: no result depends on it", work.commands[0]).unwrap();
+                    }
+                }
+                _ => {
+                    let (kept_in, fresh_in) = (again.results(work.results), fresh.results(work.results));
+                    let pairs = work.results.iter().zip(kept_in.iter().zip(&fresh_in));
+                    let differ: Vec<&str> = pairs
+                        .filter_map(|(file, (kept, fresh))| (kept != fresh).then_some(*file))
+                        .collect();
+                    writeln!(
+                        wrong,
+                        "{name}, {}: kept {kept:?}, fresh {made:?}; {differ:?} differ",
+                        work.commands[0]
+                    )
+                    .unwrap();
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+/// A folder that was moved is the same, and a stage whose inputs changed since is refused by name.
+#[test]
+fn stages_are_read_only_as_they_would_be_made_now() {
+    let desk = Desk::new();
+    desk.all(&[
+        RECORD,
+        "align --run @run",
+        "train --run @run",
+        "evaluate --run @run",
+        "report --run @run",
+    ])
+    .unwrap();
+    let moved = desk.copied();
+    let when = |desk: &Desk| {
+        fs::metadata(desk.path("run/training/stage.json"))
+            .unwrap()
+            .modified()
+            .unwrap()
+    };
+    let before = when(&moved);
+    moved
+        .all(&[RECORD, "align --run @run", "train --run @run"])
+        .unwrap();
+    assert_eq!(when(&moved), before);
+
+    moved.change(CHANGES[6]);
+    moved.all(&[RECORD, "align --run @run"]).unwrap();
+    for stage in ["evaluate", "report"] {
+        let refused = moved.all(&[&format!("{stage} --run @run")]).unwrap_err();
+        assert!(
+            refused.contains("another train") && refused.contains("`twintac train`"),
+            "{refused}"
+        );
+    }
+    moved.all(&["train --run @run"]).unwrap();
+    let refused = moved.all(&["report --run @run"]).unwrap_err();
+    assert!(refused.contains("`twintac evaluate`"), "{refused}");
+    fs::write(moved.path("run/pairs/paired.json"), "[]").unwrap();
+    let refused = moved.all(&["evaluate --run @run"]).unwrap_err();
+    assert!(refused.contains("changed since"), "{refused}");
+}
+
+/// One program at a time works in a run.
+#[test]
+fn a_run_has_one_owner() {
+    let desk = Desk::new();
+    let commands: Vec<&str> = RECORD.split_whitespace().collect();
+    let spawn = || {
+        Command::new(env!("CARGO_BIN_EXE_twintac"))
+            .args(commands.iter().map(|word| word.strip_prefix('@').unwrap_or(word)))
+            .current_dir(desk.0.path())
+            .output()
+    };
+    let outputs: Vec<Output> = std::thread::scope(|scope| {
+        let works: Vec<_> = (0..4).map(|_| scope.spawn(spawn)).collect();
+        works
+            .into_iter()
+            .map(|work| work.join().unwrap().unwrap())
+            .collect()
+    });
+    for output in &outputs {
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            output.status.success() || said.contains("in use by another program"),
+            "{said}"
+        );
+    }
+    desk.all(&["align --run @run", "train --run @run", "evaluate --run @run"])
+        .unwrap();
+}

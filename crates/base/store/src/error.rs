@@ -1,0 +1,75 @@
+//! What can go wrong with files that are kept.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What is wrong, and where.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// A file or folder could not be used.
+    #[error("{action} {}", path.display())]
+    File {
+        /// What was tried: `reading`, `writing`.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// A file is not what was written.
+    #[error("{} is damaged", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
+    /// Something could not be written as JSON.
+    #[error("writing {what} as JSON")]
+    Json {
+        /// A file, or the name of an input.
+        what: String,
+        /// Why.
+        source: serde_json::Error,
+    },
+    /// Another program works in the folder.
+    #[error(
+        "{} is in use by another program{by}; wait until that has ended, or give another folder",
+        folder.display()
+    )]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+        /// Who says to be at work there: ` (process 12)`, or nothing.
+        by: String,
+    },
+    /// A folder has contents that were made from something else.
+    #[error("{} holds what was made from another {differences}; give another folder", folder.display())]
+    OtherContents {
+        /// The folder.
+        folder: PathBuf,
+        /// Names of the inputs that differ.
+        differences: String,
+    },
+    /// What a stage needs is not there, or is not as its inputs say.
+    #[error(transparent)]
+    NotCurrent(#[from] NotCurrent),
+}
+
+impl StoreError {
+    /// An error of the operating system with a file.
+    pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { action, path, source }
+    }
+}
+
+/// A stage is not there, or is not as its inputs say.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: the stage {why}; make it with `{made_by}`", folder.display())]
+pub struct NotCurrent {
+    pub(crate) folder: PathBuf,
+    pub(crate) why: String,
+    pub(crate) made_by: &'static str,
+}

@@ -1,0 +1,135 @@
+//! What a value is made from.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::{Digest, StoreError, read_json, write_json};
+
+/// The file in which a folder says what its contents are made from.
+const CLAIM: &str = "made_from.json";
+
+/// The inputs of a kept value: the digest of each, by its name. Two values of the same inputs are the same.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct MadeFrom(BTreeMap<String, Digest>);
+
+impl MadeFrom {
+    /// Each field of `inputs` is an input, and the program is one: another build may compute something else.
+    ///
+    /// # Errors
+    /// A value that JSON has no form for.
+    pub fn of(program: &str, inputs: &impl Serialize) -> Result<Self, StoreError> {
+        let mut made_from = Self::without_program(inputs)?;
+        let program = Digest::of(program.as_bytes());
+        made_from.0.insert("program".to_owned(), program);
+        Ok(made_from)
+    }
+
+    /// Each field of `inputs` is an input, whatever program works with them.
+    ///
+    /// # Errors
+    /// A value that JSON has no form for.
+    pub fn without_program(inputs: &impl Serialize) -> Result<Self, StoreError> {
+        let failed = |what: &str| {
+            let what = what.to_owned();
+            move |source| StoreError::Json { what, source }
+        };
+        let value = serde_json::to_value(inputs).map_err(failed("inputs"))?;
+        let fields = match value {
+            Value::Object(fields) => fields.into_iter().collect(),
+            other => BTreeMap::from([("input".to_owned(), other)]),
+        };
+        let mut parts = BTreeMap::new();
+        for (name, field) in fields {
+            let digest = Digest::of_value(&field).map_err(failed(&name))?;
+            parts.insert(name, digest);
+        }
+        Ok(Self(parts))
+    }
+
+    /// Takes a folder for contents that are made from this, or makes sure that its contents are. It says so in `made_from.json`.
+    ///
+    /// # Errors
+    /// [`StoreError::OtherContents`] names what differs; a folder that cannot be read or written.
+    pub fn claim(&self, folder: &Path) -> Result<(), StoreError> {
+        let path = folder.join(CLAIM);
+        if !path.exists() {
+            return write_json(&path, self);
+        }
+        let there: Self = read_json(&path)?;
+        let differences = self.differences(&there);
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(StoreError::OtherContents {
+            folder: folder.to_owned(),
+            differences: differences.join(", "),
+        })
+    }
+
+    /// One digest of all.
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        let lines = self.0.iter().map(|(name, digest)| format!("{name} {digest}\n"));
+        Digest::of(lines.collect::<String>().as_bytes())
+    }
+
+    /// The digest of an input.
+    #[must_use]
+    pub fn part(&self, name: &str) -> Option<Digest> {
+        self.0.get(name).copied()
+    }
+
+    /// Names of the inputs that are not the same, in alphabetical order.
+    #[must_use]
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let names = self.0.keys().chain(other.0.keys());
+        let mut names: Vec<String> = names
+            .filter(|name| self.part(name) != other.part(name))
+            .cloned()
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+    use super::*;
+
+    #[derive(Clone, Serialize)]
+    struct Inputs {
+        depth_mm: f64,
+        shape: &'static str,
+    }
+
+    #[test]
+    fn every_field_and_the_program_count() {
+        let inputs = Inputs {
+            depth_mm: 1.0,
+            shape: "ball",
+        };
+        let one = MadeFrom::of("a", &inputs).unwrap();
+        assert!(one.differences(&MadeFrom::of("a", &inputs).unwrap()).is_empty());
+        assert_eq!(one.differences(&MadeFrom::of("b", &inputs).unwrap()), ["program"]);
+        let deeper = Inputs {
+            depth_mm: 1.0 + f64::EPSILON,
+            ..inputs.clone()
+        };
+        let deeper = MadeFrom::of("a", &deeper).unwrap();
+        assert_eq!(one.differences(&deeper), ["depth_mm"]);
+        assert_ne!(one.digest(), deeper.digest());
+        let folder = tempfile::tempdir().unwrap();
+        one.claim(folder.path()).unwrap();
+        one.claim(folder.path()).unwrap();
+        let refused = deeper.claim(folder.path()).unwrap_err().to_string();
+        assert!(refused.contains("another depth_mm"), "{refused}");
+        let other = MadeFrom::of("a", &7).unwrap();
+        assert_eq!(one.differences(&other), ["depth_mm", "input", "shape"]);
+    }
+}

@@ -1,0 +1,179 @@
+//! How far a fast gel is from the gel that was solved.
+
+mod frame;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use twintac_shape::{Shape, ShapeError, Surfaces};
+
+use crate::{Body, FastGel, Lesson};
+use frame::{FrameErrors, PressErrors};
+
+/// Errors of a group of frames, as part of each press's largest value. A group without frames has
+/// none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroupErrors {
+    /// Number of frames, at least one.
+    pub n_frames: usize,
+    /// Mean error of the taxel that reads most, %.
+    pub nearest_percent: f64,
+    /// Mean of the same with its sign, %.
+    pub nearest_bias_percent: f64,
+    /// Mean error over all taxels, %.
+    pub all_percent: f64,
+    /// Mean length of the error of the force, %.
+    pub force_percent: f64,
+    /// Frames in which the taxel that reads most, or the force, is off by more than a tenth of what
+    /// it is then, %. What is less than a quarter of the press's largest value counts as so much.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub off_by_a_tenth_percent: Option<f64>,
+}
+
+/// How far a fast gel is from the solved gel on presses that it was not taught. A group is `None`
+/// where no frame is of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Judgement {
+    /// All frames.
+    pub overall: Option<GroupErrors>,
+    /// By kind of shape.
+    pub by_shape: BTreeMap<String, Option<GroupErrors>>,
+    /// By depth below the undeformed surface, mm: from a whole number to the next, as deep as
+    /// lessons or these presses went.
+    pub by_depth_mm: BTreeMap<u32, Option<GroupErrors>>,
+    /// By distance of the shape's origin from the gel's middle, as part of the way to its corner:
+    /// four equal parts.
+    pub by_place: BTreeMap<String, Option<GroupErrors>>,
+    /// Where the shape's origin is no farther from an edge of the gel than half its height.
+    #[serde(default)]
+    pub at_edge: Option<GroupErrors>,
+    /// What is read of shapes that do not touch, 0.1 to 1 mm above the gel: the largest at any
+    /// taxel, mean, % of each press's largest.
+    #[serde(default)]
+    pub untouched_percent: Option<f64>,
+    /// Frames whose contact is like what was taught (`familiar`), and others (`new`).
+    pub by_novelty: BTreeMap<String, Option<GroupErrors>>,
+}
+
+impl FastGel {
+    /// Compares readings with those of solved presses.
+    ///
+    /// # Errors
+    /// A press whose shape can't be.
+    pub fn judge(&self, presses: &[Lesson], surfaces: &Surfaces) -> Result<Judgement, ShapeError> {
+        let (mut frames, mut untouched) = (Vec::new(), Vec::new());
+        for press in presses {
+            let mut errors = PressErrors::of(self, press, surfaces)?;
+            frames.append(&mut errors.frames);
+            untouched.append(&mut errors.untouched);
+        }
+        let group = |is_in: &dyn Fn(&FrameErrors<'_>) -> bool| {
+            let own: Vec<&FrameErrors<'_>> = frames.iter().filter(|frame| is_in(frame)).collect();
+            group_errors(&own)
+        };
+        let shapes = presses.iter().map(|press| name(&press.shape));
+        let quarter = |number: u32| {
+            let name = format!("{} to {} %", 25 * number, 25 * (number + 1));
+            let is_in = |frame: &FrameErrors<'_>| (4.0 * self.part_to_corner(frame)) as u32 == number;
+            (name, group(&is_in))
+        };
+        let depths = frames.iter().map(|frame| self.whole_depth_mm(frame));
+        let deepest_mm = depths
+            .max()
+            .unwrap_or(0)
+            .max(self.novelty.coverage.deepest_whole_mm());
+        let familiarity = [("familiar", false), ("new", true)];
+        Ok(Judgement {
+            overall: group(&|_| true),
+            by_shape: shapes
+                .map(|shape| {
+                    (
+                        shape.to_owned(),
+                        group(&|frame| name(&frame.press.shape) == shape),
+                    )
+                })
+                .collect(),
+            by_depth_mm: (0..=deepest_mm)
+                .map(|depth_mm| (depth_mm, group(&|frame| self.whole_depth_mm(frame) == depth_mm)))
+                .collect(),
+            by_place: (0..4).map(quarter).collect(),
+            at_edge: group(&|frame| self.is_at_edge(frame)),
+            untouched_percent: mean(untouched.iter().copied()).map(|part| 100.0 * part),
+            by_novelty: familiarity
+                .map(|(name, is_new)| (name.to_owned(), group(&|frame| (frame.novelty > 1.0) == is_new)))
+                .into(),
+        })
+    }
+
+    /// Learns from presses that were not taught how far readings are off where few lessons pressed.
+    pub(crate) fn calibrate_novelty(
+        &mut self,
+        held_out: &[Lesson],
+        surfaces: &Surfaces,
+    ) -> Result<(), ShapeError> {
+        let (mut reader, mut seen) = (self.reader(), Vec::new());
+        for press in held_out {
+            let body = Body::new(&press.shape, surfaces)?;
+            for frame in PressErrors::of(self, press, surfaces)?.frames {
+                let inputs = reader.inputs(&[(&body, frame.gel_from_indenter)]);
+                seen.push((inputs.to_vec(), frame.of_moment as f32));
+            }
+        }
+        self.novelty.calibrate(self.layout.grid(), &seen);
+        Ok(())
+    }
+
+    /// How deep the shape's origin is below the top of the gel's middle, whole mm.
+    fn whole_depth_mm(&self, frame: &FrameErrors<'_>) -> u32 {
+        (self.center_mm.z - frame.gel_from_indenter.position_mm.z).max(0.0) as u32
+    }
+
+    /// How far the shape's origin is from the gel's middle, as part of the way to its corner, below
+    /// 1.
+    fn part_to_corner(&self, frame: &FrameErrors<'_>) -> f64 {
+        let [low_mm, _] = self.bounds_mm();
+        let way_mm = (frame.gel_from_indenter.position_mm - self.center_mm).truncate();
+        (way_mm.length() / (self.center_mm.truncate() - low_mm).length()).min(0.999)
+    }
+
+    fn is_at_edge(&self, frame: &FrameErrors<'_>) -> bool {
+        let [low_mm, high_mm] = self.bounds_mm();
+        let at_mm = frame.gel_from_indenter.position_mm.truncate();
+        let from_edge_mm = (at_mm - low_mm).min(high_mm - at_mm).min_element();
+        from_edge_mm <= 0.5 * self.layout.surroundings.height_mm()
+    }
+}
+
+fn group_errors(frames: &[&FrameErrors<'_>]) -> Option<GroupErrors> {
+    let percent = |error: &dyn Fn(&FrameErrors<'_>) -> f64| {
+        mean(frames.iter().map(|frame| error(frame))).map(|mean| 100.0 * mean)
+    };
+    Some(GroupErrors {
+        n_frames: frames.len(),
+        nearest_percent: percent(&|frame| frame.nearest.abs())?,
+        nearest_bias_percent: percent(&|frame| frame.nearest)?,
+        all_percent: percent(&|frame| frame.all)?,
+        force_percent: percent(&|frame| frame.force)?,
+        off_by_a_tenth_percent: percent(&|frame| f64::from(u8::from(frame.of_moment > 0.1))),
+    })
+}
+
+/// The mean of numbers; `None` of none.
+fn mean(numbers: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
+    let n = numbers.len();
+    (n > 0).then(|| numbers.sum::<f64>() / n as f64)
+}
+
+fn name(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Sphere { .. } => "sphere",
+        Shape::Cylinder { .. } => "cylinder",
+        Shape::Box { .. } => "box",
+        Shape::X { .. } => "x",
+        Shape::Ring { .. } => "ring",
+        Shape::Triangle { .. } => "triangle",
+        Shape::Wedge { .. } => "wedge",
+        Shape::Stl { .. } => "stl",
+        Shape::Union { .. } => "union",
+    }
+}

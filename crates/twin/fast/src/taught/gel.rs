@@ -1,0 +1,213 @@
+//! The gel that a fast gel was taught.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use twintac_material::Model;
+use twintac_sensor::{Sensor, Shell};
+use twintac_shape::{Solid, TriangleSurface};
+
+use super::mismatch::Difference;
+use super::same::same;
+
+/// What presses of a gel depend on, whatever reads them. Names do not count, nor what a fast gel
+/// does not know: relaxation (it reads what the gel does at once), and the friction of indenters
+/// (it was taught without).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TaughtGel {
+    solid: TaughtSolid,
+    material: Model,
+    bulk_modulus_kpa: f64,
+    shell: Option<Shell>,
+    /// Corners of the boxes that stand in the gel, smallest and largest coordinates, mm.
+    inclusions_mm: Vec<[glam::DVec3; 2]>,
+}
+
+/// What a gel looks like, a surface by its content.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+enum TaughtSolid {
+    Described(Solid),
+    Surface {
+        /// Of its vertices and triangles.
+        sha256: String,
+        n_triangles: usize,
+        low_mm: glam::DVec3,
+        high_mm: glam::DVec3,
+    },
+}
+
+impl TaughtGel {
+    /// The gel of a sensor.
+    pub(crate) fn of(sensor: &Sensor) -> Self {
+        let (gel, material) = (&sensor.gel, &sensor.gel.material);
+        let inclusions = sensor.inclusions.iter();
+        Self {
+            solid: TaughtSolid::of(sensor),
+            material: material.model.clone(),
+            bulk_modulus_kpa: gel.material.bulk_modulus_kpa,
+            shell: sensor.shell.clone(),
+            inclusions_mm: inclusions.map(|chip| [chip.min_mm, chip.max_mm]).collect(),
+        }
+    }
+
+    /// How a sensor's gel differs from this one.
+    pub(crate) fn differences(&self, sensors: &Self) -> Vec<Difference> {
+        let differs = |what: &str, is_same: bool, describe: &dyn Fn(&Self) -> String| {
+            (!is_same).then(|| Difference {
+                what: what.to_owned(),
+                fast: describe(self),
+                sensor: describe(sensors),
+            })
+        };
+        let is_one_material = same(&self.material, &sensors.material)
+            && same(&self.bulk_modulus_kpa, &sensors.bulk_modulus_kpa);
+        let found = [
+            differs("gel", same(&self.solid, &sensors.solid), &|gel| gel.solid.text()),
+            differs("material", is_one_material, &Self::material_text),
+            differs("shell", same(&self.shell, &sensors.shell), &Self::shell_text),
+            differs(
+                "boxes in the gel",
+                same(&self.inclusions_mm, &sensors.inclusions_mm),
+                &Self::inclusions_text,
+            ),
+        ];
+        found.into_iter().flatten().collect()
+    }
+
+    fn material_text(&self) -> String {
+        let (bulk, shear) = (self.bulk_modulus_kpa, self.material.shear_modulus_kpa());
+        let youngs_kpa = 9.0 * bulk * shear / (3.0 * bulk + shear);
+        let constants = serde_json::to_value(&self.material).expect("constants are numbers");
+        let constants = constants.as_object().expect("a model has named constants");
+        let constants = constants.iter().filter(|(name, _)| *name != "model");
+        let constants: Vec<String> = constants
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
+        format!(
+            "{} of {youngs_kpa:.1} kPa ({}, bulk_modulus_kpa = {bulk})",
+            self.material.name(),
+            constants.join(", ")
+        )
+    }
+
+    fn shell_text(&self) -> String {
+        match &self.shell {
+            None => "none".to_owned(),
+            Some(Shell { gap_mm, height_mm }) => format!("{height_mm} mm high and {gap_mm} mm away"),
+        }
+    }
+
+    fn inclusions_text(&self) -> String {
+        let corners = self.inclusions_mm.iter();
+        let corners: Vec<String> = corners
+            .map(|[low, high]| format!("from {low} to {high} mm"))
+            .collect();
+        match corners.is_empty() {
+            true => "none".to_owned(),
+            false => corners.join(", "),
+        }
+    }
+}
+
+impl TaughtSolid {
+    fn of(sensor: &Sensor) -> Self {
+        let solid = &sensor.gel.solid;
+        match solid {
+            Solid::Block { .. } | Solid::Dome(_) => Self::Described(solid.clone()),
+            Solid::Stl(file) => {
+                let surface = sensor
+                    .surfaces
+                    .get(&*file.name())
+                    .expect("a checked sensor has its surfaces");
+                let (low_mm, high_mm) = solid.bounds_mm(&sensor.surfaces);
+                Self::Surface {
+                    sha256: digest(surface),
+                    n_triangles: surface.triangles().len(),
+                    low_mm,
+                    high_mm,
+                }
+            }
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Described(Solid::Block {
+                size_mm: [x, y, z],
+                center_mm: [x_mm, y_mm],
+                edge_radius_mm,
+            }) => {
+                let mut text = format!("{x} x {y} mm and {z} mm high");
+                if [*x_mm, *y_mm] != [0.0; 2] {
+                    text += &format!(" about [{x_mm}, {y_mm}] mm");
+                }
+                if *edge_radius_mm > 0.0 {
+                    text += &format!(" with edges rounded by {edge_radius_mm} mm");
+                }
+                text
+            }
+            Self::Described(Solid::Dome(dome)) => format!(
+                "a dome of {:?} x {:?} mm, {} mm high at {:?} mm, that falls by {:?} and {:?} mm",
+                dome.x_mm, dome.y_mm, dome.crown_mm, dome.crown_at_mm, dome.drop_x_mm, dome.drop_y_mm
+            ),
+            Self::Described(Solid::Stl(file)) => format!("the surface {}", file.path),
+            Self::Surface {
+                sha256,
+                n_triangles,
+                low_mm,
+                high_mm,
+            } => {
+                let [x, y, z] = (*high_mm - *low_mm).to_array();
+                let short = sha256.get(..8).unwrap_or(sha256);
+                format!("a surface of {n_triangles} triangles, {x} x {y} mm and {z} mm high ({short}…)")
+            }
+        }
+    }
+}
+
+/// SHA-256 of a surface's vertices and triangles.
+fn digest(surface: &TriangleSurface) -> String {
+    let mut digest = Sha256::new();
+    for mm in surface.vertices_mm().iter().flat_map(|at| at.to_array()) {
+        digest.update(mm.to_le_bytes());
+    }
+    for vertex in surface.triangles().as_flattened() {
+        digest.update(vertex.to_le_bytes());
+    }
+    let bytes = digest.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+    use twintac_sensor::SensorFile;
+    use twintac_shape::SurfaceFile;
+
+    use super::*;
+
+    /// PhysTac with a gel of four triangles in the file `gel.stl`.
+    fn of_a_surface(height_mm: f64) -> TaughtGel {
+        let [a, b, c] = [[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let top = DVec3::new(5.0, 5.0, height_mm);
+        let triangles = [[a, c, b], [a, b, top], [b, c, top], [c, a, top]];
+        let surface = TriangleSurface::from_triangles(&triangles).unwrap();
+        let mut sensor = (*SensorFile::phystac().unwrap().sensor).clone();
+        sensor.surfaces.insert("gel.stl".to_owned(), Arc::new(surface));
+        sensor.gel.solid = Solid::Stl(SurfaceFile::new("gel.stl"));
+        TaughtGel::of(&sensor)
+    }
+
+    #[test]
+    fn a_surface_counts_by_its_content() {
+        assert!(of_a_surface(8.0).differences(&of_a_surface(8.0)).is_empty());
+        let [difference] = &of_a_surface(8.0).differences(&of_a_surface(7.0))[..] else {
+            panic!("one difference");
+        };
+        let text = difference.to_string();
+        assert!(text.contains("8 mm high") && text.contains("7 mm high"), "{text}");
+    }
+}

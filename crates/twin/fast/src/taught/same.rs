@@ -1,0 +1,31 @@
+//! Whether two descriptions say the same.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// Numbers that differ by this part are one: 15.2 kPa as a shear modulus, and the same by way of
+/// Young's.
+const TOLERANCE: f64 = 1e-9;
+
+/// Whether two values say the same, number by number.
+pub(super) fn same<T: Serialize>(a: &T, b: &T) -> bool {
+    let value = |of: &T| serde_json::to_value(of).expect("descriptions are numbers and words");
+    is_same(&value(a), &value(b))
+}
+
+fn is_same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same(a, b))
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            let is_in_b = |(name, a): (&String, &Value)| b.get(name).is_some_and(|b| is_same(a, b));
+            a.len() == b.len() && a.iter().all(is_in_b)
+        }
+        (Value::Number(a), Value::Number(b)) => match (a.as_f64(), b.as_f64()) {
+            (Some(a), Some(b)) => (a - b).abs() <= TOLERANCE * a.abs().max(b.abs()).max(1.0),
+            _ => a == b,
+        },
+        _ => a == b,
+    }
+}

@@ -1,0 +1,93 @@
+"""One world or many: a `MjData`, or a persistent `Batch`; and the models that their worlds are of.
+"""
+
+import weakref
+from typing import TypeAlias
+
+import mujoco
+import mujoco.batch
+import numpy as np
+import numpy.typing as npt
+
+_Array = npt.NDArray[np.float64]
+Data: TypeAlias = mujoco.MjData | mujoco.batch.Batch
+# What has to be the same for numbers of bodies, geoms and sites to mean the same.
+_SIZES = ("nbody", "nv", "ngeom", "nsite")
+_LAYOUT = ("body_parentid", "body_dofadr", "geom_bodyid", "site_bodyid")
+
+
+class Worlds:
+    """The worlds of data, which are of one model or of models with its layout."""
+
+    def __init__(self, model: mujoco.MjModel, n_worlds: int) -> None:
+        self._model, self.n_worlds = model, n_worlds
+        self._known: list[mujoco.MjModel] = [model]
+        self._copies: weakref.WeakKeyDictionary[mujoco.batch.Batch, mujoco.MjModel] = weakref.WeakKeyDictionary()
+
+    def rows(self, data: Data, name: str) -> _Array:
+        """A field of every world, `[n_worlds, …]`; of one world, or of a batch's state, it can be
+        written.
+        """
+        rows: _Array = np.asarray(getattr(data, name))[None] if isinstance(data, mujoco.MjData) else data.bind(name)
+        return rows
+
+    def times_s(self, data: Data) -> _Array:
+        """The time of every world, s, `[n_worlds]`, as a copy."""
+        return np.array([data.time]) if isinstance(data, mujoco.MjData) else np.array(data.bind("time"), float)
+
+    def look(self, data: Data) -> None:
+        """Learns the models of the worlds, `models`: one of all, or one of each.
+
+        Raises `ValueError` for data of another number of worlds, of another model, and for a batch
+        that is not persistent.
+        """
+        if isinstance(data, mujoco.MjData):
+            if self.n_worlds != 1:
+                raise ValueError(f"`data` is of one world, the sensors are of {self.n_worlds}: hand in the batch")
+            found = [data.model]
+        else:
+            found = self._of_batch(data)
+        if len(found) != len(self._known) or any(one is not other for one, other in zip(found, self._known)):
+            for model in found:
+                self._check(model)
+            self._known = found
+
+    @property
+    def models(self) -> list[mujoco.MjModel]:
+        """The models that were found last: one of all worlds, or one of each."""
+        return self._known
+
+    def field(self, data: Data, name: str) -> _Array:
+        """A field of the models, `[1, …]` where all worlds have the same, else `[n_worlds, …]`."""
+        if isinstance(data, mujoco.batch.Batch) and data.models is None:
+            expanded = data.expanded(name)
+            if expanded is not None:
+                return np.asarray(expanded)
+        if len(self._known) == 1:
+            return np.asarray(_of(self._known[0], name))[None]
+        return np.stack([np.asarray(_of(model, name)) for model in self._known])
+
+    def _of_batch(self, batch: mujoco.batch.Batch) -> list[mujoco.MjModel]:
+        if batch.nsim != self.n_worlds:
+            raise ValueError(f"`data` has {batch.nsim} worlds, the sensors are of {self.n_worlds}")
+        if not batch.persistent:
+            raise ValueError("the batch is not persistent, so that a step does not go on from the poses that sensors read: make it with `persistent=True`")
+        models = batch.models
+        if models is not None:
+            return [models] if isinstance(models, mujoco.MjModel) else list(models)
+        # A batch steps a copy of the model that it was made of.
+        if batch not in self._copies:
+            self._copies[batch] = batch.get_model(0)
+        return [self._copies[batch]]
+
+    def _check(self, model: mujoco.MjModel) -> None:
+        own = self._model
+        same = all(getattr(model, name) == getattr(own, name) for name in _SIZES)
+        if not (same and all(np.array_equal(getattr(model, name), getattr(own, name)) for name in _LAYOUT)):
+            raise ValueError("`data` is of another model than the sensors: its bodies, geoms or sites are others; make `TouchSensors` of its model")
+
+
+def _of(model: mujoco.MjModel, name: str) -> npt.ArrayLike:
+    owner = model.opt if name.startswith("opt.") else model
+    field: npt.ArrayLike = getattr(owner, name.removeprefix("opt."))
+    return field
