@@ -54,7 +54,8 @@ impl PressureMap {
             return Err(unusable(py, "readings_kpa", &problem));
         }
         if readings_kpa.values.iter().any(|kpa| kpa.is_infinite()) {
-            let problem = "has an infinite number, expected finite ones, and NaN for a taxel without a reading";
+            let problem =
+                "has an infinite number, expected finite ones, and NaN for a taxel without a reading";
             return Err(unusable(py, "readings_kpa", problem));
         }
         Self::of(py, sensor, readings_kpa.values, provenance)

@@ -243,7 +243,11 @@ impl SensorBatch {
         let twin = twin.map(|twin| Arc::clone(&twin.twin));
         if let Some(twin) = &twin {
             if let Err(mismatch) = gel.gel.check(&twin.sensor().file().sensor) {
-                return Err(unusable(py, "twin", &format!("does not go with `gel`: {mismatch}")));
+                return Err(unusable(
+                    py,
+                    "twin",
+                    &format!("does not go with `gel`: {mismatch}"),
+                ));
             }
         }
         let n_sensors = n_sensors.count("n_sensors", 1..=twintac::most_sensors(n_taxels))?;
@@ -253,7 +257,13 @@ impl SensorBatch {
         let sizes = [n_sensors, n_threads];
         let batch = py.detach(|| match twin {
             Some(twin) => twin.sensors(&gel.gel, imperfection, sizes, seed),
-            None => Ok(twintac::SensorBatch::new(&gel.gel, None, imperfection, sizes, seed)),
+            None => Ok(twintac::SensorBatch::new(
+                &gel.gel,
+                None,
+                imperfection,
+                sizes,
+                seed,
+            )),
         });
         let batch = batch.or_raise(py)?;
         let is_coupled = coupling.is_some();
@@ -314,13 +324,8 @@ impl SensorBatch {
     ) -> PyResult<Answers<'py>> {
         since(py, since_previous_s)?;
         let bodies = self.bodies.look(py, |held| Arc::clone(held))?;
-        let Touches { touches, ends } = Touches::checked(
-            py,
-            &gel_from_body,
-            body.as_ref(),
-            ends.as_ref(),
-            bodies.len(),
-        )?;
+        let Touches { touches, ends } =
+            Touches::checked(py, &gel_from_body, body.as_ref(), ends.as_ref(), bodies.len())?;
         let ids = touch_id
             .map(|ids| touch_ids(py, &ids, touches.len()))
             .transpose()?;
@@ -339,11 +344,13 @@ impl SensorBatch {
             (true, None) => return Err(unusable(py, "touch_id", NO_TOUCH_ID)),
             (true, Some(ids)) => {
                 let touches = ids.into_iter().zip(&touches);
-                touches.map(|(id, touch)| twintac::HeldTouch { id, touch: *touch }).collect()
+                touches
+                    .map(|(id, touch)| twintac::HeldTouch { id, touch: *touch })
+                    .collect()
             }
         };
         let done = self.batch.work(py, |batch| {
-                        let (readings_kpa, wrench) = (&mut readings_kpa[..], &mut wrench[..]);
+            let (readings_kpa, wrench) = (&mut readings_kpa[..], &mut wrench[..]);
             let mut step = || match batch {
                 Batch::Free(batch) => {
                     batch.step(since_previous_s, &bodies, &touches, &ends, readings_kpa, wrench);
