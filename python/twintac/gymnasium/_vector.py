@@ -79,8 +79,10 @@ class TouchVectorEnv(gym.vector.VectorEnv[Single, Single, npt.NDArray[Any]]):
         if seed is None and not self._is_seeded:
             seed = int(self.np_random.integers(2**62))
         if seed is not None:
-            is_list = isinstance(seed, Sequence | np.ndarray)
-            self._tasks.seed(seed if is_list else [index(seed) + number for number in range(self.num_envs)])
+            if isinstance(seed, Sequence | np.ndarray):
+                self._tasks.seed(seed)
+            else:
+                self._tasks.seed([index(seed) + number for number in range(self.num_envs)])
             self._is_seeded = True
         mask = (options or {}).get("reset_mask")
         which: _Bool | None = None if mask is None else np.asarray(mask)

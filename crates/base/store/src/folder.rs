@@ -36,6 +36,7 @@ impl PartialFolder {
 
     /// Where it is filled.
     #[must_use]
+    #[allow(clippy::misnamed_getters)] // that is where to write
     pub fn path(&self) -> &Path {
         &self.partial
     }

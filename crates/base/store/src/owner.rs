@@ -73,7 +73,6 @@ impl Owner {
     }
 
     /// Waits until no other thread works in the folder.
-    #[must_use]
     pub fn turn(&self) -> MutexGuard<'_, ()> {
         self.0.turn.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -132,7 +132,8 @@ impl PressSettings {
             ("placement.base_from_gel", placement.base_from_gel),
             ("placement.tool_from_indenter", placement.tool_from_indenter),
         ] {
-            if !(pose.position_mm.abs().max_element() <= FARTHEST_MM) || pose.position_mm.is_nan() {
+            let is_near = pose.position_mm.abs().max_element() <= FARTHEST_MM;
+            if !is_near || pose.position_mm.is_nan() {
                 let problem = format!("is at {} mm", pose.position_mm);
                 return Some((field, problem, format!("give places within {FARTHEST_MM} mm")));
             }

@@ -130,7 +130,8 @@ impl Places {
             .iter()
             .flat_map(|area| [("places.x_mm", area.x_mm), ("places.y_mm", area.y_mm)])
         {
-            if !(low.abs().max(high.abs()) <= FARTHEST_MM) {
+            let is_near = low.abs().max(high.abs()) <= FARTHEST_MM;
+            if !is_near {
                 let hint = format!("give places within {FARTHEST_MM} mm of the gel's origin");
                 return wrong(field, format!("runs from {low} to {high}"), &hint);
             }

@@ -61,7 +61,8 @@ fn another_gel_is_refused_and_the_difference_is_named() {
     }
     assert!(!lower.contains("material"), "{lower}");
 
-    let changes: [(&str, fn(&mut Sensor)); 8] = [
+    type Change = (&'static str, fn(&mut Sensor));
+    let changes: [Change; 8] = [
         ("material", |sensor| sensor.gel.material.bulk_modulus_kpa *= 0.9),
         ("about [0, 0.1] mm", |sensor| {
             sensor.gel.solid = Solid::Block {
