@@ -77,11 +77,11 @@ class Meaning:
         poses[:, :2] += rng.uniform(-1.0, 1.0, (n, 2))
         poses[:, 2] += sensor.bounds_mm[1, 2] - depth_mm
         sensors = SensorBatch(FastGel.phystac(), [Body(shape) for shape in shapes], n, coupling=Coupling(sensor, friction=FRICTION))
-        sensors.step(1.0, poses, shape)
+        sensors.step(1.0, poses, shape, touch_id=shape)
         poses[:, 1] -= rng.uniform(0.0, 0.6, n) * np.sqrt(depth_mm)
-        readings_kpa, wrench = (values.astype(float) for values in sensors.step(1.0, poses, shape))
+        readings_kpa, wrench = (values.astype(float) for values in sensors.step(1.0, poses, shape, touch_id=shape))
         poses[:, 1] -= 0.05
-        after_kpa, after = (values.astype(float) for values in sensors.step(1.0, poses, shape))
+        after_kpa, after = (values.astype(float) for values in sensors.step(1.0, poses, shape, touch_id=shape))
         sticks = (wrench[:, 2] < -0.05) & (after[:, 1] > 0.9 * FRICTION * wrench[:, 2])
         readings_kpa, force_n, parting = readings_kpa[sticks], -wrench[sticks, 2], (after_kpa - readings_kpa)[sticks] @ PARTING
         # Least squares of the relative error, with a light pull to zero.

@@ -167,6 +167,6 @@ def test_readings_beyond_all_barometers_are_refused_and_change_nothing(gel: Fast
     tracker, other = inverse.start("simulated"), inverse.start("simulated")
     readings_kpa = gel.reader().read([(ball, Pose((1.0, 0.0, 7.0)))])[0]
     for wrong in (1e39, np.inf, np.nan):
-        assert refusal(lambda: tracker.update(0.01, [wrong] * 8)).field == "readings_kpa"
+        assert refusal(lambda: tracker.update(0.01, [wrong] * 8)).field == "readings_kpa[0]"
     found, expected = tracker.update(0.01, readings_kpa), other.update(0.01, readings_kpa)
     assert found is not None and expected is not None and found.place_mm == expected.place_mm
