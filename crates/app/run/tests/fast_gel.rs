@@ -77,5 +77,5 @@ fn lessons_are_kept_and_tables_follow_from_them() {
     let tip = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../sensors/phystac-tip.toml");
     let tip = SensorFile::read(&tip).unwrap();
     let error = start(tip).unwrap_err().to_string();
-    assert!(error.contains("ports are elsewhere"), "{error}");
+    assert!(error.contains("port 0: at [-12, -4, 0] mm"), "{error}");
 }
