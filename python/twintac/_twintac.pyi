@@ -38,6 +38,7 @@ __all__ = [
     "Run",
     "Sensor",
     "SensorBatch",
+    "SensorState",
     "Shape",
     "Tasks",
     "Tracker",
