@@ -241,14 +241,14 @@ impl SensorBatch {
         let imperfection = imperfection.map(|own| own.imperfection).unwrap_or_default();
         let n_taxels = gel.gel.n_taxels();
         let twin = twin.map(|twin| Arc::clone(&twin.twin));
-        if let Some(twin) = &twin {
-            if let Err(mismatch) = gel.gel.check(&twin.sensor().file().sensor) {
-                return Err(unusable(
-                    py,
-                    "twin",
-                    &format!("does not go with `gel`: {mismatch}"),
-                ));
-            }
+        if let Some(twin) = &twin
+            && let Err(mismatch) = gel.gel.check(&twin.sensor().file().sensor)
+        {
+            return Err(unusable(
+                py,
+                "twin",
+                &format!("does not go with `gel`: {mismatch}"),
+            ));
         }
         let n_sensors = n_sensors.count("n_sensors", 1..=twintac::most_sensors(n_taxels))?;
         let seed = seed.map_or(Ok(0), |seed| seed.seed("seed"))?;

@@ -92,6 +92,7 @@ pub(crate) fn minimize(
                     trial[i] = (x[i] + shorter * step).clamp(low, high);
                 }
                 iterations += 1;
+                eprintln!("SCR it {iterations} cost {cost:.6e} promised {promised:.3e} damping {damping:.1e} shorter {shorter:.3} trial {:?}", &trial[..4]);
                 let found: Result<Evaluation, CalibrateError> = problem.evaluate(&trial);
                 if let Ok(found) = found
                     && squares(&found) < cost
