@@ -82,7 +82,7 @@ impl PressPath {
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
         let parsed = twintac::PressPath::parse(&path.display().to_string(), &text);
-        let path = parsed.map_err(twintac::RunError::from).or_raise(py)?;
+        let path = parsed.map_err(twintac::WorkError::from).or_raise(py)?;
         Ok(Self { path })
     }
 

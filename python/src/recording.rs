@@ -173,7 +173,7 @@ impl Recording {
             if let Some(folder) = folder {
                 recorded.write(&found, sensor, &folder)?;
             }
-            Ok::<_, twintac::RunError>(found)
+            Ok::<_, twintac::WorkError>(found)
         })?;
         to_python(py, &found.or_raise(py)?)
     }

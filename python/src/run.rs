@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use twintac::{RunError, RunSettings, Silent};
+use twintac::{RunSettings, Silent, WorkError};
 
 use crate::error::OrRaise;
 use crate::given::Given;
@@ -30,7 +30,7 @@ impl Run {
         &self,
         py: Python<'_>,
         progress: Option<&Bound<'_, PyAny>>,
-        work: impl FnOnce(&twintac::Run) -> Result<T, RunError> + Send + 'static,
+        work: impl FnOnce(&twintac::Run) -> Result<T, WorkError> + Send + 'static,
     ) -> PyResult<T> {
         let run = self.run.clone();
         followed(py, progress, |progress| work(&run.followed_by(progress)))?.or_raise(py)

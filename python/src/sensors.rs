@@ -72,7 +72,7 @@ impl Imperfection {
         let text = std::fs::read_to_string(&path).map_err(|error| unreadable(py, &path, &error))?;
         let imperfection = twintac::Imperfection::parse(&path.display().to_string(), &text);
         Ok(Self {
-            imperfection: imperfection.map_err(twintac::RunError::from).or_raise(py)?,
+            imperfection: imperfection.map_err(twintac::WorkError::from).or_raise(py)?,
         })
     }
 

@@ -5,7 +5,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Number, Value};
-use twintac::{RunError, RunSettings};
+use twintac::{RunSettings, WorkError};
 
 use crate::error::{OrRaise, unusable};
 
@@ -144,7 +144,7 @@ pub(crate) fn but(
     stage: &str,
 ) -> PyResult<RunSettings> {
     match base.but_parsed("settings", &as_toml(py, own, stage)?) {
-        Err(RunError::Config(error)) => Err(refused(py, stage, [&error.field, &error.problem, &error.hint])),
+        Err(WorkError::Config(error)) => Err(refused(py, stage, [&error.field, &error.problem, &error.hint])),
         settings => settings.or_raise(py),
     }
 }

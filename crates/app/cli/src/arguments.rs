@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub(crate) use dataset::Dataset;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
-use twintac_run::mesh::LengthUnit;
+use twintac_gel::mesh::LengthUnit;
 
 /// Barometric touch sensors and their digital twin.
 ///

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::Result;
-use twintac_run::{Caller, sha256_of_file};
+use twintac_work::{Caller, sha256_of_file};
 
 use crate::progress::Bars;
 

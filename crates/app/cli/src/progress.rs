@@ -5,8 +5,9 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use twintac_run::{Outcome, Progress};
+use twintac_store::Outcome;
 use twintac_text::visible;
+use twintac_work::Progress;
 
 /// One bar at a time, and lines above it.
 #[derive(Debug, Default)]

@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use twintac_lab::Reality;
-
-use crate::RunError;
-use crate::files::read_text;
+use twintac_work::{WorkError, read_text};
 
 /// A file that people copy and edit, as it was when this crate was compiled.
 #[derive(Clone, Copy, Debug)]
@@ -17,37 +15,37 @@ pub struct BuiltIn {
 }
 
 /// The protocol of the demo.
-pub(crate) const DEMO_PROTOCOL: BuiltIn = BuiltIn {
+pub const DEMO_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/demo.toml",
     text: include_str!("../built_in/demo.toml"),
 };
 
 /// The protocol of the paper's data.
-pub(crate) const PAPER_PROTOCOL: BuiltIn = BuiltIn {
+pub const PAPER_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/paper.toml",
     text: include_str!("../built_in/paper.toml"),
 };
 
 /// The protocol of the presses that the gel's material is fitted to.
-pub(crate) const MATERIAL_PROTOCOL: BuiltIn = BuiltIn {
+pub const MATERIAL_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/material.toml",
     text: include_str!("../built_in/material.toml"),
 };
 
 /// The protocol of the trials that shapes are told by.
-pub(crate) const SHAPES_PROTOCOL: BuiltIn = BuiltIn {
+pub const SHAPES_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/shapes.toml",
     text: include_str!("../built_in/shapes.toml"),
 };
 
 /// The protocol of the paper's pressure maps.
-pub(crate) const MAPS_PROTOCOL: BuiltIn = BuiltIn {
+pub const MAPS_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/maps.toml",
     text: include_str!("../built_in/maps.toml"),
 };
 
 /// The protocol that a sensor is characterized with.
-pub(crate) const CHARACTERIZE_PROTOCOL: BuiltIn = BuiltIn {
+pub const CHARACTERIZE_PROTOCOL: BuiltIn = BuiltIn {
     name: "protocols/characterize.toml",
     text: include_str!("../built_in/characterize.toml"),
 };
@@ -82,7 +80,7 @@ impl BuiltIn {
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn unless(self, file: Option<&Path>) -> Result<(String, String), RunError> {
+    pub fn unless(self, file: Option<&Path>) -> Result<(String, String), WorkError> {
         match file {
             None => Ok((self.name.to_owned(), self.text.to_owned())),
             Some(file) => Ok((file.display().to_string(), read_text(file)?)),
@@ -95,7 +93,7 @@ impl BuiltIn {
 ///
 /// # Errors
 /// A file that cannot be read or is wrong; a name that there is not.
-pub fn reality(named: Option<&Path>) -> Result<Reality, RunError> {
+pub fn reality(named: Option<&Path>) -> Result<Reality, WorkError> {
     let stem = |built_in: &BuiltIn| Path::new(built_in.name).file_stem().map(Path::new);
     let known = REALITIES
         .into_iter()
@@ -107,7 +105,7 @@ pub fn reality(named: Option<&Path>) -> Result<Reality, RunError> {
                 .iter()
                 .filter_map(|built_in| Some(stem(built_in)?.display().to_string()))
                 .collect();
-            return Err(RunError::Input(format!(
+            return Err(WorkError::Input(format!(
                 "there is no reality `{}`, neither as a file nor built in; built in are {}",
                 file.display(),
                 names.join(", ")

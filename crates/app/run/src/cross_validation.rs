@@ -6,17 +6,16 @@ use digitac::{Bench, Errors, Fold, HeldOut, Judgement, Places, Variant, judge};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::{DepthTable, DepthTableSource};
+use twintac_model::names;
 use twintac_plot::{Bar, Bars, Ink, png};
 use twintac_recording::{Provenance, Recording};
+use twintac_store::{write_file, write_json};
+use twintac_tables::DepthTableStore;
+use twintac_work::{At, Work, WorkError};
 
-use crate::depth_tables::DepthTableStore;
-use crate::error::At;
-use crate::files::{write_file, write_json};
-use crate::metrics::names;
-use crate::progress::Work;
+use crate::Run;
 use crate::settings::ResolvedSettings;
 use crate::stages::simulation::{Simulation, contacts};
-use crate::{Run, RunError};
 
 /// The folder of what was judged.
 const FOLDER: &str = "cross_validation";
@@ -187,7 +186,7 @@ impl Run {
     ///
     /// # Errors
     /// The run is not simulated yet; too few files, places or indenters for what is to be held out.
-    pub fn cross_validate(&self, plan: &CrossValidationPlan) -> Result<CrossValidation, RunError> {
+    pub fn cross_validate(&self, plan: &CrossValidationPlan) -> Result<CrossValidation, WorkError> {
         let recording = self.recording()?;
         let simulation = Simulation::read(&self.simulation()?)?;
         let settings = self.setup().resolved(&recording)?;
@@ -201,7 +200,7 @@ impl Run {
             .flat_map(|row| row.folds.iter().map(move |fold| (row, fold)))
             .collect();
         let work = Work::start(self.progress(), "judging", jobs.len());
-        let judge_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<Judgement, RunError> {
+        let judge_one = |(row, (seed, fold)): &(&Row, &(u64, Fold))| -> Result<Judgement, WorkError> {
             let bench = Bench {
                 recording: &recording,
                 places: &simulation.places,
@@ -242,7 +241,7 @@ impl Run {
         settings: &ResolvedSettings,
         places: &Places,
         there: Vec<DepthTable>,
-    ) -> Result<Vec<Vec<DepthTable>>, RunError> {
+    ) -> Result<Vec<Vec<DepthTable>>, WorkError> {
         let radii_mm = settings.bench.tip_radii_mm.as_deref().unwrap_or_default();
         if radii_mm.len() < 2 {
             return Ok(vec![there]);
@@ -275,8 +274,8 @@ fn rows(
     plan: &CrossValidationPlan,
     settings: &ResolvedSettings,
     recording: &Recording,
-) -> Result<Vec<Row>, RunError> {
-    let row = |held_out: HeldOut, without: Option<Without>| -> Result<Row, RunError> {
+) -> Result<Vec<Row>, WorkError> {
+    let row = |held_out: HeldOut, without: Option<Without>| -> Result<Row, WorkError> {
         let mut settings = settings.clone();
         if let Some(without) = without {
             without.apply(&mut settings);

@@ -4,11 +4,13 @@ use std::path::Path;
 
 use digitac::TrainSettings;
 use twintac_lab::Reality;
+use twintac_sensor::SensorFile;
 use twintac_simulate::SimulateSettings;
+use twintac_store::write_file;
+use twintac_work::{Caller, Planned, WorkError};
 
 use crate::built_in::{DEMO_PROTOCOL, REALITY};
-use crate::files::write_file;
-use crate::{Caller, Planned, Run, RunError, RunSettings, SensorFile};
+use crate::{Run, RunSettings};
 
 impl Run {
     /// Starts the demo, and has its recordings made: PhysTac, pressed along the built-in protocol on the emulated bench.
@@ -16,7 +18,7 @@ impl Run {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn demo(folder: &Path, seed: u64, caller: Caller) -> Result<Self, RunError> {
+    pub fn demo(folder: &Path, seed: u64, caller: Caller) -> Result<Self, WorkError> {
         let sensor = SensorFile::phystac()?;
         let reality = Reality::parse(REALITY.name, REALITY.text)?;
         let planned = Planned::parse(DEMO_PROTOCOL.name, DEMO_PROTOCOL.text, &sensor.sensor, seed)?;

@@ -2,9 +2,11 @@
 //!
 //! ```no_run
 //! use std::path::Path;
-//! use twintac_run::{Caller, Run, RunSettings, SensorFile};
+//! use twintac_run::{Run, RunSettings};
+//! use twintac_sensor::SensorFile;
+//! use twintac_work::{Caller, WorkError};
 //!
-//! # fn main() -> Result<(), twintac_run::RunError> {
+//! # fn main() -> Result<(), WorkError> {
 //! let sensor = SensorFile::read(Path::new("sensors/strip4-gel-d.toml"))?;
 //! let settings = RunSettings::default();
 //! let run = Run::start(Path::new("runs/mine"), sensor, "three files", 1, settings, Caller::default())?;
@@ -35,61 +37,29 @@
 //! report.html, metrics.json
 //! ```
 //!
-//! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`] hears. What is wrong is a [`RunError`].
-//!
-//! Beside runs: [`evaluate_elsewhere`] judges a model on other recordings, [`adapt_model`] adapts one to another sensor, a [`Predictor`] takes one along a path or a protocol, a [`Locator`] finds what touches by one, [`calibration`] fits a gel's material, [`characterization`] reads
-//! what a sensor does, [`simulated`] presses a gel along a protocol or a path, [`dataset`] makes many presses in shards, [`mesh`] writes meshes, [`bench`](mod@bench) carries presses
-//! out, [`export`](mod@export) makes tables of logs.
+//! This crate prints nothing, reads no environment and ends no process: how work goes, [`Progress`](twintac_work::Progress) hears. What is wrong is a
+//! [`WorkError`](twintac_work::WorkError).
 
-mod adaptation;
-pub mod bench;
+mod adaptation_curve;
+mod bench;
 pub mod built_in;
-pub mod calibration;
-mod caller;
-pub mod characterization;
 mod cross_validation;
-pub mod dataset;
 mod demo;
-mod depth_tables;
-mod doubtful;
-mod error;
-pub mod export;
-pub mod fast;
-mod files;
-mod locate;
-pub mod mesh;
 mod metrics;
-mod model;
-pub mod paper;
-mod predict;
-mod press_checksum;
-mod progress;
-mod protocol;
 mod report;
 mod run;
 mod settings;
-pub mod simulated;
 mod stages;
-mod unseen;
 
-pub use adaptation::{
-    AdaptationCurve, AdaptationPlan, AdaptationPoint, AdaptedModel, CurvePlan, adapt_model, adaptation_curve,
-};
-pub use caller::Caller;
+pub use adaptation_curve::{AdaptationCurve, AdaptationPoint, CurvePlan, SeedOfPoint, adaptation_curve};
 pub use cross_validation::{
     CertaintySpread, CrossValidated, CrossValidation, CrossValidationPlan, OfSeed, Spread, Without,
 };
 pub use digitac::HeldOut;
-pub use error::RunError;
-pub use files::sha256_of_file;
-pub use locate::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, LocatorTracker};
-pub use metrics::{BaselineFigures, Figures, Metrics, TwinFigures};
-pub use predict::{Predicted, Predictor};
-pub use progress::{Progress, Silent};
-pub use protocol::Planned;
+pub use metrics::Metrics;
 pub use run::{Run, RunRecord};
-pub use settings::{RunSettings, simulate_settings};
-pub use stages::recordings::{import_files, read_recordings};
-pub use twintac_sensor::SensorFile;
-pub use twintac_store::{Outcome, StoreError};
-pub use unseen::{UnseenEvaluation, evaluate_elsewhere};
+pub use settings::RunSettings;
+pub use stages::pairs::read_pairs;
+pub use stages::recordings::{Change, import_files, read_recording, read_recordings};
+pub use stages::simulation::Simulation;
+pub use stages::training::COMPLETE;

@@ -1,21 +1,21 @@
 //! The report of a run, from what its stages left.
 
 use twintac_report::{Making, StageTime, TrainedVariant, TwinReport};
-
 use twintac_store::{Finished, StoreError, read_json, write_file};
+use twintac_work::WorkError;
 
 use crate::stages::evaluation::HeldOut;
 use crate::stages::pairs::read_pairs;
 use crate::stages::simulation::Simulation;
 use crate::stages::training::VariantRecord;
-use crate::{Metrics, Run, RunError};
+use crate::{Metrics, Run};
 
 impl Run {
     /// Writes `report.html`, and `metrics.json` beside it.
     ///
     /// # Errors
     /// The run is not evaluated yet; a file that cannot be written.
-    pub fn report(&self) -> Result<(), RunError> {
+    pub fn report(&self) -> Result<(), WorkError> {
         let stages = [
             ("recordings", self.recordings()?),
             ("simulation", self.simulation()?),
@@ -45,11 +45,11 @@ impl Run {
             making: self.making(&stages)?,
         };
         twintac_report::page(&report).write(&self.report_path())?;
-        let figures = std::fs::read(&figures).map_err(RunError::file("reading", &figures))?;
+        let figures = std::fs::read(&figures).map_err(WorkError::file("reading", &figures))?;
         Ok(write_file(&self.folder().join("metrics.json"), &figures)?)
     }
 
-    fn making(&self, stages: &[(&str, Finished)]) -> Result<Making, RunError> {
+    fn making(&self, stages: &[(&str, Finished)]) -> Result<Making, WorkError> {
         let settings =
             serde_json::to_string_pretty(&self.record().settings).map_err(|source| StoreError::Json {
                 what: "the settings".to_owned(),

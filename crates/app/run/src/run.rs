@@ -6,16 +6,14 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use twintac_config::Checked;
-
+use twintac_model::left_out;
+use twintac_sensor::SensorFile;
 use twintac_simulate::Gel;
 use twintac_store::{Finished, Keyed, Owner, Stage, Stages, read_json, write_file, write_json};
+use twintac_tables::{FAST_GEL, FastTables};
+use twintac_work::{At, Caller, Progress, WorkError, go_on};
 
-use crate::doubtful::left_out;
-use crate::error::At;
-use crate::fast::FAST_GEL;
-use crate::fast::tables::FastTables;
-use crate::progress::go_on;
-use crate::{Caller, Metrics, Progress, RunError, RunSettings, SensorFile};
+use crate::{Metrics, RunSettings};
 
 /// The sensor's description in a run's folder.
 const SENSOR: &str = "sensor.toml";
@@ -69,7 +67,7 @@ impl Run {
         seed: u64,
         settings: RunSettings,
         caller: Caller,
-    ) -> Result<Self, RunError> {
+    ) -> Result<Self, WorkError> {
         settings.checked()?;
         let owner = Owner::of(folder)?;
         let path = folder.join(SENSOR);
@@ -108,9 +106,9 @@ impl Run {
     /// Opens a run that was started.
     ///
     /// # Errors
-    /// [`RunError::NotARun`]; a folder in which another process works; a sensor description or a fast gel that cannot be read.
-    pub fn open(folder: &Path, caller: Caller) -> Result<Self, RunError> {
-        let record: RunRecord = read_json(&folder.join("run.json")).map_err(|source| RunError::NotARun {
+    /// [`WorkError::NotARun`]; a folder in which another process works; a sensor description or a fast gel that cannot be read.
+    pub fn open(folder: &Path, caller: Caller) -> Result<Self, WorkError> {
+        let record: RunRecord = read_json(&folder.join("run.json")).map_err(|source| WorkError::NotARun {
             folder: folder.to_owned(),
             source: Box::new(source.into()),
         })?;
@@ -147,7 +145,7 @@ impl Run {
     ///
     /// # Errors
     /// Those of the stages.
-    pub fn finish(&self) -> Result<Metrics, RunError> {
+    pub fn finish(&self) -> Result<Metrics, WorkError> {
         self.mesh()?;
         self.simulate()?;
         self.pair()?;
@@ -239,9 +237,9 @@ impl Run {
     }
 
     /// Runs a stage unless it is there, and says so.
-    pub(crate) fn run_stage<S>(&self, stage: &S) -> Result<Finished, RunError>
+    pub(crate) fn run_stage<S>(&self, stage: &S) -> Result<Finished, WorkError>
     where
-        S: Stage<Follower = dyn Progress, Error = RunError>,
+        S: Stage<Follower = dyn Progress, Error = WorkError>,
     {
         go_on(self.progress())?;
         let _turn = self.owner.turn();

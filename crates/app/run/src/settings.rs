@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 use digitac::{BenchSettings, PairSettings, PlaceSettings, SplitSettings, Taxels, TrainSettings, Variant};
 use serde::{Deserialize, Serialize};
 use twintac_config::{Checked, ConfigError, Problem, Ranges};
+use twintac_model::taxels;
 use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::SimulateSettings;
-
-use crate::RunError;
-use crate::doubtful::left_out;
+use twintac_work::WorkError;
 
 /// What is no setting though it sounds like one, and what decides it.
 const DECIDED: [(&str, &str); 4] = [
@@ -68,49 +67,12 @@ impl Checked for RunSettings {
     }
 }
 
-/// A file of settings of the simulation alone, for commands that only simulate.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct SimulateFile {
-    simulate: SimulateSettings,
-}
-
-impl Checked for SimulateFile {
-    fn check(&self, ranges: &mut Ranges) {
-        let Self { simulate } = self;
-        ranges.inside("simulate", simulate);
-    }
-}
-
-/// Settings of the simulation but for those of the file's table `[simulate]`, if there is a file.
-///
-/// # Errors
-/// A file that cannot be read or has another table, a field that there is not, a value that makes no sense.
-pub fn simulate_settings(base: SimulateSettings, path: Option<&Path>) -> Result<SimulateSettings, RunError> {
-    let Some(path) = path else {
-        return Ok(base);
-    };
-    let read = twintac_config::read_over(path, &SimulateFile { simulate: base });
-    let file = read.map_err(|error| {
-        let tables = ["fast_gel", "places", "bench", "split", "pair", "train"];
-        if tables.contains(&&error.field[..]) {
-            return ConfigError {
-                problem: "is not used by this command, which simulates and does nothing else".to_owned(),
-                hint: "keep the table [simulate] alone".to_owned(),
-                ..error
-            };
-        }
-        error
-    })?;
-    Ok(file.checked()?.simulate)
-}
-
 impl RunSettings {
     /// The default settings but for those in the file, if there is one.
     ///
     /// # Errors
     /// A file that cannot be read, a field that there is not, a value that makes no sense.
-    pub fn read(path: Option<&Path>) -> Result<Self, RunError> {
+    pub fn read(path: Option<&Path>) -> Result<Self, WorkError> {
         Self::default().but(path)
     }
 
@@ -127,7 +89,7 @@ impl RunSettings {
     ///
     /// # Errors
     /// Those of [`read`](Self::read).
-    pub fn but(self, path: Option<&Path>) -> Result<Self, RunError> {
+    pub fn but(self, path: Option<&Path>) -> Result<Self, WorkError> {
         let Some(path) = path else {
             return Ok(self);
         };
@@ -139,7 +101,7 @@ impl RunSettings {
     ///
     /// # Errors
     /// A field that there is not, a value that makes no sense.
-    pub fn but_parsed(self, file: &str, text: &str) -> Result<Self, RunError> {
+    pub fn but_parsed(self, file: &str, text: &str) -> Result<Self, WorkError> {
         let document = twintac_config::parse_over(file, text, &self).map_err(decided)?;
         Ok(document.checked()?)
     }
@@ -230,20 +192,6 @@ fn decided(error: ConfigError) -> ConfigError {
     }
 }
 
-/// What a sensor's description says of its taxels.
-pub(crate) fn taxels(sensor: &Sensor) -> Taxels {
-    Taxels {
-        ports_mm: ports_mm(sensor),
-        left_out: left_out(sensor),
-    }
-}
-
-/// Places of the ports in the gel's plane, mm.
-pub(crate) fn ports_mm(sensor: &Sensor) -> Vec<[f64; 2]> {
-    let places = sensor.taxels.iter().map(|taxel| taxel.position_mm.truncate());
-    places.map(|place| place.to_array()).collect()
-}
-
 /// Whether all presses were made with one ball whose radius the sensor's description only infers.
 fn has_unknown_tip(sensor: &Sensor, recording: &Recording) -> bool {
     let Some(first) = recording.presses.first() else {
@@ -296,13 +244,13 @@ teaching_places = 8
         "train.weight_decay",
     ];
 
-    fn parse(text: &str) -> Result<RunSettings, RunError> {
+    fn parse(text: &str) -> Result<RunSettings, WorkError> {
         RunSettings::default().but_parsed("a.toml", text)
     }
 
     fn refused(text: &str) -> ConfigError {
         match parse(text) {
-            Err(RunError::Config(error)) => error,
+            Err(WorkError::Config(error)) => error,
             other => panic!("{text}: {other:?}"),
         }
     }
@@ -320,7 +268,7 @@ teaching_places = 8
                         assert_eq!(wrong, 0.0, "{field}");
                         accepted.insert(field);
                     }
-                    Err(RunError::Config(error)) => {
+                    Err(WorkError::Config(error)) => {
                         assert_eq!(error.field, field, "{wrong}: {error}");
                         assert!(error.line > 0 && error.to_string().starts_with("a.toml:"));
                     }
@@ -401,35 +349,6 @@ teaching_places = 8
         ] {
             assert_eq!(refused(text).to_string(), expected);
         }
-    }
-
-    #[test]
-    fn a_command_that_only_simulates_takes_no_other_table() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("settings.toml");
-        std::fs::write(&path, "[simulate]\nmax_nodes = 900\n").unwrap();
-        let read = || simulate_settings(SimulateSettings::fine(), Some(&path));
-        assert_eq!(read().unwrap().max_nodes, 900);
-        assert_eq!(
-            read().unwrap().edges_per_height,
-            SimulateSettings::fine().edges_per_height
-        );
-        for text in [
-            "[train]\nepochs = 3\n",
-            "fast_gel = \"a\"\n",
-            "[simulate]\n[bench]\n",
-        ] {
-            std::fs::write(&path, text).unwrap();
-            let error = read().unwrap_err().to_string();
-            assert!(error.contains("is not used by this command"), "{error}");
-        }
-        std::fs::write(&path, "[simulate]\nmax_nodes = 0\n").unwrap();
-        assert!(
-            read()
-                .unwrap_err()
-                .to_string()
-                .contains("`simulate.max_nodes` is 0")
-        );
     }
 
     #[test]

@@ -5,8 +5,11 @@
 use std::path::{Path, PathBuf};
 
 use twintac_fast::TrainSettings;
-use twintac_run::fast::{FAST_GEL, FastSettings, train_fast};
-use twintac_run::{Caller, Run, RunSettings, SensorFile};
+use twintac_lessons::{FastSettings, train_fast};
+use twintac_run::{Run, RunSettings};
+use twintac_sensor::SensorFile;
+use twintac_tables::FAST_GEL;
+use twintac_work::Caller;
 
 /// PhysTac, pressed so little that a lesson is solved at once.
 fn shallow() -> SensorFile {

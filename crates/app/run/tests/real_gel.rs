@@ -5,7 +5,10 @@
 use std::path::{Path, PathBuf};
 
 use digitac::{BenchSettings, TrainSettings, Variant};
-use twintac_run::{Caller, Locator, Run, RunSettings, SensorFile, Silent, read_recordings};
+use twintac_model::Locator;
+use twintac_run::{Run, RunSettings, read_recordings};
+use twintac_sensor::SensorFile;
+use twintac_work::{Caller, Silent};
 
 /// Largest error of the nearest taxel in contact, % of each file's largest reading. A curve without physics has 1.0, predicting nothing 48.
 const LARGEST_PERCENT: f64 = 1.2;

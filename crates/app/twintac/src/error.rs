@@ -59,7 +59,7 @@ pub enum Error {
     /// A run failed.
     #[cfg(feature = "run")]
     #[error(transparent)]
-    Run(#[from] twintac_run::RunError),
+    Run(#[from] twintac_work::WorkError),
     /// Readings cannot be followed back to contacts.
     #[cfg(feature = "fast")]
     #[error(transparent)]
@@ -184,8 +184,9 @@ fn of_recording(error: &twintac_recording::RecordingError) -> ErrorPlace {
 }
 
 #[cfg(feature = "run")]
-fn of_run(error: &twintac_run::RunError) -> ErrorPlace {
-    use twintac_run::{RunError as Wrong, StoreError};
+fn of_run(error: &twintac_work::WorkError) -> ErrorPlace {
+    use twintac_store::StoreError;
+    use twintac_work::WorkError as Wrong;
     let path = match error {
         Wrong::In { source, .. } => return of_run(source),
         Wrong::Config(error) => return of_description(error),

@@ -193,6 +193,8 @@ pub use twin::Twin;
 
 #[cfg(feature = "twin")]
 pub use digitac::{Prediction, PressCertainty, TwinAtPlace, TwinState};
+#[cfg(feature = "run")]
+pub use twintac_dataset::{Dataset, DatasetPlan, FastSource, Shard, check_dataset, merge_dataset};
 pub use twintac_depth_table::PressFrame;
 #[cfg(feature = "fast")]
 pub use twintac_fast::{
@@ -203,18 +205,15 @@ pub use twintac_inverse::{
     Contact, FastModel, FloorMap, Inverse, InverseError, InverseSettings, KnownShape, ReadingTable,
     TableModel, Tracker,
 };
+#[cfg(feature = "run")]
+pub use twintac_model::{Locator, LocatorTracker, Predicted};
 pub use twintac_protocol::{PathError, Point, PressPath, Waypoint, Zero};
+#[cfg(feature = "run")]
+pub use twintac_recorded::Recorded;
 #[cfg(feature = "recording")]
 pub use twintac_recording::{Column, Import, Provenance, Recording};
 #[cfg(feature = "run")]
-pub use twintac_run::characterization::Recorded;
-#[cfg(feature = "run")]
-pub use twintac_run::dataset::{Dataset, DatasetPlan, FastSource, Shard, check_dataset, merge_dataset};
-#[cfg(feature = "run")]
-pub use twintac_run::{
-    Caller, Locator, LocatorTracker, Metrics, Outcome, Predicted, Progress, Run, RunError, RunSettings,
-    Silent, import_files, read_recordings, sha256_of_file,
-};
+pub use twintac_run::{Metrics, Run, RunSettings, import_files, read_recordings};
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{
@@ -223,8 +222,12 @@ pub use twintac_sensors::{
 };
 pub use twintac_shape::{LengthUnit, Part, Pose, Shape, SurfaceFile, Surfaces, TriangleSurface};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
+#[cfg(feature = "run")]
+pub use twintac_store::Outcome;
 #[cfg(feature = "tasks")]
 pub use twintac_tasks::{Answers, Autoreset, Kind, PICTURE_PX, TaskError, Tasks, usual_imperfection};
+#[cfg(feature = "run")]
+pub use twintac_work::{Caller, Progress, Silent, WorkError, sha256_of_file};
 
 /// Snippets of the checkout's pages, which are tests.
 #[cfg(doctest)]

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use digitac::{Model, Prediction, TwinAtPlace, TwinState};
 #[cfg(feature = "sensors")]
 use twintac_fast::FastGel;
-use twintac_recording::Provenance;
 #[cfg(feature = "run")]
-use twintac_run::Predictor;
+use twintac_model::Predictor;
+use twintac_recording::Provenance;
 use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 use twintac_sensors::{Imperfection, SensorBatch};
@@ -76,7 +76,7 @@ impl Twin {
     pub fn predict_along(
         &self,
         path: &PressPath,
-        progress: &dyn twintac_run::Progress,
+        progress: &dyn twintac_work::Progress,
     ) -> Result<Predicted, Error> {
         let predictor = Predictor::new(self.model.clone(), self.gel.clone());
         Ok(predictor.along(path.clone(), progress)?)

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
-use twintac_run::dataset::{DatasetPlan, FastSource, Shard};
+use twintac_dataset::{DatasetPlan, FastSource, Shard};
 
 /// A press depends on the seed and on its own name alone: however many shards there are and whoever makes them, they merge to the same bytes. A shard appears in
 /// the folder whole or not at all, with a manifest, and is not made again once it is there: run a command for each shard on any number of machines that share the folder, and

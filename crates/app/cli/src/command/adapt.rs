@@ -3,11 +3,9 @@
 use std::path::Path;
 
 use anyhow::Result;
-use twintac_run::fast::sensor_of_model;
-use twintac_run::{
-    AdaptationCurve, AdaptationPlan, AdaptedModel, CurvePlan, Run, SensorFile, adapt_model, adaptation_curve,
-    import_files, read_recordings,
-};
+use twintac_model::{AdaptationPlan, AdaptedModel, adapt_model, sensor_of_model};
+use twintac_run::{AdaptationCurve, CurvePlan, Run, adaptation_curve, import_files, read_recordings};
+use twintac_sensor::SensorFile;
 
 use super::files::{expand, rename};
 use crate::Program;

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result};
 use twintac_calibrate::Fit;
-use twintac_run::calibration::{CsvPlace, Measured, calibrate, curve_of_csv, curves_of_file};
-use twintac_run::{SensorFile, simulate_settings};
+use twintac_gel::calibration::{CsvPlace, Measured, calibrate, curve_of_csv, curves_of_file};
+use twintac_gel::simulate_settings;
+use twintac_sensor::SensorFile;
 use twintac_simulate::{Gel, SimulateSettings};
 
 use crate::arguments::Calibrate;

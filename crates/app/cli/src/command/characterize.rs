@@ -1,8 +1,8 @@
 //! `twintac characterize`: what a sensor does, from recorded presses.
 
 use anyhow::Result;
-use twintac_run::SensorFile;
-use twintac_run::characterization::Recorded;
+use twintac_recorded::Recorded;
+use twintac_sensor::SensorFile;
 
 use super::files::expand;
 use crate::arguments::Characterize;

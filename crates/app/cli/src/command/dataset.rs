@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use twintac_run::dataset::{Dataset, LeftOut, MadeShard, Shard, WholeDataset, check_dataset, merge_dataset};
+use twintac_dataset::{Dataset, LeftOut, MadeShard, Shard, WholeDataset, check_dataset, merge_dataset};
 
 use crate::arguments::Dataset as Arguments;
 use crate::output::print;

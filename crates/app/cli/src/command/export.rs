@@ -1,8 +1,8 @@
 //! `twintac export`: frames of logs as tables.
 
 use anyhow::Result;
+use twintac_recorded::{export, export_lerobot};
 use twintac_recording::LeRobotSummary;
-use twintac_run::export::{export, export_lerobot};
 
 use super::files::expand;
 use crate::arguments::Export;

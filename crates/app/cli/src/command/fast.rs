@@ -2,8 +2,9 @@
 
 use anyhow::Result;
 use twintac_fast::{GroupErrors, Judgement};
-use twintac_run::SensorFile;
-use twintac_run::fast::{FAST_GEL, FastSettings, Told, train_fast};
+use twintac_lessons::{FastSettings, Told, train_fast};
+use twintac_sensor::SensorFile;
+use twintac_tables::FAST_GEL;
 
 use crate::Program;
 use crate::arguments::FastTrain;

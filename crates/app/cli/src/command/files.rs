@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use twintac_recording::Recording;
-use twintac_run::SensorFile;
+use twintac_sensor::SensorFile;
 
 /// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters.
 pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::Result;
+use twintac_gel::simulated::SimulatedPath;
 use twintac_recording::Provenance;
-use twintac_run::simulated::SimulatedPath;
 use twintac_simulate::{Followed, FollowedFrame, Gel};
 
 use crate::output::{print, print_csv};

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::{Result, bail};
-use twintac_run::characterization::Recorded;
-use twintac_run::fast::{ImperfectionSources, find_imperfection, sensor_of_model};
-use twintac_run::{SensorFile, import_files};
+use twintac_model::{ImperfectionSources, find_imperfection, sensor_of_model};
+use twintac_recorded::Recorded;
+use twintac_run::import_files;
+use twintac_sensor::SensorFile;
 
 use super::files::{expand, rename};
 use crate::arguments::FastImperfection;

@@ -1,10 +1,9 @@
 //! `twintac locate`: where and how deep a sensor is touched, from its readings, by its trained twin.
 
 use anyhow::Result;
-use twintac_run::fast::sensor_of_model;
-use twintac_run::{
-    Located, LocatedFrame, LocatedPress, LocationErrors, Locator, Progress, import_files, read_recordings,
-};
+use twintac_model::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, sensor_of_model};
+use twintac_run::{import_files, read_recordings};
+use twintac_work::Progress;
 
 use super::files::{expand, rename};
 use crate::arguments::Locate;

@@ -1,8 +1,8 @@
 //! `twintac mesh`.
 
 use anyhow::{Context, Result};
-use twintac_run::SensorFile;
-use twintac_run::mesh::{Fineness, MeshedGel, check_mesh};
+use twintac_gel::mesh::{Fineness, MeshedGel, check_mesh};
+use twintac_sensor::SensorFile;
 
 use crate::arguments::Mesh;
 use crate::output::print;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::Result;
-use twintac_run::paper::{Effort, Paper, PaperMetrics};
+use twintac_paper::{Effort, Paper, PaperMetrics};
 
 use crate::Program;
 use crate::arguments::Reproduce;

@@ -1,7 +1,7 @@
 //! `twintac predict`: what a sensor would read, by its trained twin.
 
 use anyhow::{Context, Result, bail};
-use twintac_run::{Predicted, Predictor};
+use twintac_model::{Predicted, Predictor};
 
 use crate::arguments::Predict;
 use crate::output::{print, print_csv};

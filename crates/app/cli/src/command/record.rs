@@ -11,9 +11,11 @@ use twintac_live::Known;
 use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_limits};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
-use twintac_run::bench::{OpenBench, preview, read_faults};
 use twintac_run::built_in::{LAB_RIG, reality};
-use twintac_run::{Caller, Planned, Progress, Run, RunSettings, SensorFile};
+use twintac_run::{Run, RunSettings};
+use twintac_sensor::SensorFile;
+use twintac_station::{OpenBench, preview, read_faults};
+use twintac_work::{Caller, Planned, Progress};
 
 use super::files::sensor_or_phystac;
 use crate::Program;
@@ -134,7 +136,7 @@ fn press(
     let caller = program.caller()?;
     let run = start(arguments, sensor, &source, caller.clone())?;
     let mut bench = match reality {
-        Some(reality) => OpenBench::emulate(&run, reality, plans, &settings, faults.unwrap_or_default())?,
+        Some(reality) => run.emulated_bench(reality, plans, &settings, faults.unwrap_or_default())?,
         None => {
             let known = Known {
                 counts_per_pa: arguments.scale,

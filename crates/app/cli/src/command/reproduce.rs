@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use twintac_run::{Run, RunSettings, SensorFile};
+use twintac_run::{Run, RunSettings};
+use twintac_sensor::SensorFile;
 
 use super::files::expand;
 use crate::Program;

@@ -1,7 +1,7 @@
 //! `twintac sensor show`.
 
 use anyhow::Result;
-use twintac_run::SensorFile;
+use twintac_sensor::SensorFile;
 
 use crate::arguments::SensorShow;
 use crate::output::print;

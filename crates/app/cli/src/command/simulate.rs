@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use anyhow::Result;
-use twintac_run::simulated::simulate_presses;
-use twintac_run::{Planned, Run, SensorFile, simulate_settings};
+use twintac_gel::simulate_settings;
+use twintac_gel::simulated::simulate_presses;
+use twintac_run::Run;
+use twintac_sensor::SensorFile;
 use twintac_simulate::{Gel, SimulateSettings};
+use twintac_work::Planned;
 
 use crate::Program;
 use crate::arguments::Simulate;

@@ -1,8 +1,8 @@
 //! The stages as commands of their own.
 
 use anyhow::{Context, Result};
-use twintac_run::fast::sensor_of_model;
-use twintac_run::{Metrics, Run, UnseenEvaluation, evaluate_elsewhere, import_files, read_recordings};
+use twintac_model::{UnseenEvaluation, evaluate_elsewhere, sensor_of_model};
+use twintac_run::{Metrics, Run, import_files, read_recordings};
 
 use super::files::{expand, rename};
 use crate::Program;

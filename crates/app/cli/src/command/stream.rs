@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use twintac_live::{Format, Known, Live, StopAfter, Tally, dashboard, stream_rows};
+use twintac_sensor::SensorFile;
 
 use super::files::sensor_or_phystac;
 use crate::arguments::{RowFormat, Stream};
 use crate::progress::say;
-use twintac_run::SensorFile;
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;

@@ -5,15 +5,16 @@ use std::path::Path;
 
 use digitac::{Baselines, Evaluation, Model, Repeatability, Scale, evaluate, repeatability, score_certainty};
 use serde::{Deserialize, Serialize};
+use twintac_model::{BaselineFigures, Figures, TwinFigures, left_out, names, ports_mm};
+use twintac_sensor::SensorFile;
 use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
+use twintac_work::{Progress, WorkError};
 
 use super::pairs::read_pairs;
 use super::simulation::{Simulation, contacts};
 use super::training::{HELD_OUT, VariantRecord};
-use crate::doubtful::left_out;
-use crate::metrics::{self, Figures, Metrics, TwinFigures, names};
-use crate::settings::ports_mm;
-use crate::{Progress, Run, RunError, RunSettings, SensorFile};
+use crate::metrics::Metrics;
+use crate::{Run, RunSettings};
 
 /// What the evaluation stage left: `evaluation.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -39,9 +40,9 @@ impl Stage for Evaluating<'_> {
     const NAME: &'static str = "evaluation";
     const MADE_BY: &'static str = "twintac evaluate";
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
         let sensor = &self.sensor.sensor;
         let presses = read_pairs(&self.pairs)?;
         let model = Model::load(&self.training.file(HELD_OUT))?;
@@ -76,8 +77,8 @@ impl Stage for Evaluating<'_> {
             held_out_presses: evaluation.presses.len(),
             twin: TwinFigures::new(&evaluation.twin, &evaluation.taxels),
             twin_all_taxels: every_taxel,
-            baselines: metrics::baselines(&evaluation),
-            repeatability: metrics::repeatability(repeatability.as_ref()),
+            baselines: BaselineFigures::from(&evaluation),
+            repeatability: repeatability.as_ref().map(|found| Figures::from(&found.errors)),
             variants: variants
                 .iter()
                 .map(|v| (v.variant.to_string(), Figures::from(&v.test.overall)))
@@ -99,12 +100,12 @@ impl Run {
     ///
     /// # Errors
     /// No twin is trained yet.
-    pub fn evaluate(&self) -> Result<Metrics, RunError> {
+    pub fn evaluate(&self) -> Result<Metrics, WorkError> {
         let finished = self.run_stage(&self.evaluating()?)?;
         Ok(read_json(&finished.file("metrics.json"))?)
     }
 
-    fn evaluating(&self) -> Result<Evaluating<'_>, RunError> {
+    fn evaluating(&self) -> Result<Evaluating<'_>, WorkError> {
         Ok(Evaluating {
             sensor: self.keyed_sensor(),
             settings: self.settings(),
@@ -117,7 +118,7 @@ impl Run {
     }
 
     /// The evaluation, as it would be made now.
-    pub(crate) fn evaluation(&self) -> Result<Finished, RunError> {
+    pub(crate) fn evaluation(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.evaluating()?)?)
     }
 
@@ -125,7 +126,7 @@ impl Run {
     ///
     /// # Errors
     /// The run is not evaluated yet, or not as it is now.
-    pub fn metrics(&self) -> Result<Metrics, RunError> {
+    pub fn metrics(&self) -> Result<Metrics, WorkError> {
         Ok(read_json(&self.evaluation()?.file("metrics.json"))?)
     }
 }

@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use serde::Serialize;
+use twintac_gel::mesh::{Fineness, MeshedGel};
+use twintac_sensor::SensorFile;
 use twintac_store::{Keyed, Stage};
+use twintac_work::{Progress, WorkError};
 
-use crate::mesh::{Fineness, MeshedGel};
-use crate::{Progress, Run, RunError, SensorFile};
+use crate::Run;
 
 #[derive(Serialize)]
 struct Meshing<'a> {
@@ -18,9 +20,9 @@ impl Stage for Meshing<'_> {
     const NAME: &'static str = "mesh";
     const MADE_BY: &'static str = "twintac simulate --run";
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
         let sensor = &self.sensor.sensor;
         let height_mm = sensor.gel.solid.bounds_mm(&sensor.surfaces).1.z;
         MeshedGel::of(sensor, Fineness::EdgeMm(height_mm / self.edges_per_height))?.write(folder)
@@ -32,7 +34,7 @@ impl Run {
     ///
     /// # Errors
     /// A gel that cannot be meshed; a folder that cannot be written.
-    pub fn mesh(&self) -> Result<(), RunError> {
+    pub fn mesh(&self) -> Result<(), WorkError> {
         self.run_stage(&Meshing {
             sensor: self.keyed_sensor(),
             edges_per_height: self.record().settings.simulate.edges_per_height,

@@ -5,10 +5,11 @@ use std::path::Path;
 use digitac::{PairSettings, PairedPress, pair};
 use serde::Serialize;
 use twintac_store::{Finished, Stage, read_json, write_json};
+use twintac_work::{Progress, WorkError};
 
 use super::recordings::read_recording;
 use super::simulation::Simulation;
-use crate::{Progress, Run, RunError};
+use crate::Run;
 
 #[derive(Serialize)]
 struct Pairing<'a> {
@@ -21,9 +22,9 @@ impl Stage for Pairing<'_> {
     const NAME: &'static str = "pairs";
     const MADE_BY: &'static str = "twintac align";
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
         let recording = read_recording(&self.recordings)?;
         let simulation = Simulation::read(&self.simulation)?;
         let Simulation {
@@ -40,7 +41,10 @@ impl Stage for Pairing<'_> {
 }
 
 /// The paired presses that the stage left.
-pub(crate) fn read_pairs(stage: &Finished) -> Result<Vec<PairedPress>, RunError> {
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn read_pairs(stage: &Finished) -> Result<Vec<PairedPress>, WorkError> {
     Ok(read_json(&stage.file("paired.json"))?)
 }
 
@@ -49,11 +53,11 @@ impl Run {
     ///
     /// # Errors
     /// The recordings or their simulations are not there yet.
-    pub fn pair(&self) -> Result<(), RunError> {
+    pub fn pair(&self) -> Result<(), WorkError> {
         self.run_stage(&self.pairing()?).map(drop)
     }
 
-    fn pairing(&self) -> Result<Pairing<'_>, RunError> {
+    fn pairing(&self) -> Result<Pairing<'_>, WorkError> {
         Ok(Pairing {
             settings: &self.record().settings.pair,
             recordings: self.recordings()?,
@@ -62,7 +66,10 @@ impl Run {
     }
 
     /// The stage of paired presses, as it would be made now.
-    pub(crate) fn pairs(&self) -> Result<Finished, RunError> {
+    ///
+    /// # Errors
+    /// It is not there, or is not as it would be made now.
+    pub fn pairs(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.pairing()?)?)
     }
 }

@@ -9,13 +9,11 @@ use twintac_lab::{Lab, LiveTable, Reality};
 use twintac_log::ReadOptions;
 use twintac_protocol::{LoadPlan, PressPlan};
 use twintac_recording::{Import, ImportSummary, Press, Recording};
-use twintac_sensor::Sensor;
+use twintac_sensor::{Sensor, SensorFile};
 use twintac_store::{Digest, Finished, Keyed, Recipe, Stage, Store, StoreError, read_json, write_json};
+use twintac_work::{At, Planned, Progress, Work, WorkError, read_text};
 
-use crate::error::At;
-use crate::files::read_text;
-use crate::progress::Work;
-use crate::{Planned, Progress, Run, RunError, SensorFile};
+use crate::Run;
 
 /// What the stage is called, and how people make it.
 const RECORDINGS: (&str, &str) = ("recordings", "twintac import` or `twintac record");
@@ -24,7 +22,10 @@ const RECORDINGS: (&str, &str) = ("recordings", "twintac import` or `twintac rec
 const PRESSES: &str = "presses.parquet";
 
 /// The presses that the stage left.
-pub(crate) fn read_recording(stage: &Finished) -> Result<Recording, RunError> {
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn read_recording(stage: &Finished) -> Result<Recording, WorkError> {
     Ok(Recording::read_parquet(&stage.file(PRESSES))?)
 }
 
@@ -49,9 +50,9 @@ impl Stage for Importing<'_> {
     const NAME: &'static str = RECORDINGS.0;
     const MADE_BY: &'static str = RECORDINGS.1;
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
         let files: Vec<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
         let (recording, summary) = self.import.read_all(&files)?;
         check_sensor(&self.sensor.sensor, &recording)?;
@@ -73,9 +74,9 @@ impl Stage for Emulating<'_> {
     const NAME: &'static str = RECORDINGS.0;
     const MADE_BY: &'static str = RECORDINGS.1;
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let lab = keyed_lab(self.sensor, self.reality)?;
         let store = Store::new(&folder.join("presses"), Self::NAME);
         let presses = |plan| EmulatedPress { lab: &lab, plan };
@@ -97,7 +98,7 @@ impl Stage for Emulating<'_> {
 }
 
 /// The laboratory follows from the sensor and the reality.
-fn keyed_lab(sensor: &Keyed<SensorFile>, reality: &Reality) -> Result<Keyed<Lab>, RunError> {
+fn keyed_lab(sensor: &Keyed<SensorFile>, reality: &Reality) -> Result<Keyed<Lab>, WorkError> {
     let lab = Lab::new(Arc::clone(&sensor.sensor), reality.clone())?;
     Ok(Keyed::from_inputs(lab, &(sensor, reality))?)
 }
@@ -110,13 +111,13 @@ struct EmulatedPress<'a> {
 
 impl Recipe for EmulatedPress<'_> {
     type Value = Press;
-    type Error = RunError;
+    type Error = WorkError;
 
     fn label(&self) -> String {
         self.plan.name.clone()
     }
 
-    fn make(&self) -> Result<Press, RunError> {
+    fn make(&self) -> Result<Press, WorkError> {
         Ok(self.lab.press(self.plan)?)
     }
 }
@@ -129,13 +130,13 @@ struct EmulatedLoad<'a> {
 
 impl Recipe for EmulatedLoad<'_> {
     type Value = Press;
-    type Error = RunError;
+    type Error = WorkError;
 
     fn label(&self) -> String {
         self.load.name.clone()
     }
 
-    fn make(&self) -> Result<Press, RunError> {
+    fn make(&self) -> Result<Press, WorkError> {
         Ok(self.lab.load(self.load)?)
     }
 }
@@ -155,9 +156,9 @@ impl Stage for LiveTables<'_> {
     const NAME: &'static str = "lab";
     const MADE_BY: &'static str = RECORDINGS.1;
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let lab = keyed_lab(self.sensor, self.reality)?;
         let store = Store::new(&folder.join("places"), Self::NAME);
         let recipes = self.plans.iter().map(|plan| LiveTableAt { lab: &lab, plan });
@@ -174,13 +175,13 @@ struct LiveTableAt<'a> {
 
 impl Recipe for LiveTableAt<'_> {
     type Value = LiveTable;
-    type Error = RunError;
+    type Error = WorkError;
 
     fn label(&self) -> String {
         self.plan.name.clone()
     }
 
-    fn make(&self) -> Result<LiveTable, RunError> {
+    fn make(&self) -> Result<LiveTable, WorkError> {
         Ok(self.lab.live_table(self.plan)?)
     }
 }
@@ -197,9 +198,9 @@ impl Stage for Collecting<'_> {
     const NAME: &'static str = RECORDINGS.0;
     const MADE_BY: &'static str = RECORDINGS.1;
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
         let mut recording: Option<Recording> = None;
         let mut remarks = Vec::new();
         for LabFile { path, name, .. } in &self.logs {
@@ -216,7 +217,7 @@ impl Stage for Collecting<'_> {
                     .at(|| path.display().to_string())?,
             }
         }
-        let recording = recording.ok_or_else(|| RunError::Input("no press is done".to_owned()))?;
+        let recording = recording.ok_or_else(|| WorkError::Input("no press is done".to_owned()))?;
         check_sensor(&self.sensor.sensor, &recording)?;
         recording.write_parquet(&folder.join(PRESSES))?;
         write_json(&folder.join("plans.json"), &self.plans)?;
@@ -225,7 +226,8 @@ impl Stage for Collecting<'_> {
 }
 
 /// How the recordings of another run are changed. Its fields are all that the change depends on.
-pub(crate) trait Change: Serialize {
+pub trait Change: Serialize {
+    /// The recordings, changed.
     fn changed(&self, recording: Recording) -> Recording;
 }
 
@@ -241,9 +243,9 @@ impl<C: Change> Stage for Taking<'_, C> {
     const NAME: &'static str = RECORDINGS.0;
     const MADE_BY: &'static str = RECORDINGS.1;
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
         let changed = self.change.changed(read_recording(&self.recordings)?);
         Ok(changed.write_parquet(&folder.join(PRESSES))?)
     }
@@ -254,7 +256,7 @@ impl Run {
     ///
     /// # Errors
     /// There are none yet, they are of another sensor than the run, or they cannot be read.
-    pub fn recording(&self) -> Result<Recording, RunError> {
+    pub fn recording(&self) -> Result<Recording, WorkError> {
         read_recording(&self.recordings()?)
     }
 
@@ -263,7 +265,7 @@ impl Run {
     ///
     /// # Errors
     /// A file that cannot be read as described, or that is of another sensor.
-    pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<(), RunError> {
+    pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<(), WorkError> {
         let text = read_text(import)?;
         let description = Import::parse(&import.display().to_string(), &text)?;
         self.run_stage(&Importing {
@@ -279,7 +281,7 @@ impl Run {
     ///
     /// # Errors
     /// A press that the gel cannot carry out.
-    pub fn emulate(&self, reality: &Reality, planned: &Planned) -> Result<(), RunError> {
+    pub fn emulate(&self, reality: &Reality, planned: &Planned) -> Result<(), WorkError> {
         self.run_stage(&Emulating {
             sensor: self.keyed_sensor(),
             reality,
@@ -293,7 +295,7 @@ impl Run {
     ///
     /// # Errors
     /// The other run has no recordings; a file that cannot be written.
-    pub(crate) fn take(&self, other: &Self, change: &impl Change) -> Result<(), RunError> {
+    pub fn take(&self, other: &Self, change: &impl Change) -> Result<(), WorkError> {
         self.run_stage(&Taking {
             sensor: self.keyed_sensor(),
             recordings: other.recordings()?,
@@ -307,7 +309,7 @@ impl Run {
         &self,
         reality: &Reality,
         plans: &[PressPlan],
-    ) -> Result<Vec<LiveTable>, RunError> {
+    ) -> Result<Vec<LiveTable>, WorkError> {
         let finished = self.run_stage(&LiveTables {
             sensor: self.keyed_sensor(),
             reality,
@@ -320,7 +322,7 @@ impl Run {
     ///
     /// # Errors
     /// Logs that cannot be read or are of another sensor; none at all.
-    pub fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<(), RunError> {
+    pub fn collect(&self, logs: &Path, plans: &[PressPlan]) -> Result<(), WorkError> {
         let files = twintac_press::done_logs(logs, plans)?;
         self.run_stage(&Collecting {
             sensor: self.keyed_sensor(),
@@ -331,21 +333,24 @@ impl Run {
     }
 
     /// The recordings, of the sensor as it is described now.
-    pub(crate) fn recordings(&self) -> Result<Finished, RunError> {
+    ///
+    /// # Errors
+    /// They are not there, or are of another sensor.
+    pub fn recordings(&self) -> Result<Finished, WorkError> {
         let (name, made_by) = RECORDINGS;
         let finished = self.stages().finished(name, made_by).map_err(StoreError::from)?;
         let sensor = Digest::of_value(self.keyed_sensor()).ok();
         if finished.made_from().part("sensor") == sensor {
             return Ok(finished);
         }
-        Err(RunError::Input(format!(
+        Err(WorkError::Input(format!(
             "{}: the recordings were made for another description of the sensor; make them again with `{made_by}`",
             self.folder().display()
         )))
     }
 }
 
-fn lab_files(files: &[PathBuf]) -> Result<Vec<LabFile<'_>>, RunError> {
+fn lab_files(files: &[PathBuf]) -> Result<Vec<LabFile<'_>>, WorkError> {
     let files = files.iter().map(|path| {
         Ok(LabFile {
             name: path
@@ -360,16 +365,16 @@ fn lab_files(files: &[PathBuf]) -> Result<Vec<LabFile<'_>>, RunError> {
     files.collect()
 }
 
-fn check_sensor(sensor: &Sensor, recording: &Recording) -> Result<(), RunError> {
+fn check_sensor(sensor: &Sensor, recording: &Recording) -> Result<(), WorkError> {
     if recording.sensor != sensor.name {
-        return Err(RunError::Input(format!(
+        return Err(WorkError::Input(format!(
             "the recordings are of sensor `{}`, the description is of `{}`",
             recording.sensor, sensor.name
         )));
     }
     let taxels: Vec<&String> = sensor.taxels.iter().map(|taxel| &taxel.name).collect();
     if !recording.taxels.iter().eq(taxels.iter().copied()) {
-        return Err(RunError::Input(format!(
+        return Err(WorkError::Input(format!(
             "the recordings have taxels {:?}, the description has {taxels:?}",
             recording.taxels
         )));
@@ -383,9 +388,9 @@ fn all<R>(
     work: &str,
     store: &Store,
     recipes: impl ExactSizeIterator<Item = R>,
-) -> Result<Vec<R::Value>, RunError>
+) -> Result<Vec<R::Value>, WorkError>
 where
-    R: Recipe<Error = RunError> + Sync + Send,
+    R: Recipe<Error = WorkError> + Sync + Send,
     R::Value: Send,
 {
     let work = Work::start(progress, work, recipes.len());
@@ -407,7 +412,7 @@ where
 ///
 /// # Errors
 /// A file that cannot be read as described.
-pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary), RunError> {
+pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary), WorkError> {
     let import = Import::parse(&import.display().to_string(), &read_text(import)?)?;
     Ok(import.read_all(files)?)
 }
@@ -416,11 +421,11 @@ pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, Impo
 ///
 /// # Errors
 /// A file of another kind, or that cannot be read; recordings that do not belong together.
-pub fn read_recordings(files: &[PathBuf]) -> Result<Recording, RunError> {
+pub fn read_recordings(files: &[PathBuf]) -> Result<Recording, WorkError> {
     let mut all: Option<Recording> = None;
     for file in files {
         if file.extension().is_none_or(|extension| extension != "parquet") {
-            return Err(RunError::Input(format!(
+            return Err(WorkError::Input(format!(
                 "{} is no Parquet file; say with --import how to read it",
                 file.display()
             )));
@@ -431,5 +436,5 @@ pub fn read_recordings(files: &[PathBuf]) -> Result<Recording, RunError> {
             Some(all) => all.append(next).at(|| file.display().to_string())?,
         }
     }
-    all.ok_or_else(|| RunError::Input("there are no recordings".to_owned()))
+    all.ok_or_else(|| WorkError::Input("there are no recordings".to_owned()))
 }

@@ -6,15 +6,15 @@ use digitac::{BenchEstimate, Contact, Places, Split, fit_bench, refine_bench};
 use serde::Serialize;
 use twintac_depth_table::{DepthTable, DepthTableSource};
 use twintac_recording::Recording;
+use twintac_sensor::SensorFile;
 use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
+use twintac_tables::{DepthTableStore, FastTables};
+use twintac_work::{Progress, Work, WorkError};
 
 use super::recordings::read_recording;
-use crate::depth_tables::DepthTableStore;
-use crate::fast::tables::FastTables;
-use crate::progress::Work;
 use crate::run::gel_of;
 use crate::settings::ResolvedSettings;
-use crate::{Progress, Run, RunError, RunSettings, SensorFile};
+use crate::{Run, RunSettings};
 
 /// What stages after the recordings depend on.
 #[derive(Clone, Copy, Serialize)]
@@ -29,7 +29,7 @@ pub(crate) struct Setup<'a> {
 
 impl Setup<'_> {
     /// The settings for the sensor, its presses and the seed: what stages compute from.
-    pub(crate) fn resolved(&self, recording: &Recording) -> Result<ResolvedSettings, RunError> {
+    pub(crate) fn resolved(&self, recording: &Recording) -> Result<ResolvedSettings, WorkError> {
         let sensor = &self.sensor.sensor;
         let is_fast = self.fast.is_some();
         Ok(self.settings.resolve(sensor, recording, self.seed, is_fast)?)
@@ -47,9 +47,9 @@ impl Stage for Simulating<'_> {
     const NAME: &'static str = "simulation";
     const MADE_BY: &'static str = "twintac align";
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let setup = &self.setup;
         let recording = read_recording(&self.recordings)?;
         let gel = gel_of(setup.sensor, setup.settings);
@@ -75,19 +75,23 @@ impl Stage for Simulating<'_> {
 }
 
 /// What the simulation stage left.
-pub(crate) struct Simulation {
+pub struct Simulation {
     /// Which presses teach, decide and judge.
-    pub(crate) split: Split,
+    pub split: Split,
     /// What was fitted about the bench.
-    pub(crate) bench: BenchEstimate,
+    pub bench: BenchEstimate,
     /// The distinct places.
-    pub(crate) places: Places,
+    pub places: Places,
     /// A table over depth for each place.
-    pub(crate) tables: Vec<DepthTable>,
+    pub tables: Vec<DepthTable>,
 }
 
 impl Simulation {
-    pub(crate) fn read(stage: &Finished) -> Result<Self, RunError> {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read(stage: &Finished) -> Result<Self, WorkError> {
         Ok(Self {
             split: read_json(&stage.file("split.json"))?,
             bench: read_json(&stage.file("bench.json"))?,
@@ -102,7 +106,7 @@ pub(crate) fn contacts(
     places: &Places,
     sensor: &SensorFile,
     settings: &RunSettings,
-) -> Result<Vec<Contact>, RunError> {
+) -> Result<Vec<Contact>, WorkError> {
     Ok(Contact::of_places(places, &gel_of(sensor, settings))?)
 }
 
@@ -111,7 +115,7 @@ impl Run {
     ///
     /// # Errors
     /// There are no recordings yet; a place that cannot be pressed.
-    pub fn simulate(&self) -> Result<(), RunError> {
+    pub fn simulate(&self) -> Result<(), WorkError> {
         self.run_stage(&self.simulating()?).map(drop)
     }
 
@@ -124,7 +128,7 @@ impl Run {
         }
     }
 
-    fn simulating(&self) -> Result<Simulating<'_>, RunError> {
+    fn simulating(&self) -> Result<Simulating<'_>, WorkError> {
         Ok(Simulating {
             setup: Setup {
                 settings: self.simulation_settings(),
@@ -135,7 +139,10 @@ impl Run {
     }
 
     /// The simulation stage, as it would be made now.
-    pub(crate) fn simulation(&self) -> Result<Finished, RunError> {
+    ///
+    /// # Errors
+    /// It is not there, or is not as it would be made now.
+    pub fn simulation(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.simulating()?)?)
     }
 }

@@ -8,17 +8,16 @@ use digitac::{
     TrainSettings, Trained, TrainedWith, Variant, calibrate,
 };
 use serde::{Deserialize, Serialize};
+use twintac_model::{left_out, press_checksum};
 use twintac_recording::Recording;
 use twintac_store::{Finished, Stage, StoreError, write_json};
+use twintac_work::{Progress, Work, WorkError};
 
 use super::pairs::read_pairs;
 use super::recordings::read_recording;
 use super::simulation::{Setup, Simulation, contacts};
-use crate::doubtful::left_out;
-use crate::press_checksum::press_checksum;
-use crate::progress::Work;
+use crate::Run;
 use crate::settings::ResolvedSettings;
-use crate::{Progress, Run, RunError};
 
 /// How each variant did: `variants.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -39,7 +38,7 @@ pub(crate) struct VariantRecord {
 pub(crate) const HELD_OUT: &str = "held-out";
 
 /// The twin of all presses, in the stage's folder.
-pub(crate) const COMPLETE: &str = "complete";
+pub const COMPLETE: &str = "complete";
 
 /// What twins are trained with.
 #[derive(Clone, Serialize)]
@@ -61,9 +60,9 @@ impl Stage for TrainingStage<'_> {
     const NAME: &'static str = "training";
     const MADE_BY: &'static str = "twintac train";
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let training = Training::open(&self.teaching)?;
         let work = Work::start(progress, "training", training.n_epochs());
         let split = &training.simulation.split;
@@ -101,9 +100,9 @@ impl Stage for PaperTwin<'_> {
     const NAME: &'static str = "paper-twin";
     const MADE_BY: &'static str = "twintac reproduce --paper";
     type Follower = dyn Progress;
-    type Error = RunError;
+    type Error = WorkError;
 
-    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), RunError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let training = Training::open(&self.teaching)?;
         let work = Work::start(progress, "training", training.settings.train.epochs);
         let settings = TrainSettings {
@@ -123,7 +122,7 @@ impl Run {
     ///
     /// # Errors
     /// The pairs are not there yet.
-    pub fn train(&self) -> Result<(), RunError> {
+    pub fn train(&self) -> Result<(), WorkError> {
         let finished = self.run_stage(&self.training_stage()?)?;
         // Where people look for it.
         let target = self.model_folder();
@@ -135,12 +134,15 @@ impl Run {
     }
 
     /// Trains the paper's twin on all presses, test presses too: its stress feature through its perceptron.
-    pub(crate) fn train_paper_twin(&self) -> Result<Finished, RunError> {
+    ///
+    /// # Errors
+    /// The stages before are not there, or not as they would be made now; a training that failed.
+    pub fn train_paper_twin(&self) -> Result<Finished, WorkError> {
         let teaching = self.teaching()?;
         self.run_stage(&PaperTwin { teaching })
     }
 
-    fn teaching(&self) -> Result<Teaching<'_>, RunError> {
+    fn teaching(&self) -> Result<Teaching<'_>, WorkError> {
         Ok(Teaching {
             setup: self.setup(),
             recordings: self.recordings()?,
@@ -149,19 +151,22 @@ impl Run {
         })
     }
 
-    fn training_stage(&self) -> Result<TrainingStage<'_>, RunError> {
+    fn training_stage(&self) -> Result<TrainingStage<'_>, WorkError> {
         let teaching = self.teaching()?;
         Ok(TrainingStage { teaching })
     }
 
     /// The trained twins, as they would be trained now.
-    pub(crate) fn training(&self) -> Result<Finished, RunError> {
+    ///
+    /// # Errors
+    /// They are not there, or not as they would be made now.
+    pub fn training(&self) -> Result<Finished, WorkError> {
         Ok(self.stages().current(&self.training_stage()?)?)
     }
 }
 
-fn nothing_trained() -> RunError {
-    RunError::Input("no variant was trained".to_owned())
+fn nothing_trained() -> WorkError {
+    WorkError::Input("no variant was trained".to_owned())
 }
 
 /// All that twins are trained with.
@@ -177,7 +182,7 @@ struct Training<'a> {
 }
 
 impl<'a> Training<'a> {
-    fn open(teaching: &'a Teaching<'a>) -> Result<Self, RunError> {
+    fn open(teaching: &'a Teaching<'a>) -> Result<Self, WorkError> {
         let setup = &teaching.setup;
         let recording = read_recording(&teaching.recordings)?;
         let simulation = Simulation::read(&teaching.simulation)?;
@@ -235,7 +240,7 @@ impl<'a> Training<'a> {
         split: &Split,
         settings: &TrainSettings,
         work: &Work<'_>,
-    ) -> Result<Vec<Trained>, RunError> {
+    ) -> Result<Vec<Trained>, WorkError> {
         let mut follow = |step: Step| {
             work.step(&format!("{} {:.2} %", step.variant, 100.0 * step.validation_loss));
             work.go_on().map_or(ControlFlow::Break(()), ControlFlow::Continue)
@@ -272,7 +277,7 @@ impl<'a> Training<'a> {
         split: Split,
         certainty: Option<Certainty>,
         folder: &Path,
-    ) -> Result<(), RunError> {
+    ) -> Result<(), WorkError> {
         let judged = (!split.test.is_empty()).then(|| {
             let held_out = &self.simulation.split;
             digitac::evaluate(&trained.twin, &self.presses, &held_out.test, &self.scale, None)

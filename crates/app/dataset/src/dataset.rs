@@ -1,0 +1,125 @@
+//! A data set, and the work of making it.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use twintac_protocol::PressPlan;
+use twintac_recording::{Press, Provenance, Recording};
+use twintac_work::{Progress, Work, WorkError, target};
+
+use crate::folder::Folder;
+use crate::identity::Inputs;
+use crate::press;
+use crate::{DatasetPlan, LeftOut, MadeShard, Shard};
+
+/// A data set: which presses, of what, read how.
+pub struct Dataset {
+    inputs: Inputs,
+    n_presses: usize,
+    seed: u64,
+    /// The text of `dataset.toml`.
+    identity: String,
+}
+
+impl Dataset {
+    /// A data set as planned: reads the files that the plan names, and makes nothing yet.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is wrong; indenters that the sensor does not have; a twin or a fast gel of another sensor.
+    pub fn open(plan: &DatasetPlan) -> Result<Self, WorkError> {
+        let inputs = Inputs::read(plan)?;
+        let there_are = inputs.protocol.n_presses(&target(&inputs.sensor.sensor))?;
+        let n_presses = plan.n_presses.unwrap_or(there_are).min(there_are);
+        Ok(Self {
+            identity: inputs.identity(n_presses, plan.seed)?,
+            inputs,
+            n_presses,
+            seed: plan.seed,
+        })
+    }
+
+    /// How many presses it has.
+    #[must_use]
+    pub fn n_presses(&self) -> usize {
+        self.n_presses
+    }
+
+    /// What it is made from: the text of `dataset.toml`. Data sets of the same text are the same.
+    #[must_use]
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    /// Makes one shard in a folder, with all threads that there are, unless it is complete there. It appears whole or not at all, whoever else works in the folder.
+    ///
+    /// # Errors
+    /// More shards than presses; a folder with shards of another data set or another division; no press that can be simulated; files that cannot be written.
+    pub fn make(&self, shard: Shard, folder: &Path, progress: &dyn Progress) -> Result<MadeShard, WorkError> {
+        let stretch = shard.stretch(self.n_presses)?;
+        let folder = Folder::open(folder, &self.identity, &self.inputs.sensor.text, shard)?;
+        if let Some(made) = folder.complete(shard)? {
+            return Ok(made);
+        }
+        let sensor = &self.inputs.sensor.sensor;
+        let plans = self
+            .inputs
+            .protocol
+            .plan_in_turn(&target(sensor), self.seed, stretch)?;
+        let work = Work::start(progress, "pressing", plans.len());
+        let pressed: Vec<Result<Press, LeftOut>> = plans
+            .par_iter()
+            .with_max_len(1)
+            .map(|plan| {
+                work.go_on()?;
+                let pressed = self.press(plan);
+                work.step("");
+                Ok(pressed)
+            })
+            .collect::<Result<_, WorkError>>()?;
+        drop(work);
+        let (mut presses, mut left_out) = (Vec::new(), Vec::new());
+        for pressed in pressed {
+            match pressed {
+                Ok(press) => presses.push(press),
+                Err(why) => left_out.push(why),
+            }
+        }
+        if let (true, Some(first)) = (presses.is_empty(), left_out.first()) {
+            return Err(WorkError::Input(format!(
+                "none of the {} presses of shard {shard} can be simulated; the first, {}: {}",
+                left_out.len(),
+                first.press,
+                first.why
+            )));
+        }
+        let recording = Recording {
+            sensor: sensor.name.clone(),
+            provenance: Provenance::Simulated,
+            taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
+            presses,
+        };
+        folder.put(shard, &recording, left_out)
+    }
+
+    /// One press, or why it is left out.
+    fn press(&self, plan: &PressPlan) -> Result<Press, LeftOut> {
+        press::press(&self.inputs, plan, self.seed).map_err(|error| LeftOut {
+            press: plan.name.clone(),
+            why: chain(&error),
+        })
+    }
+}
+
+/// An error with all its sources, as one sentence.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(error) = source {
+        let next = error.to_string();
+        if !text.ends_with(&next) {
+            text = format!("{text}: {next}");
+        }
+        source = error.source();
+    }
+    text
+}

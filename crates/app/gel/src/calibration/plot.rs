@@ -1,0 +1,66 @@
+//! Measured and fitted curves, and what is left between them.
+
+use twintac_calibrate::{Fit, FittedSignal};
+use twintac_plot::{Ink, Panel, Panels, Scene, Series};
+use twintac_sensor::Sensor;
+
+/// Signals that get panels of their own; more would not be read.
+const MOST_SHOWN: usize = 6;
+
+/// The plot of a fit to curves of some kinds of provenance: a panel of each signal, and one of its residuals below.
+pub(super) fn scene(fit: &Fit, sensor: &Sensor, kinds: &str) -> Scene {
+    let rises = |signal: &FittedSignal| signal.depth_mm.windows(2).all(|pair| pair[1] > pair[0]);
+    let over_depth = fit.material.prony.is_empty() && fit.signals.iter().all(rises);
+    let mut panels = Vec::new();
+    for signal in fit.signals.iter().take(MOST_SHOWN) {
+        let (quantity, unit) = match signal.taxel {
+            None => ("force".to_owned(), "N"),
+            Some(taxel) => (sensor.taxels[taxel].name.clone(), "kPa"),
+        };
+        let start_s = signal.time_s.first().copied().unwrap_or(0.0);
+        let along = |row: usize| {
+            if over_depth {
+                signal.depth_mm[row]
+            } else {
+                signal.time_s[row] - start_s
+            }
+        };
+        let series = |name: &str, ink: Ink, width_px: f64, value: &dyn Fn(usize) -> f64| Series {
+            name: name.into(),
+            points: (0..signal.measured.len())
+                .map(|row| [along(row), value(row)])
+                .collect(),
+            ink,
+            width_px,
+            dashed: false,
+        };
+        panels.push(Panel {
+            name: String::new(),
+            y_label: format!("{quantity} ({unit})"),
+            series: vec![
+                series("measured", Ink::Sensor, 3.0, &|row| signal.measured[row]),
+                series("fitted", Ink::Twin, 1.25, &|row| signal.fitted[row]),
+            ],
+            y_range: None,
+        });
+        panels.push(Panel {
+            name: String::new(),
+            y_label: format!("residual ({unit})"),
+            series: vec![
+                series("", Ink::Muted, 0.75, &|_| 0.0),
+                series("fitted less measured", Ink::Series(0), 1.0, &|row| {
+                    signal.fitted[row] - signal.measured[row]
+                }),
+            ],
+            y_range: None,
+        });
+    }
+    Panels {
+        title: format!("Calibration of {}, {kinds} curves", sensor.name),
+        x_label: if over_depth { "depth (mm)" } else { "time (s)" }.into(),
+        panels,
+        panel_height_px: 110.0,
+        logarithmic: false,
+    }
+    .scene()
+}

@@ -1,0 +1,136 @@
+//! How far sensors of a kind are from perfect, from what was found on one of them: a file for [`Imperfection`].
+//!
+//! A trained model tells how its taxels and mountings differ, recordings what the read-out does. What neither tells is left out, with the reason: nothing
+//! is guessed. Every width says where it comes from and on how many values it rests.
+
+use std::path::Path;
+
+use digitac::Model;
+use twintac_imperfection::of_model::Casting;
+use twintac_imperfection::{Line, of_model, of_readings, text};
+use twintac_recorded::Recorded;
+use twintac_sensor::SensorFile;
+use twintac_sensors::Imperfection;
+use twintac_store::write_file;
+use twintac_work::WorkError;
+
+use crate::taxels::left_out;
+use crate::unseen::refuse_other_sensor;
+
+/// What imperfections are found from. Without a model or without recordings, what they would tell is left out.
+#[derive(Clone, Copy, Debug)]
+pub struct ImperfectionSources<'a> {
+    /// The sensor's description.
+    pub sensor: &'a SensorFile,
+    /// The folder of a trained model of the sensor.
+    pub model: Option<&'a Path>,
+    /// Recordings of the sensor.
+    pub recorded: Option<&'a Recorded>,
+    /// The command that made the file, for its head.
+    pub command: &'a str,
+}
+
+/// Imperfections that were found, and the file of them.
+#[derive(Clone, Debug)]
+pub struct FoundImperfection {
+    /// The widths; zero where none was found.
+    pub imperfection: Imperfection,
+    /// The file's text: every width with a comment.
+    pub text: String,
+    /// Names of the fields that were found.
+    pub found: Vec<&'static str>,
+    /// Names of the fields that were left out.
+    pub left_out: Vec<&'static str>,
+}
+
+/// The description that a model was trained with.
+///
+/// # Errors
+/// A model that cannot be read.
+pub fn sensor_of_model(folder: &Path) -> Result<SensorFile, WorkError> {
+    let model = Model::load(folder)?;
+    Ok(SensorFile::parse(
+        &folder.join("twin.json"),
+        &model.record.sensor,
+    )?)
+}
+
+/// Finds the imperfections of sensors of a kind.
+///
+/// # Errors
+/// Neither a model nor recordings; a model that cannot be read; recordings that are of another sensor than description and model.
+pub fn find_imperfection(sources: &ImperfectionSources<'_>) -> Result<FoundImperfection, WorkError> {
+    if sources.model.is_none() && sources.recorded.is_none() {
+        return Err(WorkError::Input(
+            "there is nothing to find imperfections from; give a model, recordings, or both".to_owned(),
+        ));
+    }
+    let sensor = &sources.sensor.sensor;
+    let model = sources.model.map(Model::load).transpose()?;
+    if let Some(recorded) = sources.recorded {
+        refuse_other_sensor(&recorded.recording, sensor)?;
+    }
+    if let Some(folder) = sources.model {
+        refuse_other_gel(&sensor_of_model(folder)?, sources.sensor, folder)?;
+    }
+    let casting = model.as_ref().map(|model| Casting {
+        provenance: model.record.provenance,
+        has_gains: model.record.variant != digitac::Variant::Paper,
+        gains: &model.record.gains,
+        bench: &model.record.bench,
+        sensor,
+        doubtful: left_out(sensor),
+    });
+    let has_memory = casting.as_ref().is_some_and(Casting::has_memory);
+    let mut lines = of_model::lines(casting.as_ref());
+    let characterization = sources
+        .recorded
+        .map(|recorded| recorded.characterize(sensor))
+        .transpose()?;
+    lines.extend(of_readings::lines(
+        characterization.as_ref(),
+        &left_out(sensor),
+        has_memory,
+    ));
+    let text = text(&sensor.name, sources.command, &lines);
+    // What is written can be read: the same rules as for a file that a person wrote.
+    let imperfection = Imperfection::parse("the imperfections that were found", &text)?;
+    let names = |is_found: bool| {
+        let lines = lines.iter().filter(|line| line.said.is_ok() == is_found);
+        lines.map(|line: &Line| line.field).collect::<Vec<_>>()
+    };
+    Ok(FoundImperfection {
+        imperfection,
+        found: names(true),
+        left_out: names(false),
+        text,
+    })
+}
+
+/// A description beside a model is that of the model's sensor: by its taxels, and by their places.
+fn refuse_other_gel(of_model: &SensorFile, described: &SensorFile, folder: &Path) -> Result<(), WorkError> {
+    let taxels = |of: &SensorFile| {
+        let taxels = of.sensor.taxels.iter();
+        let places = taxels.map(|taxel| (taxel.name.clone(), taxel.position_mm));
+        places.collect::<Vec<_>>()
+    };
+    if taxels(of_model) == taxels(described) {
+        return Ok(());
+    }
+    Err(WorkError::Input(format!(
+        "the model in {} is of the sensor `{}`, whose taxels are others than those of `{}`: leave --sensor out",
+        folder.display(),
+        of_model.sensor.name,
+        described.sensor.name
+    )))
+}
+
+impl FoundImperfection {
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), WorkError> {
+        Ok(write_file(path, self.text.as_bytes())?)
+    }
+}

@@ -1,0 +1,146 @@
+//! Another gel, pressed and simulated, before a twin that does not know it yet.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use digitac::{
+    Adapted, BenchEstimate, Estimate, Evaluation, Model, NewSensor, Places, Twin, Variant, adapt,
+    choose_presses,
+};
+use twintac_depth_table::DepthTable;
+use twintac_recording::Recording;
+use twintac_sensor::SensorFile;
+use twintac_store::Owner;
+use twintac_tables::DepthTableStore;
+use twintac_work::{Caller, WorkError};
+
+use crate::gel::{gel_like, gel_of};
+use crate::taxels::{left_out, ports_mm};
+use crate::unseen::{Pressed, refuse_known, refuse_other_sensor, simulate};
+
+/// The smallest stiffness over the learned one for which presses of prescribed force are simulated deep enough.
+const SOFTEST: f64 = 0.7;
+
+/// Another gel, pressed and simulated, before a twin that does not know it yet.
+pub struct NewGel<'a> {
+    recording: &'a Recording,
+    twin: &'a Twin,
+    /// The bench as it was learned, with the ports where this gel's sensor has them.
+    bench: BenchEstimate,
+    /// Taxels whose readings are not to be trusted, by index.
+    pub left_out: BTreeSet<usize>,
+    places: Places,
+    tables: Vec<DepthTable>,
+    /// Nobody else works in the folder meanwhile.
+    _owner: Owner,
+}
+
+impl<'a> NewGel<'a> {
+    /// Simulates the places of a recording; tables over depth are kept in `depth_tables` of the folder `out`. `sensor` describes the gel where it is not as the
+    /// model's description says.
+    ///
+    /// # Errors
+    /// The paper's network, which has no gains; recordings of another sensor, or of presses that taught the model; a folder in which another process works; a
+    /// place that cannot be pressed.
+    pub fn open(
+        (model, model_folder): (&'a Model, &Path),
+        sensor: Option<&SensorFile>,
+        recording: &'a Recording,
+        out: &Path,
+        caller: &Caller,
+    ) -> Result<Self, WorkError> {
+        let record = &model.record;
+        if record.variant == Variant::Paper {
+            return Err(WorkError::Input(format!(
+                "{}: the paper's network has no gains to adapt; give the model of another variant",
+                model_folder.display()
+            )));
+        }
+        let gel = match sensor {
+            Some(sensor) => gel_like(model, model_folder, sensor)?,
+            None => gel_of(model, model_folder)?,
+        };
+        refuse_other_sensor(recording, gel.sensor())?;
+        refuse_known(recording, record)?;
+        let bench = record.bench.clone().with_ports_at(&ports_mm(gel.sensor()));
+        let softer = BenchEstimate {
+            stiffness: Some(Estimate {
+                value: SOFTEST * bench.stiffness(),
+                uncertainty: 0.0,
+            }),
+            ..bench.clone()
+        };
+        let (left_out, progress) = (left_out(gel.sensor()), &*caller.progress);
+        // A folder is made only for what is not refused.
+        let owner = Owner::of(out)?;
+        let store = DepthTableStore::of(gel, progress)?.kept_in(&out.join("depth_tables"), &caller.program);
+        let (places, tables) = simulate(&store, recording, &softer, progress)?;
+        Ok(Self {
+            recording,
+            twin: &model.twin,
+            bench,
+            left_out,
+            places,
+            tables,
+            _owner: owner,
+        })
+    }
+
+    /// The presses to adapt with.
+    ///
+    /// # Errors
+    /// Fewer candidates than presses.
+    pub fn choose(&self, candidates: &[usize], n_presses: usize, seed: u64) -> Result<Vec<usize>, WorkError> {
+        Ok(choose_presses(&self.sensor(), candidates, n_presses, seed)?)
+    }
+
+    /// The twin and its bench, adapted with some presses.
+    ///
+    /// # Errors
+    /// Presses that do not touch the gel.
+    pub fn adapt(&self, used: &[usize]) -> Result<Adapted, WorkError> {
+        Ok(adapt(&self.sensor(), used)?)
+    }
+
+    fn sensor(&self) -> NewSensor<'_> {
+        NewSensor {
+            recording: self.recording,
+            places: &self.places,
+            tables: &self.tables,
+            twin: self.twin,
+            bench: &self.bench,
+            left_out: &self.left_out,
+        }
+    }
+
+    /// The errors of some presses.
+    ///
+    /// # Errors
+    /// Presses that are scored by no frame.
+    pub fn judge(&self, adapted: &Adapted, scored: &[usize]) -> Result<Evaluation, WorkError> {
+        self.judge_on(&adapted.twin, &adapted.bench, scored)
+    }
+
+    /// The errors of some presses if the twin stays as it was learned.
+    ///
+    /// # Errors
+    /// Those of [`judge`](Self::judge).
+    pub fn judge_as_learned(&self, scored: &[usize]) -> Result<Evaluation, WorkError> {
+        self.judge_on(self.twin, &self.bench, scored)
+    }
+
+    fn judge_on(
+        &self,
+        twin: &Twin,
+        bench: &BenchEstimate,
+        scored: &[usize],
+    ) -> Result<Evaluation, WorkError> {
+        let pressed = Pressed {
+            recording: self.recording,
+            places: &self.places,
+            tables: &self.tables,
+            left_out: &self.left_out,
+        };
+        Ok(pressed.judge(twin, bench, scored)?.0)
+    }
+}

@@ -1,0 +1,101 @@
+//! The emulated bench, on the same wires.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec3;
+use phystac::PhysTac;
+use phystac::recovery::{free_bus, reset_switch};
+use serde::Deserialize;
+use twintac_emulate::{EmulatedBench, EmulatedBenchSettings, LabClock, ScheduledFault, check_faults};
+use twintac_lab::{Lab, LiveTable, Reality};
+use twintac_live::{Known, emulated_board};
+use twintac_press::PressSettings;
+use twintac_recording::Provenance;
+use twintac_rig::xarm::ReportPort;
+use twintac_rig::{BenchClock, netft};
+use twintac_sensor::Sensor;
+use twintac_shape::Pose;
+use twintac_work::{At, WorkError};
+
+use crate::OpenBench;
+use crate::open::{Addresses, connect};
+
+/// What a file of faults holds.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FaultsFile {
+    faults: Vec<ScheduledFault>,
+}
+
+/// Reads what is to go wrong on the emulated bench, from a TOML file with tables `[[faults]]`.
+///
+/// # Errors
+/// A file that cannot be read or is wrong; a fault that makes no sense.
+pub fn read_faults(file: &Path) -> Result<Vec<ScheduledFault>, WorkError> {
+    let faults = twintac_config::read::<FaultsFile>(file)?.value.faults;
+    check_faults(&faults).at(|| file.display().to_string())?;
+    Ok(faults)
+}
+
+impl OpenBench {
+    /// Switches emulated devices on, with faults. `tables` are what the gel answers where it will be pressed.
+    ///
+    /// # Errors
+    /// A sensor that is not read this way.
+    pub fn emulate(
+        sensor: &Arc<Sensor>,
+        reality: &Reality,
+        tables: &[LiveTable],
+        settings: &PressSettings,
+        faults: Vec<ScheduledFault>,
+    ) -> Result<Self, WorkError> {
+        let lab = Lab::new(Arc::clone(sensor), reality.clone())?;
+        let placement = &settings.placement;
+        let (gel, selector) = lab.live(tables, placement.base_from_gel, placement.tool_from_indenter);
+
+        let board = emulated_board(sensor);
+        let mut devices = EmulatedBenchSettings {
+            board,
+            faults,
+            ..EmulatedBenchSettings::default()
+        };
+        devices.board.barometer.noise_pa = 1e3 * reality.readout.noise_kpa;
+        devices.board.seed = reality.seed;
+        devices.force.noise_n = reality.robot.force_noise_n;
+        devices.force.seed = reality.seed;
+        devices.robot.first_pose = placement.tool(&Pose::from_position(settings.travel_height_mm * DVec3::Z));
+        let lab_clock = LabClock::real();
+        let devices = EmulatedBench::start(lab_clock.clone(), gel, &devices)?;
+
+        let configuration = netft::Client::read_configuration(&devices.force.page().to_string())?;
+        let addresses = Addresses {
+            commands: devices.robot.commands(),
+            reports: devices.robot.reports(ReportPort::Development),
+            force: (devices.force.requests(), configuration),
+        };
+        let clock = BenchClock::start();
+        let mut driver = twintac_live::driver_settings(sensor)?;
+        driver.conversion_us = settings.conversion_us;
+        let taxels = PhysTac::new(devices.board.bus(), lab_clock, move || clock.now_us(), driver);
+        let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
+        let free = move |_: &mut _, delay: &mut LabClock| {
+            // A bus that stays hung fails the next frame as well.
+            let _ = reset_switch(&mut reset, delay);
+            let _ = free_bus(&mut scl, &mut sda, delay);
+        };
+        let known = Known::default().or_emulated(sensor);
+        let connected = connect(&addresses, taxels, free, sensor, &known, clock)
+            .at(|| "connecting to the emulated bench".to_owned())?;
+        Ok(Self {
+            devices: connected.bench,
+            transfer: connected.transfer,
+            provenance: Provenance::Emulated,
+            notes: connected.notes,
+            robot: addresses.commands,
+            reality: Some(reality.clone()),
+            selector: Some(selector),
+            _emulated: Some(devices),
+        })
+    }
+}

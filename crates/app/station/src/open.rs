@@ -1,0 +1,119 @@
+//! A protocol carried out on a bench, real or emulated, over its wires.
+
+use std::fmt;
+use std::net::{SocketAddr, TcpStream};
+use std::time::Duration;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::i2c::I2c;
+use phystac::{Clock, PhysTac, Transfer};
+use twintac_lab::{Reality, Selector};
+use twintac_live::{Known, TAXELS, power_on};
+use twintac_press::{Bench, Streams};
+use twintac_recording::Provenance;
+use twintac_rig::xarm::{Client, ReportPort, ReportReader};
+use twintac_rig::{BenchClock, NetFtSource, netft};
+use twintac_sensor::Sensor;
+use twintac_work::WorkError;
+
+/// How long a device may take to accept a connection.
+pub(crate) const CONNECT_WITHIN: Duration = Duration::from_secs(3);
+
+/// A bench that is switched on: its robot is enabled, and stands. Dropped, it stops.
+pub struct OpenBench {
+    pub(crate) devices: Bench<Client<TcpStream>>,
+    pub(crate) transfer: Transfer,
+    pub(crate) provenance: Provenance,
+    pub(crate) notes: Vec<String>,
+    /// Where the robot listens.
+    pub(crate) robot: SocketAddr,
+    /// The emulated bench's imperfections.
+    pub(crate) reality: Option<Reality>,
+    /// Puts indenters on, where nobody has to.
+    pub(crate) selector: Option<Selector>,
+    /// What keeps emulated devices running.
+    pub(crate) _emulated: Option<twintac_emulate::EmulatedBench>,
+}
+
+impl OpenBench {
+    /// Where its readings come from.
+    #[must_use]
+    pub fn provenance(&self) -> Provenance {
+        self.provenance
+    }
+
+    /// What was odd when it was switched on, a sentence each.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}
+
+impl fmt::Debug for OpenBench {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OpenBench")
+            .field("provenance", &self.provenance)
+            .field("robot", &self.robot)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Where robot and force sensor listen.
+pub(crate) struct Addresses {
+    pub(crate) commands: SocketAddr,
+    pub(crate) reports: SocketAddr,
+    /// Of the force sensor's requests; what its page says.
+    pub(crate) force: (SocketAddr, netft::Configuration),
+}
+
+/// Devices that are connected, how counts become pressure, and what was odd.
+pub(crate) struct Connected {
+    pub(crate) bench: Bench<Client<TcpStream>>,
+    pub(crate) transfer: Transfer,
+    pub(crate) notes: Vec<String>,
+}
+
+pub(crate) fn connect_to(reports: SocketAddr) -> Result<TcpStream, WorkError> {
+    TcpStream::connect_timeout(&reports, CONNECT_WITHIN).map_err(|source| WorkError::Network {
+        action: format!("connecting to the robot's reports at {reports}"),
+        source,
+    })
+}
+
+/// Connects, checks the taxels in free air, and has everything heard. The robot is enabled last.
+pub(crate) fn connect<I, D, C>(
+    addresses: &Addresses,
+    mut taxels: PhysTac<I, D, C, TAXELS>,
+    free: impl FnMut(&mut I, &mut D) + Send + 'static,
+    sensor: &Sensor,
+    known: &Known,
+    clock: BenchClock,
+) -> Result<Connected, WorkError>
+where
+    I: I2c + Send + 'static,
+    D: DelayNs + Send + 'static,
+    C: Clock + Send + 'static,
+{
+    let checked = power_on(&mut taxels, sensor, known)?;
+    let mut notes = checked.notes.clone();
+    let mut streams = Streams::new(clock);
+    let mut screening = checked.screening();
+    streams.hear_taxels(taxels, move |frame| screening.frame(frame), free)?;
+    let (requests, configuration) = addresses.force.clone();
+    let mut force = netft::Client::connect(requests, configuration)?;
+    force.start(false)?;
+    streams.hear_force(NetFtSource::new(force, clock))?;
+    let reports = connect_to(addresses.reports)?;
+    streams.hear_robot(ReportReader::new(reports, ReportPort::Development))?;
+    let mut arm = Client::connect(addresses.commands)?;
+    if let Some(code) = arm.errors()? {
+        notes.push(format!("the robot's controller had {code}; it is cleaned now"));
+    }
+    arm.enable()?;
+    arm.begin_servo()?;
+    Ok(Connected {
+        bench: Bench { arm, streams },
+        transfer: checked.transfer,
+        notes,
+    })
+}

@@ -1,0 +1,98 @@
+//! A bench that moves something real.
+
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::path::Path;
+
+use twintac_live::{Known, TAXELS};
+use twintac_press::PressSettings;
+use twintac_recording::Provenance;
+use twintac_rig::xarm::{PORT, ReportPort, ReportReader};
+use twintac_rig::{BenchClock, netft};
+use twintac_sensor::Sensor;
+use twintac_work::WorkError;
+
+use crate::OpenBench;
+use crate::open::{Addresses, CONNECT_WITHIN, connect, connect_to};
+
+#[cfg(not(target_os = "linux"))]
+use phystac::PhysTac;
+
+impl OpenBench {
+    /// Connects the devices that the settings name. The robot is enabled, and stands. `known` is what is known about the barometers.
+    ///
+    /// # Errors
+    /// Settings without devices; a device that does not answer or is not set up as described; taxels that do not read free air.
+    pub fn connect(sensor: &Sensor, settings: &PressSettings, known: &Known) -> Result<Self, WorkError> {
+        let devices = settings.real_devices()?;
+        let clock = BenchClock::start();
+        let configuration = netft::Client::read_configuration(&devices.force)?;
+        let addresses = Addresses {
+            commands: address(&devices.robot, PORT)?,
+            reports: address(&devices.robot, ReportPort::Development.number())?,
+            force: (address(&devices.force, netft::PORT)?, configuration),
+        };
+        let rich = ReportPort::Rich;
+        let mut reader = ReportReader::new(connect_to(address(&devices.robot, rich.number())?)?, rich);
+        let report = reader.next_report(CONNECT_WITHIN)?;
+        let tool = report
+            .and_then(|report| report.status)
+            .ok_or_else(|| WorkError::Input("the robot does not report its settings".to_owned()))?;
+        devices.check_tool(&tool)?;
+        let mut driver = twintac_live::driver_settings(sensor)?;
+        driver.conversion_us = settings.conversion_us;
+        let taxels = open_bus(Path::new(&devices.tactile), driver, clock)?;
+        // Where the kernel's driver of the bus can free it, it does; the switch's reset line is not wired to this computer.
+        let connected = connect(&addresses, taxels, |_, _| {}, sensor, known, clock)?;
+        Ok(Self {
+            devices: connected.bench,
+            transfer: connected.transfer,
+            provenance: Provenance::Real,
+            notes: connected.notes,
+            robot: addresses.commands,
+            reality: None,
+            selector: None,
+            _emulated: None,
+        })
+    }
+}
+
+/// Where something listens.
+fn address(host: &str, port: u16) -> Result<SocketAddr, WorkError> {
+    let mut found = (host, port)
+        .to_socket_addrs()
+        .map_err(|source| WorkError::Network {
+            action: format!("looking up {host}"),
+            source,
+        })?;
+    found
+        .next()
+        .ok_or_else(|| WorkError::Input(format!("{host} has no address")))
+}
+
+#[cfg(target_os = "linux")]
+fn open_bus(
+    path: &Path,
+    driver: phystac::Settings<TAXELS>,
+    clock: BenchClock,
+) -> Result<twintac_live::LinuxPhysTac, WorkError> {
+    Ok(twintac_live::open_linux(
+        path,
+        driver,
+        Box::new(move || clock.now_us()),
+    )?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn open_bus(
+    path: &Path,
+    _: phystac::Settings<TAXELS>,
+    _: BenchClock,
+) -> Result<
+    PhysTac<twintac_emulate::i2c::Bus, twintac_emulate::LabClock, twintac_live::BoxedClock, TAXELS>,
+    WorkError,
+> {
+    Err(WorkError::Input(format!(
+        "{}: buses are opened on Linux only",
+        path.display()
+    )))
+}
