@@ -31,22 +31,43 @@ impl Linear {
     #[must_use]
     pub fn forward(&self, input: &Matrix) -> Matrix {
         let mut output = input.times(&self.weight);
-        for row in output.rows_mut() {
-            row.iter_mut()
-                .zip(&self.bias)
-                .for_each(|(value, bias)| *value += bias);
-        }
+        self.add_bias(&mut output);
         output
+    }
+
+    /// The same into a matrix that is there.
+    pub fn forward_into(&self, input: &Matrix, output: &mut Matrix) {
+        input.times_into(&self.weight, output);
+        self.add_bias(output);
+    }
+
+    fn add_bias(&self, sums: &mut Matrix) {
+        for row in sums.rows_mut() {
+            add(row, &self.bias);
+        }
+    }
+
+    /// The slopes of the parameters.
+    #[must_use]
+    pub fn slopes(input: &Matrix, output_slope: &Matrix) -> Self {
+        Self {
+            weight: input.transposed_times(output_slope),
+            bias: output_slope.column_sums(),
+        }
+    }
+
+    /// The slope of the input.
+    #[must_use]
+    pub fn input_slope(&self, output_slope: &Matrix) -> Matrix {
+        output_slope.times(&self.weight.transposed())
     }
 
     /// The slope of the input; adds those of the parameters to `slopes`.
     pub fn backward(&self, input: &Matrix, output_slope: &Matrix, slopes: &mut Self) -> Matrix {
-        add(
-            &mut slopes.weight.values,
-            &input.transposed_times(output_slope).values,
-        );
-        add(&mut slopes.bias, &output_slope.column_sums());
-        output_slope.times(&self.weight.transposed())
+        let own = Self::slopes(input, output_slope);
+        add(&mut slopes.weight.values, &own.weight.values);
+        add(&mut slopes.bias, &own.bias);
+        self.input_slope(output_slope)
     }
 
     /// The parameters: weights, then offsets.

@@ -165,8 +165,11 @@ fn judge(
     let n_samples = evaluation.residuals.len();
     let freedom = (n_samples - all.len()) as f64;
     let variance = evaluation.residuals.iter().map(|r| r * r).sum::<f64>() / freedom;
-    let (normal, _) = normal_equations(evaluation, all.len());
-    let known = covariance(&normal, variance);
+    let normal = normal_equations(evaluation, all.len()).matrix;
+    let known = covariance(
+        &faer::Mat::from_fn(all.len(), all.len(), |i, j| normal[i * all.len() + j]),
+        variance,
+    );
     let quantile = student_quantile(0.975, freedom);
     let mut warnings = Vec::new();
     if !converged {

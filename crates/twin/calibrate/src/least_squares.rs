@@ -1,12 +1,12 @@
-//! Nonlinear least squares within bounds: Levenberg (1944) and Marquardt (1963), steps scaled by the diagonal of the normal matrix.
+//! Nonlinear least squares within bounds.
 //!
 //! Derivatives of a rough contact are inexact: friction is left out of some of them. A step that they promise too much of is rejected, and corrects them
 //! along its way (Broyden, Mathematics of Computation 19, 1965). Shorter steps alone would end the search where it was misled.
 
-use faer::linalg::solvers::Solve;
-use faer::{ColMut, Mat, Side};
+use std::convert::Infallible;
 
-use crate::CalibrateError;
+use twintac_fit::{Method, Quadratic, Range};
+
 use crate::problem::{Evaluation, Problem};
 
 /// The search ends when a step promises to lower the sum of squares by less than this fraction of the residuals' variance: about a
@@ -15,9 +15,6 @@ const ENOUGH: f64 = 1e-4;
 
 /// Mean square of the residuals below which the fit counts as exact.
 const EXACT: f64 = 1e-16;
-
-/// Damping at first, after the first rejected step at least, and the largest that is tried.
-const DAMPING: [f64; 3] = [1e-4, 1e-3, 1e8];
 
 /// The result of a search.
 pub(crate) struct Solution {
@@ -28,120 +25,94 @@ pub(crate) struct Solution {
     pub(crate) converged: bool,
 }
 
-/// `JᵀJ` and `Jᵀr`.
-pub(crate) fn normal_equations(evaluation: &Evaluation, n: usize) -> (Mat<f64>, Vec<f64>) {
-    let (mut matrix, mut gradient) = (Mat::zeros(n, n), vec![0.0; n]);
+/// `JᵀJ`, row by row, and `Jᵀr`.
+pub(crate) fn normal_equations(evaluation: &Evaluation, n: usize) -> Quadratic {
+    let (mut matrix, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
     for (row, residual) in evaluation.jacobian.iter().zip(&evaluation.residuals) {
         for i in 0..n {
             gradient[i] += row[i] * residual;
             for j in 0..n {
-                matrix[(i, j)] += row[i] * row[j];
+                matrix[i * n + j] += row[i] * row[j];
             }
         }
     }
-    (matrix, gradient)
+    Quadratic { gradient, matrix }
 }
 
-/// Changes derivatives as little as can be, lengths along each unknown weighted, so that they lead to what was found at the end of a way.
-fn correct(evaluation: &mut Evaluation, found: &[f64], way: &[f64], weights: &[f64]) {
-    let weighted: Vec<f64> = way
-        .iter()
-        .zip(weights)
-        .map(|(way, weight)| way * weight)
-        .collect();
-    let length: f64 = weighted
-        .iter()
-        .zip(way)
-        .map(|(weighted, way)| weighted * way)
-        .sum();
-    if length == 0.0 {
-        return; // held by the bounds
+/// Half of the sum of squares.
+fn cost(evaluation: &Evaluation) -> f64 {
+    0.5 * evaluation.residuals.iter().map(|r| r * r).sum::<f64>()
+}
+
+/// The sum of squares of a problem; its slopes are corrected by steps that were rejected.
+struct Corrected<'a>(&'a Problem<'a>);
+
+impl twintac_fit::Problem for Corrected<'_> {
+    type At = Evaluation;
+    type Error = Infallible;
+
+    /// What can't be simulated is no place to go.
+    fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Evaluation)>, Infallible> {
+        let found = self.0.evaluate(x).ok();
+        Ok(found.map(|evaluation| (cost(&evaluation), evaluation)))
     }
-    let rows = evaluation.jacobian.iter_mut().zip(&evaluation.residuals);
-    for ((row, before), found) in rows.zip(found) {
-        let foretold: f64 = row.iter().zip(way).map(|(rate, way)| rate * way).sum();
-        for (rate, weighted) in row.iter_mut().zip(&weighted) {
-            *rate += (found - before - foretold) * weighted / length;
+
+    fn near(&mut self, x: &[f64], at: &Evaluation) -> Result<Quadratic, Infallible> {
+        Ok(normal_equations(at, x.len()))
+    }
+
+    /// Changes derivatives as little as can be, each in the unit of its column, so that they lead to what was found at the end of the way.
+    fn rejected(&mut self, here: &mut Evaluation, way: &[f64], there: &Evaluation) -> bool {
+        let columns = (0..way.len()).map(|i| here.jacobian.iter().map(|row| row[i] * row[i]).sum::<f64>());
+        let weighted: Vec<f64> = columns.zip(way).map(|(square, way)| square * way).collect();
+        let length: f64 = weighted
+            .iter()
+            .zip(way)
+            .map(|(weighted, way)| weighted * way)
+            .sum();
+        if length == 0.0 {
+            return false; // held by the bounds
         }
+        let ends = here.residuals.iter().zip(&there.residuals);
+        for (row, (before, after)) in here.jacobian.iter_mut().zip(ends) {
+            let foretold: f64 = row.iter().zip(way).map(|(rate, way)| rate * way).sum();
+            for (rate, weighted) in row.iter_mut().zip(&weighted) {
+                *rate += (after - before - foretold) * weighted / length;
+            }
+        }
+        true
     }
 }
 
-fn squares(evaluation: &Evaluation) -> f64 {
-    evaluation.residuals.iter().map(|r| r * r).sum()
-}
-
-/// Minimizes the sum of squares from `x`; `tell` is called with the root mean square of the residuals after each step. A trial that can't be
-/// simulated counts as worse.
+/// Minimizes the sum of squares from `x`; `tell` is called with the root mean square of the residuals after each step.
 pub(crate) fn minimize(
     problem: &Problem,
-    mut x: Vec<f64>,
-    mut evaluation: Evaluation,
+    x: Vec<f64>,
+    evaluation: Evaluation,
     max_iterations: u32,
     tell: &mut dyn FnMut(f64),
 ) -> Solution {
-    let unknowns = &problem.unknowns.all;
-    let n = unknowns.len();
-    let mut damping = DAMPING[0];
-    let mut iterations = 0;
-    let mut converged = false;
-    while iterations < max_iterations && damping <= DAMPING[2] {
-        let cost = squares(&evaluation);
-        let variance = cost / evaluation.residuals.len() as f64;
-        let (matrix, gradient) = normal_equations(&evaluation, n);
-        // What stands at its bound and would leave it stays there.
-        let is_held = |i: usize| {
-            let [low, high] = unknowns[i].bounds;
-            x[i] <= low && gradient[i] > 0.0 || x[i] >= high && gradient[i] < 0.0
-        };
-        let moving: Vec<usize> = (0..n).filter(|&i| !is_held(i) && matrix[(i, i)] > 0.0).collect();
-        let damped = Mat::from_fn(moving.len(), moving.len(), |i, j| {
-            matrix[(moving[i], moving[j])] * if i == j { 1.0 + damping } else { 1.0 }
-        });
-        let right: Vec<f64> = moving.iter().map(|&i| -gradient[i]).collect();
-        let Ok(factors) = damped.llt(Side::Lower) else {
-            damping *= 10.0;
-            continue;
-        };
-        let mut step = right.clone();
-        factors.solve_in_place(ColMut::from_slice_mut(&mut step));
-        let promised: f64 = (0..moving.len())
-            .map(|k| step[k] * (right[k] + damping * matrix[(moving[k], moving[k])] * step[k]))
-            .sum();
-        if moving.is_empty() || promised <= ENOUGH * variance || variance <= EXACT {
-            converged = true;
-            break;
-        }
-        let mut shorter: f64 = 1.0;
-        for (&i, step) in moving.iter().zip(&step) {
-            shorter = shorter.min(unknowns[i].reach / step.abs());
-        }
-        let mut trial = x.clone();
-        for (&i, step) in moving.iter().zip(&step) {
-            let [low, high] = unknowns[i].bounds;
-            trial[i] = (x[i] + shorter * step).clamp(low, high);
-        }
-        iterations += 1;
-        let found: Result<Evaluation, CalibrateError> = problem.evaluate(&trial);
-        match found {
-            Ok(found) if squares(&found) < cost => {
-                x = trial;
-                evaluation = found;
-                damping = (0.1 * damping).max(1e-12);
-            }
-            Ok(found) => {
-                let way: Vec<f64> = trial.iter().zip(&x).map(|(trial, x)| trial - x).collect();
-                let weights: Vec<f64> = (0..n).map(|i| matrix[(i, i)]).collect();
-                correct(&mut evaluation, &found.residuals, &way, &weights);
-                damping = (2.0 * damping).max(DAMPING[1]);
-            }
-            Err(_) => damping = (10.0 * damping).max(DAMPING[1]),
-        }
-        tell((squares(&evaluation) / evaluation.residuals.len() as f64).sqrt());
-    }
+    let n_residuals = evaluation.residuals.len() as f64;
+    let method = Method {
+        damping: [1e-4, 1e-5, 1e8],
+        factors: [0.1, 4.0],
+        max_steps: max_iterations,
+        enough_promised: ENOUGH / n_residuals,
+        patience: (u32::MAX, 0.0),
+        exact: 0.5 * n_residuals * EXACT,
+    };
+    let ranges = problem.unknowns.all.iter().map(|unknown| Range {
+        bounds: unknown.bounds,
+        reach: unknown.reach,
+    });
+    let ranges: Vec<Range> = ranges.collect();
+    let mut tell = |cost: f64| tell((2.0 * cost / n_residuals).sqrt());
+    let start = (x, cost(&evaluation), evaluation);
+    let Ok(found) = twintac_fit::minimize(&mut Corrected(problem), &ranges, start, &method, &mut tell);
     Solution {
-        x,
-        evaluation,
-        iterations,
-        converged,
+        x: found.x,
+        evaluation: found.at,
+        iterations: found.n_steps,
+        converged: found.is_settled,
     }
 }

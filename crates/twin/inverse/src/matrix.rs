@@ -6,34 +6,16 @@ pub(crate) type Vector = [f64; N];
 
 pub(crate) type Matrix = [[f64; N]; N];
 
-/// The lower triangle whose product with its transpose is a positive definite matrix (Cholesky). Where rounding leaves a pivot that is not positive,
-/// a tiny one stands for it.
+/// The lower triangle of a positive definite matrix; above it stands what stood there.
 pub(crate) fn triangle(matrix: &Matrix) -> Matrix {
-    let mut lower = [[0.0; N]; N];
-    for row in 0..N {
-        for column in 0..=row {
-            let done: f64 = (0..column).map(|k| lower[row][k] * lower[column][k]).sum();
-            let left = matrix[row][column] - done;
-            lower[row][column] = if row == column {
-                left.max(1e-12 * matrix[row][row].abs().max(1e-300)).sqrt()
-            } else {
-                left / lower[column][column]
-            };
-        }
-    }
+    let mut lower = *matrix;
+    twintac_fit::factorize(lower.as_flattened_mut(), N);
     lower
 }
 
 /// Solves a system by its triangle.
 pub(crate) fn solve(lower: &Matrix, mut right: Vector) -> Vector {
-    for row in 0..N {
-        let done: f64 = (0..row).map(|k| lower[row][k] * right[k]).sum();
-        right[row] = (right[row] - done) / lower[row][row];
-    }
-    for row in (0..N).rev() {
-        let done: f64 = (row + 1..N).map(|k| lower[k][row] * right[k]).sum();
-        right[row] = (right[row] - done) / lower[row][row];
-    }
+    twintac_fit::solve_by(lower.as_flattened(), &mut right);
     right
 }
 

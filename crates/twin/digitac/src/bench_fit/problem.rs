@@ -43,10 +43,28 @@ struct Resampled {
     rows: Vec<Vec<Vec<f64>>>,
 }
 
+/// What is unknown.
+#[derive(Clone, Copy, Debug)]
+enum Quantity {
+    /// The contact height of a mounting, mm.
+    ContactHeight(usize),
+    LnRadius,
+    LnStiffness,
+    /// By how much all ports are wider than described, mm.
+    PortRadius,
+    /// By how much a port is beside its description, mm.
+    PortShift {
+        taxel: usize,
+        axis: usize,
+    },
+    /// A coefficient of the smooth factor.
+    Coefficient(usize),
+}
+
 /// Values of all unknowns.
 #[derive(Clone, Debug)]
-struct Guess<'a> {
-    offsets_mm: &'a [f64],
+struct Guess {
+    offsets_mm: Vec<f64>,
     ln_radius: f64,
     ln_stiffness: f64,
     ports: Vec<PortEstimate>,
@@ -141,74 +159,84 @@ impl<'a> BenchProblem<'a> {
         self
     }
 
-    /// What was learned of each unknown, and by how much another bench may differ from it: standard deviations. Ports are looked for around where
-    /// they are described.
-    pub(super) fn learned(&self, learned: &BenchEstimate, widths: &BenchWidths) -> Vec<(f64, f64)> {
-        let heights = self.mountings.iter();
-        let mut values: Vec<(f64, f64)> = heights
-            .map(|(mounting, _)| (learned.contact_offset_mm(mounting), widths.contact_offset_mm))
-            .collect();
-        if self.fits_stiffness() {
-            values.push((learned.stiffness().ln(), widths.ln_stiffness));
+    /// All that is unknown, in the order of values.
+    fn quantities(&self) -> Vec<Quantity> {
+        let mut quantities: Vec<Quantity> = (0..self.mountings.len()).map(Quantity::ContactHeight).collect();
+        let scalars = [
+            (self.ln_radii.len() > 1, Quantity::LnRadius),
+            (self.ln_stiffness[0] < self.ln_stiffness[1], Quantity::LnStiffness),
+            (
+                self.settings.port_radius_limit_mm > 0.0 && !self.axes.is_empty(),
+                Quantity::PortRadius,
+            ),
+        ];
+        let fitted = scalars.into_iter().filter(|(is_fitted, _)| *is_fitted);
+        quantities.extend(fitted.map(|(_, quantity)| quantity));
+        for taxel in 0..self.n_taxels {
+            let axes = self.axes.iter();
+            quantities.extend(axes.map(|&axis| Quantity::PortShift { taxel, axis }));
         }
-        if self.fits_port_radius() {
-            let wider_mm = learned.ports.first().map_or(0.0, |port| port.wider_mm);
-            values.push((wider_mm, widths.port_mm));
+        if self.form.is_some() {
+            quantities.extend((0..N_TERMS).map(Quantity::Coefficient));
         }
-        // Where a port of one cast is beside its description says nothing of another cast's.
-        let n_shifts = learned.ports.len() * self.axes.len();
-        values.extend(std::iter::repeat_n((0.0, widths.port_mm), n_shifts));
-        let factors = learned
-            .smooth_factor
-            .iter()
-            .flat_map(|factor| &factor.coefficients);
-        values.extend(factors.map(|coefficient| (*coefficient, widths.factor)));
-        values
-    }
-
-    fn fits_radius(&self) -> bool {
-        self.ln_radii.len() > 1
+        quantities
     }
 
     fn fits_stiffness(&self) -> bool {
         self.ln_stiffness[0] < self.ln_stiffness[1]
     }
 
-    fn fits_port_radius(&self) -> bool {
-        self.settings.port_radius_limit_mm > 0.0 && !self.axes.is_empty()
+    /// What was learned of each unknown, and by how much another bench may differ from it: standard deviations. Ports are looked for around where
+    /// they are described.
+    pub(super) fn learned(&self, learned: &BenchEstimate, widths: &BenchWidths) -> Vec<(f64, f64)> {
+        let of = |quantity: Quantity| match quantity {
+            Quantity::ContactHeight(mounting) => (
+                learned.contact_offset_mm(&self.mountings[mounting].0),
+                widths.contact_offset_mm,
+            ),
+            // Another bench has the same tip.
+            Quantity::LnRadius => (learned.tip_radius_mm.map_or(0.0, |radius| radius.value.ln()), 0.0),
+            Quantity::LnStiffness => (learned.stiffness().ln(), widths.ln_stiffness),
+            Quantity::PortRadius => (
+                learned.ports.first().map_or(0.0, |port| port.wider_mm),
+                widths.port_mm,
+            ),
+            // Where a port of one cast is beside its description says nothing of another cast's.
+            Quantity::PortShift { .. } => (0.0, widths.port_mm),
+            Quantity::Coefficient(term) => {
+                let factor = learned.smooth_factor.as_ref();
+                (
+                    factor.map_or(0.0, |factor| factor.coefficients[term]),
+                    widths.factor,
+                )
+            }
+        };
+        self.quantities().into_iter().map(of).collect()
     }
 
-    fn guess<'v>(&self, values: &'v [f64]) -> Guess<'v> {
-        let (offsets_mm, rest) = values.split_at(self.mountings.len());
-        let mut rest = rest.iter().copied();
-        let mut next = |is_fitted: bool| if is_fitted { rest.next() } else { None };
-        let ln_radius =
-            next(self.fits_radius()).unwrap_or_else(|| self.ln_radii.first().copied().unwrap_or(0.0));
-        let ln_stiffness = next(self.fits_stiffness()).unwrap_or(0.0);
-        let wider_mm = next(self.fits_port_radius()).unwrap_or(0.0);
-        let mut ports = vec![
-            PortEstimate {
-                wider_mm,
-                ..PortEstimate::default()
-            };
-            self.n_taxels
-        ];
-        for port in &mut ports {
-            for &axis in &self.axes {
-                port.shift_mm[axis] = next(true).unwrap_or(0.0);
+    fn guess(&self, values: &[f64]) -> Guess {
+        let mut guess = Guess {
+            offsets_mm: vec![0.0; self.mountings.len()],
+            ln_radius: self.ln_radii.first().copied().unwrap_or(0.0),
+            ln_stiffness: 0.0,
+            ports: vec![PortEstimate::default(); self.n_taxels],
+            form: self.form.clone(),
+        };
+        for (quantity, &value) in self.quantities().into_iter().zip(values) {
+            match quantity {
+                Quantity::ContactHeight(mounting) => guess.offsets_mm[mounting] = value,
+                Quantity::LnRadius => guess.ln_radius = value,
+                Quantity::LnStiffness => guess.ln_stiffness = value,
+                Quantity::PortRadius => guess.ports.iter_mut().for_each(|port| port.wider_mm = value),
+                Quantity::PortShift { taxel, axis } => guess.ports[taxel].shift_mm[axis] = value,
+                Quantity::Coefficient(term) => {
+                    if let Some(form) = &mut guess.form {
+                        form.coefficients[term] = value;
+                    }
+                }
             }
         }
-        let form = self.form.clone().map(|form| SmoothFactor {
-            coefficients: (0..N_TERMS).map(|_| next(true).unwrap_or(0.0)).collect(),
-            ..form
-        });
-        Guess {
-            offsets_mm,
-            ln_radius,
-            ln_stiffness,
-            ports,
-            form,
-        }
+        guess
     }
 
     /// The estimate that values stand for; `estimate` says how well what follows from values is known. Mountings that taught nothing have none.
@@ -219,8 +247,7 @@ impl<'a> BenchProblem<'a> {
         has_taught: &dyn Fn(&str) -> bool,
     ) -> BenchEstimate {
         let guess = self.guess(values);
-        let estimate =
-            |value: &dyn Fn(&Guess<'_>) -> f64| estimate(&|values: &[f64]| value(&self.guess(values)));
+        let estimate = |value: &dyn Fn(&Guess) -> f64| estimate(&|values: &[f64]| value(&self.guess(values)));
         let offsets = self.mountings.iter().enumerate();
         let contact_offset_mm: BTreeMap<String, Estimate> = offsets
             .filter(|(_, (name, _))| has_taught(name))
@@ -248,48 +275,91 @@ impl<'a> BenchProblem<'a> {
 
     fn doubts(&self, values: &[f64]) -> Vec<String> {
         let mut doubts = Vec::new();
-        for (what, (value, unknown)) in self.names().into_iter().zip(values.iter().zip(self.unknowns())) {
+        let all = self.quantities().into_iter().zip(self.unknowns());
+        for ((quantity, unknown), value) in all.zip(values) {
             let [low, high] = unknown.bounds;
             let near = 0.01 * (high - low);
             if low < high && (value - low < near || high - value < near) {
-                doubts.push(format!("{what} ended at a limit of its range"));
+                doubts.push(format!("{} ended at a limit of its range", self.name(quantity)));
             }
         }
         doubts
     }
 
-    fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = self
-            .mountings
-            .iter()
-            .map(|(name, _)| format!("the contact height of {name}"))
-            .collect();
-        let scalars = [
-            (self.fits_radius(), "the tip's radius"),
-            (self.fits_stiffness(), "the stiffness"),
-            (self.fits_port_radius(), "the radius of the ports"),
-        ];
-        names.extend(
-            scalars
-                .iter()
-                .filter(|(is_fitted, _)| *is_fitted)
-                .map(|(_, name)| (*name).to_owned()),
-        );
-        for taxel in 0..self.n_taxels {
-            names.extend(
-                self.axes
-                    .iter()
-                    .map(|axis| format!("the place of port {taxel} along {}", ["x", "y"][*axis])),
-            );
+    fn name(&self, quantity: Quantity) -> String {
+        match quantity {
+            Quantity::ContactHeight(mounting) => {
+                format!("the contact height of {}", self.mountings[mounting].0)
+            }
+            Quantity::LnRadius => "the tip's radius".to_owned(),
+            Quantity::LnStiffness => "the stiffness".to_owned(),
+            Quantity::PortRadius => "the radius of the ports".to_owned(),
+            Quantity::PortShift { taxel, axis } => {
+                format!("the place of port {taxel} along {}", ["x", "y"][axis])
+            }
+            Quantity::Coefficient(term) => format!("term {term} of the smooth factor"),
         }
-        if self.form.is_some() {
-            names.extend((0..N_TERMS).map(|term| format!("term {term} of the smooth factor")));
+    }
+
+    /// How the pressures of all frames change with an unknown.
+    fn slope(&self, unknown: usize, quantity: Quantity, guess: &Guess, read: &Read) -> Slope {
+        let all = 0..read.kpa.first().map_or(0, Vec::len);
+        let quotient = |moved: &dyn Fn(f64) -> Guess| -> Vec<Vec<f64>> {
+            let [low, high] = [-STEP, STEP].map(|by| self.read(&moved(by)).kpa);
+            let rows = low.iter().zip(&high);
+            let rates = rows.map(|(low, high)| {
+                let pairs = low.iter().zip(high);
+                pairs.map(|(low, high)| (high - low) / (2.0 * STEP)).collect()
+            });
+            rates.collect()
+        };
+        let (taxel, frames, kpa) = match quantity {
+            Quantity::ContactHeight(mounting) => {
+                let frames = self.mountings[mounting].1.clone();
+                let rows = read.by_depth.iter();
+                let kpa = rows.map(|row| row[frames.clone()].to_vec()).collect();
+                (None, frames, kpa)
+            }
+            Quantity::LnRadius => {
+                let moved = |by: f64| Guess {
+                    ln_radius: guess.ln_radius + by,
+                    ..guess.clone()
+                };
+                (None, all, quotient(&moved))
+            }
+            Quantity::LnStiffness => {
+                let moved = |by: f64| Guess {
+                    ln_stiffness: guess.ln_stiffness + by,
+                    ..guess.clone()
+                };
+                (None, all, quotient(&moved))
+            }
+            Quantity::PortRadius => {
+                let kpa = read.by_port.iter().map(|ways| ways[2].clone()).collect();
+                (None, all, kpa)
+            }
+            Quantity::PortShift { taxel, axis } => {
+                (Some(taxel), all, vec![read.by_port[taxel][axis].clone()])
+            }
+            Quantity::Coefficient(term) => {
+                let rows = read.kpa.iter().zip(&read.terms);
+                let kpa = rows.map(|(row, terms)| {
+                    let pairs = row.iter().zip(&terms[term]);
+                    pairs.map(|(kpa, term)| kpa * term).collect()
+                });
+                (None, all, kpa.collect())
+            }
+        };
+        Slope {
+            unknown,
+            taxel,
+            frames,
+            kpa,
         }
-        names
     }
 
     /// Pressures and their slopes by depth and by the ports, of each frame.
-    fn read(&self, guess: &Guess<'_>) -> Read {
+    fn read(&self, guess: &Guess) -> Read {
         let n_frames = self.frames.last().map_or(0, |frames| frames.end);
         let mut read = Read::zeros(
             self.n_taxels,
@@ -406,116 +476,33 @@ impl Elastic for BenchProblem<'_> {
             pull,
         };
         let within = |limit: f64, pull: f64| unknown(0.0, [-limit, limit], pull);
-        let mut unknowns = vec![within(self.settings.contact_offset_limit_mm, 0.0); self.mountings.len()];
-        if let (true, Some(low), Some(high)) =
-            (self.fits_radius(), self.ln_radii.first(), self.ln_radii.last())
-        {
-            unknowns.push(unknown(0.5 * (low + high), [*low, *high], 0.0));
-        }
-        if self.fits_stiffness() {
-            unknowns.push(unknown(0.0, self.ln_stiffness, 0.0));
-        }
-        if self.fits_port_radius() {
-            unknowns.push(within(self.settings.port_radius_limit_mm, RADIUS_PULL));
-        }
-        let n_shifts = self.n_taxels * self.axes.len();
-        let (limit_mm, pull) = (self.settings.port_shift_limit_mm, self.settings.port_shift_pull);
-        unknowns.extend((0..n_shifts).map(|_| within(limit_mm, pull)));
-        if self.form.is_some() {
-            unknowns.extend((0..N_TERMS).map(|_| within(FORM_LIMIT, self.settings.smooth_factor_pull)));
-        }
-        unknowns
+        let settings = self.settings;
+        let of = |quantity: Quantity| match quantity {
+            Quantity::ContactHeight(_) => within(settings.contact_offset_limit_mm, 0.0),
+            Quantity::LnRadius => {
+                let ends =
+                    [self.ln_radii.first(), self.ln_radii.last()].map(|end| end.copied().unwrap_or(0.0));
+                unknown(0.5 * (ends[0] + ends[1]), ends, 0.0)
+            }
+            Quantity::LnStiffness => unknown(0.0, self.ln_stiffness, 0.0),
+            Quantity::PortRadius => within(settings.port_radius_limit_mm, RADIUS_PULL),
+            Quantity::PortShift { .. } => within(settings.port_shift_limit_mm, settings.port_shift_pull),
+            Quantity::Coefficient(_) => within(FORM_LIMIT, settings.smooth_factor_pull),
+        };
+        self.quantities().into_iter().map(of).collect()
     }
 
     fn pressures(&self, values: &[f64], with_slopes: bool) -> Result<Pressures, DigitacError> {
         let guess = self.guess(values);
         let read = self.read(&guess);
-        let mut slopes = Vec::new();
-        if with_slopes {
-            let all = 0..read.kpa.first().map_or(0, Vec::len);
-            for (unknown, (_, frames)) in self.mountings.iter().enumerate() {
-                slopes.push(Slope {
-                    unknown,
-                    taxel: None,
-                    frames: frames.clone(),
-                    kpa: read
-                        .by_depth
-                        .iter()
-                        .map(|row| row[frames.clone()].to_vec())
-                        .collect(),
-                });
-            }
-            let mut unknown = self.mountings.len();
-            let mut quotient = |low: Guess<'_>, high: Guess<'_>| {
-                let (low, high) = (self.read(&low).kpa, self.read(&high).kpa);
-                let rows = low.iter().zip(&high);
-                let kpa = rows.map(|(low, high)| {
-                    low.iter()
-                        .zip(high)
-                        .map(|(l, h)| (h - l) / (2.0 * STEP))
-                        .collect()
-                });
-                slopes.push(Slope {
-                    unknown,
-                    taxel: None,
-                    frames: all.clone(),
-                    kpa: kpa.collect(),
-                });
-                unknown += 1;
-            };
-            if self.fits_radius() {
-                let moved = |by: f64| Guess {
-                    ln_radius: guess.ln_radius + by,
-                    ..guess.clone()
-                };
-                quotient(moved(-STEP), moved(STEP));
-            }
-            if self.fits_stiffness() {
-                let moved = |by: f64| Guess {
-                    ln_stiffness: guess.ln_stiffness + by,
-                    ..guess.clone()
-                };
-                quotient(moved(-STEP), moved(STEP));
-            }
-            if self.fits_port_radius() {
-                slopes.push(Slope {
-                    unknown,
-                    taxel: None,
-                    frames: all.clone(),
-                    kpa: read.by_port.iter().map(|ways| ways[2].clone()).collect(),
-                });
-                unknown += 1;
-            }
-            for (taxel, ways) in read.by_port.iter().enumerate() {
-                for &axis in &self.axes {
-                    slopes.push(Slope {
-                        unknown,
-                        taxel: Some(taxel),
-                        frames: all.clone(),
-                        kpa: vec![ways[axis].clone()],
-                    });
-                    unknown += 1;
-                }
-            }
-            if self.form.is_some() {
-                for term in 0..N_TERMS {
-                    let of_taxel = |k: usize| {
-                        read.kpa[k]
-                            .iter()
-                            .zip(&read.terms[k][term])
-                            .map(|(p, t)| p * t)
-                            .collect()
-                    };
-                    slopes.push(Slope {
-                        unknown,
-                        taxel: None,
-                        frames: all.clone(),
-                        kpa: (0..self.n_taxels).map(of_taxel).collect(),
-                    });
-                    unknown += 1;
-                }
-            }
-        }
+        let slopes = if with_slopes {
+            let quantities = self.quantities().into_iter().enumerate();
+            quantities
+                .map(|(unknown, quantity)| self.slope(unknown, quantity, &guess, &read))
+                .collect()
+        } else {
+            Vec::new()
+        };
         Ok(Pressures {
             kpa: read.kpa,
             slopes,

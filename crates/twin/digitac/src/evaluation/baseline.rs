@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use twintac_fit::Triangle;
+
 use crate::PairedPress;
-use crate::numerics::solve_symmetric;
 
 /// Highest power of the depth.
 const DEPTH_DEGREE: usize = 3;
@@ -148,7 +149,7 @@ impl Fit {
         }
         let ridge = RIDGE * (0..n).map(|i| matrix[i * n + i]).sum::<f64>() / n as f64;
         (0..n).for_each(|i| matrix[i * n + i] += ridge.max(f64::MIN_POSITIVE));
-        solve_symmetric(matrix, right)
+        Triangle::of(matrix, n).solve(right)
     }
 
     fn predict(&self, press: &PairedPress) -> Vec<Vec<f64>> {

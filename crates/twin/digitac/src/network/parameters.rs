@@ -7,8 +7,7 @@ use std::collections::BTreeMap;
 
 use rand::Rng;
 
-use super::perceptron::Layer;
-use twintac_learn::Matrix;
+use twintac_learn::{Linear, Matrix};
 
 use super::{Physics, Variant};
 use crate::features::Gains;
@@ -30,7 +29,7 @@ pub(crate) struct Parameters {
     /// Change of memory, before the softplus that keeps it positive; `[n_time_constants][n_taxels]`, row by row.
     pub(crate) memory_change: Vec<f32>,
     /// The perceptron; none in variants without.
-    pub(crate) layers: Vec<Layer>,
+    pub(crate) layers: Vec<Linear>,
 }
 
 /// Plain weights: shape and numbers, row by row.
@@ -57,7 +56,7 @@ impl Parameters {
                         .map(|_| reach * random.random_range(-1.0_f32..1.0))
                         .collect()
                 };
-                layers.push(Layer {
+                layers.push(Linear {
                     weight: Matrix {
                         values: draw(pair[0] * pair[1]),
                         n_columns: pair[1],
@@ -82,7 +81,7 @@ impl Parameters {
             layers: self
                 .layers
                 .iter()
-                .map(|layer| Layer {
+                .map(|layer| Linear {
                     weight: Matrix::zeros(layer.weight.n_rows(), layer.weight.n_columns),
                     bias: zeros(&layer.bias),
                 })

@@ -2,16 +2,7 @@
 
 use std::f32::consts::{PI, SQRT_2};
 
-use twintac_learn::Matrix;
-
-/// A layer: rows × weight + bias. Also holds the gradient of one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Layer {
-    /// `[n_inputs][n_outputs]`
-    pub(crate) weight: Matrix,
-    /// `[n_outputs]`
-    pub(crate) bias: Vec<f32>,
-}
+use twintac_learn::{Linear, Matrix};
 
 /// What a gradient needs of a forward pass.
 pub(crate) struct PerceptronPass {
@@ -21,41 +12,29 @@ pub(crate) struct PerceptronPass {
     sums: Vec<Matrix>,
 }
 
-impl Layer {
-    fn add_bias(&self, sums: &mut Matrix) {
-        for row in sums.rows_mut() {
-            row.iter_mut()
-                .zip(&self.bias)
-                .for_each(|(sum, bias)| *sum += bias);
-        }
-    }
-}
-
 /// Outputs of the layers for each row of `inputs`, in the last of `rows`, which there is one of for each layer.
-pub(crate) fn outputs<'a>(layers: &[Layer], inputs: &Matrix, rows: &'a mut [Matrix]) -> &'a mut Matrix {
+pub(crate) fn outputs<'a>(layers: &[Linear], inputs: &Matrix, rows: &'a mut [Matrix]) -> &'a mut Matrix {
     for (index, layer) in layers.iter().enumerate() {
         let (before, after) = rows.split_at_mut(index);
         if let Some(sums) = before.last_mut() {
             sums.values.iter_mut().for_each(|sum| *sum = gelu(*sum));
-            sums.times_into(&layer.weight, &mut after[0]);
+            layer.forward_into(sums, &mut after[0]);
         } else {
-            inputs.times_into(&layer.weight, &mut after[0]);
+            layer.forward_into(inputs, &mut after[0]);
         }
-        layer.add_bias(&mut after[0]);
     }
     &mut rows[layers.len() - 1]
 }
 
 /// Outputs of the layers for each row of `inputs`, with what a gradient needs.
-pub(crate) fn forward(layers: &[Layer], inputs: &Matrix) -> (Matrix, PerceptronPass) {
+pub(crate) fn forward(layers: &[Linear], inputs: &Matrix) -> (Matrix, PerceptronPass) {
     let mut pass = PerceptronPass {
         inputs: Vec::with_capacity(layers.len()),
         sums: Vec::with_capacity(layers.len()),
     };
     let mut rows = inputs.clone();
     for (index, layer) in layers.iter().enumerate() {
-        let mut sums = rows.times(&layer.weight);
-        layer.add_bias(&mut sums);
+        let sums = layer.forward(&rows);
         pass.inputs.push(rows);
         if index + 1 == layers.len() {
             return (sums, pass);
@@ -70,15 +49,12 @@ pub(crate) fn forward(layers: &[Layer], inputs: &Matrix) -> (Matrix, PerceptronP
 }
 
 /// Gradients of the layers' parameters, from the gradient of the outputs.
-pub(crate) fn gradient(layers: &[Layer], pass: &PerceptronPass, mut of_outputs: Matrix) -> Vec<Layer> {
+pub(crate) fn gradient(layers: &[Linear], pass: &PerceptronPass, mut of_outputs: Matrix) -> Vec<Linear> {
     let mut gradients = Vec::with_capacity(layers.len());
     for (index, layer) in layers.iter().enumerate().rev() {
-        gradients.push(Layer {
-            weight: pass.inputs[index].transposed_times(&of_outputs),
-            bias: of_outputs.column_sums(),
-        });
+        gradients.push(Linear::slopes(&pass.inputs[index], &of_outputs));
         if index > 0 {
-            let mut of_sums = of_outputs.times(&layer.weight.transposed());
+            let mut of_sums = layer.input_slope(&of_outputs);
             for (slope, sum) in of_sums.values.iter_mut().zip(&pass.sums[index - 1].values) {
                 *slope *= gelu_slope(*sum);
             }

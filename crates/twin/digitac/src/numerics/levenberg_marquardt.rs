@@ -1,16 +1,16 @@
-//! Minimization of a sum of robust penalties within bounds: Levenberg (1944) and Marquardt (1963), with the Gauss-Newton matrix of reweighted
-//! residuals. faer has no such solver.
+//! Minimization of a sum of robust penalties within bounds, with the Gauss-Newton matrix of reweighted residuals, and pulls to what is known before.
 
-use super::solve_symmetric;
+use twintac_fit::{Method, Problem, Quadratic, Range, minimize};
 
-/// Steps that lower the cost by less than this fraction do not count as progress.
-const ENOUGH: f64 = 1e-5;
-/// So many steps without progress end the search.
-const PATIENCE: u32 = 3;
-/// Steps at most.
-const MAX_STEPS: u32 = 80;
-/// Damping at first, at least and at most.
-const DAMPING: [f64; 3] = [1e-3, 1e-9, 1e7];
+/// Steps that lower the cost by less than 1e-5 of it do not count as progress; three of them end the search.
+const METHOD: Method = Method {
+    damping: [1e-3, 1e-9, 1e7],
+    factors: [0.2, 5.0],
+    max_steps: 400,
+    enough_promised: 0.0,
+    patience: (3, 1e-5),
+    exact: 0.0,
+};
 
 /// Where an unknown may be, and what holds it back.
 #[derive(Clone, Copy, Debug)]
@@ -25,75 +25,57 @@ pub(crate) struct Unknown {
     pub(crate) pull: f64,
 }
 
-/// A cost near a point: gradient and Gauss-Newton matrix, of which only the lower triangle is read; `[n * n]`.
-pub(crate) struct Quadratic {
-    pub(crate) gradient: Vec<f64>,
-    pub(crate) matrix: Vec<f64>,
+/// A cost with pulls.
+struct Pulled<'a, N, C> {
+    unknowns: &'a [Unknown],
+    near: N,
+    cost: C,
 }
 
-/// The point with the smallest cost, and the cost. `near` gives the slopes of the cost, `cost` its value.
+impl<E, N, C> Problem for Pulled<'_, N, C>
+where
+    N: FnMut(&[f64]) -> Result<Quadratic, E>,
+    C: FnMut(&[f64]) -> Result<f64, E>,
+{
+    type At = ();
+    type Error = E;
+
+    fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, ())>, E> {
+        let own = self.unknowns.iter().zip(x);
+        let pulls: f64 = own.map(|(u, x)| u.pull * (x - u.center).powi(2)).sum();
+        Ok(Some(((self.cost)(x)? + pulls, ())))
+    }
+
+    fn near(&mut self, x: &[f64], (): &()) -> Result<Quadratic, E> {
+        let mut near = (self.near)(x)?;
+        let n = x.len();
+        for (i, (u, x)) in self.unknowns.iter().zip(x).enumerate() {
+            near.gradient[i] += 2.0 * u.pull * (x - u.center);
+            near.matrix[i * n + i] += 2.0 * u.pull;
+        }
+        Ok(near)
+    }
+}
+
+/// The point with the smallest cost. `near` gives the slopes of the cost, `cost` its value.
 pub(crate) fn minimize_robust<E>(
     unknowns: &[Unknown],
-    mut near: impl FnMut(&[f64]) -> Result<Quadratic, E>,
-    mut cost: impl FnMut(&[f64]) -> Result<f64, E>,
-) -> Result<(Vec<f64>, f64), E> {
-    let n = unknowns.len();
-    let pulls = |x: &[f64]| -> f64 {
-        let own = unknowns.iter().zip(x);
-        own.map(|(u, x)| u.pull * (x - u.center).powi(2)).sum()
+    near: impl FnMut(&[f64]) -> Result<Quadratic, E>,
+    cost: impl FnMut(&[f64]) -> Result<f64, E>,
+) -> Result<Vec<f64>, E> {
+    let mut problem = Pulled { unknowns, near, cost };
+    let ranges = unknowns.iter().map(|u| Range {
+        bounds: u.bounds,
+        reach: f64::INFINITY,
+    });
+    let ranges: Vec<Range> = ranges.collect();
+    let inside = |u: &Unknown| u.start.clamp(u.bounds[0], u.bounds[1]);
+    let start: Vec<f64> = unknowns.iter().map(inside).collect();
+    let Some((cost, ())) = problem.evaluate(&start)? else {
+        return Ok(start);
     };
-    let inside = |u: &Unknown, x: f64| x.clamp(u.bounds[0], u.bounds[1]);
-    let mut x: Vec<f64> = unknowns.iter().map(|u| inside(u, u.start)).collect();
-    let mut damping = DAMPING[0];
-    let mut since_progress = 0;
-    let mut value = cost(&x)? + pulls(&x);
-    for _ in 0..MAX_STEPS {
-        let mut here = near(&x)?;
-        for (i, (u, x)) in unknowns.iter().zip(&x).enumerate() {
-            here.gradient[i] += 2.0 * u.pull * (x - u.center);
-            here.matrix[i * n + i] += 2.0 * u.pull;
-        }
-        // What stands at its bound and would leave it stays there.
-        let is_free = |i: usize| {
-            let [low, high] = unknowns[i].bounds;
-            let leaves = x[i] <= low && here.gradient[i] > 0.0 || x[i] >= high && here.gradient[i] < 0.0;
-            !leaves && here.matrix[i * n + i] > 0.0
-        };
-        let free: Vec<usize> = (0..n).filter(|&i| is_free(i)).collect();
-        let mut improved = false;
-        while damping < DAMPING[2] && !free.is_empty() {
-            let mut matrix = vec![0.0; free.len() * free.len()];
-            for (a, &i) in free.iter().enumerate() {
-                for (b, &j) in free[..=a].iter().enumerate() {
-                    let damped = if a == b { 1.0 + damping } else { 1.0 };
-                    matrix[a * free.len() + b] = damped * here.matrix[i.max(j) * n + i.min(j)];
-                }
-            }
-            let right = free.iter().map(|&i| -here.gradient[i]).collect();
-            let step = solve_symmetric(matrix, right);
-            let mut trial = x.clone();
-            for (&i, step) in free.iter().zip(step) {
-                trial[i] = inside(&unknowns[i], x[i] + step);
-            }
-            let found = cost(&trial)? + pulls(&trial);
-            if found < value {
-                since_progress = if found < (1.0 - ENOUGH) * value {
-                    0
-                } else {
-                    since_progress + 1
-                };
-                (x, value) = (trial, found);
-                damping = (0.2 * damping).max(DAMPING[1]);
-                improved = true;
-                break;
-            }
-            damping *= 5.0;
-        }
-        if !improved || since_progress >= PATIENCE {
-            break;
-        }
-    }
-    Ok((x, value))
+    let found = minimize(&mut problem, &ranges, (start, cost, ()), &METHOD, &mut |_| ())?;
+    Ok(found.x)
 }
 
 #[cfg(test)]
@@ -136,7 +118,7 @@ mod tests {
     #[test]
     fn an_outlier_does_not_move_a_line() {
         let near = |x: &[f64]| Ok::<_, ()>(line(x).1);
-        let (x, _) = minimize_robust(&[free(3.0), free(3.0)], near, |x| Ok(line(x).0)).unwrap();
+        let x = minimize_robust(&[free(3.0), free(3.0)], near, |x| Ok(line(x).0)).unwrap();
         assert!((x[0] - 1.0).abs() < 1e-3 && (x[1] + 2.0).abs() < 1e-3, "{x:?}");
     }
 
@@ -147,14 +129,14 @@ mod tests {
             bounds: [-1.5, 10.0],
             ..free(3.0)
         };
-        let (x, _) = minimize_robust(&[free(3.0), bounded], near, |x| Ok(line(x).0)).unwrap();
+        let x = minimize_robust(&[free(3.0), bounded], near, |x| Ok(line(x).0)).unwrap();
         assert_eq!(x[1], -1.5);
         let pulled = Unknown {
             center: 5.0,
             pull: 1e9,
             ..free(3.0)
         };
-        let (x, _) = minimize_robust(&[free(3.0), pulled], near, |x| Ok(line(x).0)).unwrap();
+        let x = minimize_robust(&[free(3.0), pulled], near, |x| Ok(line(x).0)).unwrap();
         assert!((x[1] - 5.0).abs() < 1e-3, "{x:?}");
     }
 }

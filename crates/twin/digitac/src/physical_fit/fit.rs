@@ -6,12 +6,14 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use twintac_fit::Quadratic;
+
 use super::layout::{BarometerModel, Layout};
 use super::prior::Prior;
 use super::{Elastic, Posterior, Pressures, Series};
 use crate::DigitacError;
 use crate::features::{Gains, overstress_step, port_reading, port_slopes};
-use crate::numerics::{Quadratic, Unknown, dot, fit_nonnegative, inverse_symmetric, minimize_robust};
+use crate::numerics::{Unknown, dot, fit_nonnegative, inverse_symmetric, minimize_robust};
 
 /// Deviations below this share of the largest reading count quadratically, larger ones linearly.
 const CORNER: f64 = 2e-3;
@@ -69,7 +71,7 @@ pub(crate) fn fit(
         layout: &layout,
     };
     let near = |x: &[f64]| problem.near(x);
-    let (x, _) = minimize_robust(&unknowns, near, |x| problem.cost(x))?;
+    let x = minimize_robust(&unknowns, near, |x| problem.cost(x))?;
     Ok(Solution {
         gains: layout.gains(&x, series.weights.len()),
         deviation: problem.deviation(&x)?,
@@ -93,7 +95,7 @@ pub(crate) fn fit_near_learned(
         left_out,
         layout: &layout,
     };
-    let (x, _) = minimize_robust(&unknowns, |x| problem.near(x), |x| problem.cost(x))?;
+    let x = minimize_robust(&unknowns, |x| problem.near(x), |x| problem.cost(x))?;
     let mut curvature = problem.near(&x)?.matrix;
     for (i, unknown) in unknowns.iter().enumerate() {
         curvature[i * unknowns.len() + i] += 2.0 * unknown.pull;
