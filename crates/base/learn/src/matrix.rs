@@ -77,7 +77,7 @@ impl Matrix {
     }
 
     /// Writes the product of two matrices into a third, whose rows are made as many. Each row of it has the same bits however many there are.
-    pub fn times_into(&self, right: &Self, result: &mut Self) {
+    pub(crate) fn times_into(&self, right: &Self, result: &mut Self) {
         result.values.clear();
         result.values.resize(self.n_rows() * right.n_columns, 0.0);
         result.n_columns = right.n_columns;
