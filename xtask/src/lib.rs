@@ -2,7 +2,7 @@
 //!
 //! The rules are tests: `xtask/tests/rules.rs` lists them. What each crate owns and must never know stands in `xtask/rooms.toml` ([`rooms`]); how
 //! source text is read and judged stands in [`code`]; the commands of README.md are run by [`readme`]; [`results`]
-//! keeps what the paper's experiments found; [`figures`] knows which sources made each committed figure.
+//! keeps what the paper's experiments found; [`figures`] knows which sources made each committed figure, [`kept`] what each kept value is made from.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -12,6 +12,7 @@ pub mod documents;
 pub mod figures;
 pub mod fuzz;
 mod git;
+pub mod kept;
 pub mod readme;
 pub mod results;
 pub mod rooms;

@@ -1,4 +1,4 @@
-//! The parts of ARCHITECTURE.md that are written from `xtask/rooms.toml`.
+//! The parts of ARCHITECTURE.md that are written from `xtask/rooms.toml` and the code.
 
 use std::fs;
 use std::path::Path;
@@ -7,6 +7,7 @@ use anyhow::{Context, Result, ensure};
 
 use super::{Rooms, Term};
 use crate::documents::replace_part;
+use crate::kept;
 
 /// A part's name, and what it says.
 type Part = (&'static str, fn(&Rooms) -> String);
@@ -18,7 +19,7 @@ const PARTS: [Part; 3] = [("table", table), ("terms", terms), ("invariants", inv
 pub fn write(root: &Path) -> Result<()> {
     let path = root.join("ARCHITECTURE.md");
     let text = fs::read_to_string(&path).with_context(|| format!("reading {}", path.display()))?;
-    fs::write(&path, fresh(&text, &Rooms::read(root)?)?)?;
+    fs::write(&path, fresh(root, &text, &Rooms::read(root)?)?)?;
     Ok(())
 }
 
@@ -26,14 +27,15 @@ pub fn write(root: &Path) -> Result<()> {
 pub fn is_fresh(root: &Path, rooms: &Rooms) -> Result<()> {
     let text = fs::read_to_string(root.join("ARCHITECTURE.md")).context("reading ARCHITECTURE.md")?;
     ensure!(
-        fresh(&text, rooms)? == text,
-        "ARCHITECTURE.md is not what xtask/rooms.toml says: run `cargo xtask rooms`"
+        fresh(root, &text, rooms)? == text,
+        "ARCHITECTURE.md is not what xtask/rooms.toml and the code say: run `cargo xtask rooms`"
     );
     Ok(())
 }
 
-fn fresh(text: &str, rooms: &Rooms) -> Result<String> {
+fn fresh(root: &Path, text: &str, rooms: &Rooms) -> Result<String> {
     let mut text = text.to_owned();
+    replace_part(&mut text, "kept", &kept::table(root)?).context("ARCHITECTURE.md")?;
     for (name, part) in PARTS {
         replace_part(&mut text, &format!("rooms: {name}"), &part(rooms)).context("ARCHITECTURE.md")?;
     }
