@@ -44,3 +44,19 @@ def test_a_stream_outlives_its_recording() -> None:
     del stream  # which nobody took
     table = pyarrow.table(Recording.import_csv(DATA / "import.toml", DATA / "presses.csv"))
     assert table.num_rows == n_frames
+
+
+def test_a_missing_reading_is_missing(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    RECORDING.save(tmp_path / "presses.parquet")
+    table = parquet.read_table(tmp_path / "presses.parquet")
+    for name, value in (("t0_kpa", None), ("t0_valid", False)):
+        index, values = table.column_names.index(name), table[name].to_pylist()
+        values[5] = value
+        table = table.set_column(index, table.schema.field(index), pyarrow.array(values, table.schema.field(index).type))
+    parquet.write_table(table, tmp_path / "missing.parquet")
+    recording = Recording.load(tmp_path / "missing.parquet")
+    missing = np.isnan(recording.columns()["t0_kpa"])
+    assert missing.sum() == 1 and missing[5]
+    assert pyarrow.table(recording)["t0_kpa"].null_count == 1

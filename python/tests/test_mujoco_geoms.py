@@ -5,6 +5,8 @@ import mujoco.batch
 import numpy as np
 import pytest
 
+from conftest import ROOT
+
 from blocks import BLOCK, LEGS, Scene, palm
 from twintac import Error, FastGel, Sensor
 from twintac.mujoco import TouchSensors, add_sensor
@@ -118,6 +120,9 @@ def test_what_does_not_belong_together_is_refused() -> None:
         TouchSensors(found, ["touch"], sensor=tip, gel=FastGel.phystac())
     with pytest.raises(Error, match="phystac"):
         TouchSensors(found, ["touch"], sensor=Sensor.phystac(), gel=FastGel.phystac_tip())
+    own = Sensor.load(ROOT / "sensors/strip4-gel-d.toml")
+    with pytest.raises(ValueError, match="which is not built in: give its `gel` too"):
+        TouchSensors(found, ["touch"], sensor=own)
     with pytest.raises(ValueError, match="`sites` has `touch` twice"):
         TouchSensors(found, ["touch", "touch"])
     with pytest.raises(ValueError, match="`n_worlds` is 0"):

@@ -286,13 +286,15 @@ def test_every_class_tells_what_it_is() -> None:
     assert repr(PressureMap(sensor, [np.nan, *range(7)], "real")) == "<PressureMap of \"phystac\" without t0, real>"
 
 
-@pytest.mark.parametrize("kind", ["reader", "batch", "sensors", "tasks", "tracker", "friction", "floor"])
-def test_threads_take_turns(kind: str) -> None:
+@pytest.mark.parametrize("kind", ["reader", "batch", "sensors", "tasks", "tracker", "friction", "floor", "twin states", "twin at a place"])
+def test_threads_take_turns(kind: str, trained: Path) -> None:
     fast, ball = FastGel.phystac(), Body(Shape.sphere(5.0))
     reader, batch = fast.reader(), fast.batch([ball], 2)
     sensors, tasks = SensorBatch(fast, [ball], 64, n_threads=2), Tasks("HoldForce", 64, n_threads=2)
     inverse = Inverse(fast, {"ball": Shape.sphere(5.0)})
     tracker, friction, floor = inverse.start("simulated"), Friction(Sensor.phystac(), 0.5), inverse.floor_map(1.0)
+    twin = Twin.load(trained / "model")
+    states, pressed = twin.states(4), twin.at(Press("cylinder", at_mm=(0.0, 0.0), depth_mm=1.0))
     pose = Pose((1.0, 0.0, 7.0))
     felt_kpa = reader.read([(ball, pose)])[0]
     contact = inverse.start("simulated").update(0.1, felt_kpa)
@@ -305,6 +307,8 @@ def test_threads_take_turns(kind: str) -> None:
         "tracker": lambda: tracker.update(0.01, felt_kpa),
         "friction": lambda: friction.read(reader, ball, pose),
         "floor": lambda: floor.read(contact),
+        "twin states": lambda: states.step(0.01, np.zeros((4, 8))),
+        "twin at a place": lambda: pressed.step(0.01, 0.5),
     }
     wrong: list[BaseException] = []
 

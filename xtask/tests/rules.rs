@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use anyhow::{Result, ensure};
 use libtest_mimic::{Arguments, Failed, Trial};
-use xtask::code::{Crate, circles, length, public};
+use xtask::code::{Crate, circles, length, public, tested};
 use xtask::rooms::{Graph, Rooms, page, rule};
 use xtask::{documents, results};
 
@@ -127,6 +127,14 @@ const EXEMPT: [&str; 3] = ["phystac", "twintac", "xtask"];
 fn of_sources(workspace: &Arc<Workspace>) -> Vec<Trial> {
     let mut trials = Vec::new();
     for room in &workspace.rooms.rooms {
+        if room.shelf().is_some() {
+            let folder = room.folder.clone();
+            trials.push(trial(
+                workspace,
+                format!("sources::{}::says_what_is_tested", room.folder),
+                move |_, root| tested::says_what_is_tested(root, &folder),
+            ));
+        }
         let folder = room.folder.clone();
         trials.push(trial(
             workspace,

@@ -192,4 +192,48 @@ mod tests {
         let after = figure("a.json", "1", older) + &figure("b.json", "2", "");
         assert_eq!(noted(&before, "b.json", "2"), after);
     }
+
+    /// A checkout with one package, and a figure that one of its files makes.
+    #[test]
+    fn a_figure_is_older_than_the_code_that_makes_it_or_says_why() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        let write = |file: &str, text: &str| {
+            let path = root.join(file);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        let commit = || {
+            git(root, &["add", "--all"]).unwrap();
+            let own = ["-c", "user.name=n", "-c", "user.email=e"];
+            git(root, &[&own[..], &["commit", "--quiet", "-m", "text"]].concat()).unwrap();
+            git(root, &["rev-parse", "--short", "HEAD"]).unwrap()
+        };
+        write(
+            "Cargo.toml",
+            "[package]\nname = \"made\"\nversion = \"0.1.0\"\nedition = \"2024\"\n",
+        );
+        write("src/lib.rs", "pub const SIZE_MM: f64 = 1.0;\n");
+        git(root, &["init", "--quiet"]).unwrap();
+        let made_at = commit();
+        let check = |older: Option<&str>| {
+            let figure = Figure {
+                files: vec!["docs/results/a.json".into()],
+                command: "made".into(),
+                commit: made_at.clone(),
+                packages: Vec::new(),
+                paths: vec!["src".into()],
+                older: older.map(str::to_owned),
+            };
+            check(root, &[figure]).map_err(|error| error.to_string())
+        };
+        write("src/lib.rs", "// a comment\npub const SIZE_MM: f64 = 1.0;\n");
+        commit();
+        assert_eq!(check(None), Ok(()));
+        assert!(check(Some("slow")).unwrap_err().contains("is as it was"));
+        write("src/lib.rs", "pub const SIZE_MM: f64 = 2.0;\n");
+        commit();
+        assert!(check(None).unwrap_err().contains("src/lib.rs"));
+        assert_eq!(check(Some("slow")), Ok(()));
+    }
 }

@@ -40,6 +40,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_figure_over_nothing_is_none() {
+        assert_eq!(percent(None).trim(), "none");
+        assert_eq!(percent(Some(0.0)).trim(), "0.00 %");
+        assert_eq!(percent(None).len(), percent(Some(12.345)).len() - 1);
+    }
+
+    #[test]
     fn a_name_with_a_comma_is_one_cell() {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
         let text = csv([row(["press", "x", ""]), row(["a,b \"c\"\nd", "-0.5000", ""])]).unwrap();

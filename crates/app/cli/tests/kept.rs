@@ -14,16 +14,17 @@ fn root() -> PathBuf {
 }
 
 /// A box as an STL file: its origin is in the middle of its lowest face.
-fn box_stl(half_mm: f64) -> String {
+fn box_stl([half_x_mm, half_y_mm, height_mm]: [f64; 3]) -> String {
     let corner = |index: usize| {
-        let side = |bit: usize| {
+        let side = |bit: usize, half_mm: f64| {
             if index & (1 << bit) == 0 {
                 -half_mm
             } else {
                 half_mm
             }
         };
-        [side(0), side(1), if index & 4 == 0 { 0.0 } else { 6.0 }]
+        let z_mm = if index & 4 == 0 { 0.0 } else { height_mm };
+        [side(0, half_x_mm), side(1, half_y_mm), z_mm]
     };
     let faces: [[usize; 3]; 12] = [
         [0, 2, 1],
@@ -62,13 +63,26 @@ fn inputs() -> BTreeMap<&'static str, String> {
         .replace("[gel.solid]", "[gel]\nmaterial = \"gel.toml\"\n\n[gel.solid]");
     let block = "[[indenters]]\nname = \"block\"\nshape = { kind = \"stl\", path = \"block.stl\" }\n";
     let sensor = format!("{before}{after}\n{block}").replace("depth_mm = 5.0", "depth_mm = 1.0");
+    let solid = "kind = \"block\"\nsize_mm = [34.0, 18.0, 8.5]";
+    assert!(sensor.contains(solid));
+    let moulded = sensor
+        .replace(solid, "kind = \"stl\"\npath = \"gel.stl\"")
+        .replace("  \"gel.solid.size_mm\",\n", "");
+    let protocol = "summary = \"A few presses\"\nindenters = [\"block\"]\nplaces = { kind = \"random\", x_mm = [-9.0, 9.0], y_mm = [-4.0, 4.0], count = 8 }\n\
+                    depth_mm = [0.5, 0.9]\nspeed_mm_per_s = 4.0\nhold_s = 0.2\nclearance_mm = 0.3\n";
+    let data = "crates/app/twintac/examples/data";
+    let presses: Vec<String> = read(&format!("{data}/presses.csv"))
+        .lines()
+        .take(100)
+        .map(str::to_owned)
+        .collect();
     let reality = read("realities/default.toml")
         .replace("edges_per_height = 7.0", "edges_per_height = 2.5")
         .replace("edges_per_contact_radius = 6.0", "edges_per_contact_radius = 1.0");
     BTreeMap::from([
         ("sensor.toml", sensor),
         ("gel.toml", material.trim().to_owned()),
-        ("block.stl", box_stl(5.0)),
+        ("block.stl", box_stl([5.0, 5.0, 6.0])),
         ("reality.toml", reality),
         (
             "settings.toml",
@@ -79,16 +93,19 @@ fn inputs() -> BTreeMap<&'static str, String> {
             "simulate.toml",
             "[simulate]\nedges_per_height = 2.0\nedges_per_contact_radius = 1.0\ndepth_step_mm = 0.5\n".to_owned(),
         ),
-        (
-            "protocol.toml",
-            "summary = \"A few presses\"\nindenters = [\"block\"]\nplaces = { kind = \"random\", x_mm = [-9.0, 9.0], y_mm = [-4.0, 4.0], count = 8 }\ndepth_mm = [0.5, 0.9]\nspeed_mm_per_s = 4.0\nhold_s = 0.2\nclearance_mm = 0.3\n"
-                .to_owned(),
-        ),
+        ("protocol.toml", protocol.to_owned()),
+        // The radius of a ball is one of what the sensor's description only infers: presses with it alone have it fitted.
+        ("ball.toml", protocol.replace("block", "sphere-25")),
+        ("one.toml", protocol.replace("count = 8", "count = 1")),
+        ("moulded.toml", moulded),
+        ("gel.stl", box_stl([17.0, 9.0, 8.5])),
+        ("import.toml", read(&format!("{data}/import.toml"))),
+        ("presses.csv", presses.join("\n")),
     ])
 }
 
-/// What is changed between two calls: a file, and what in it.
-const CHANGES: [(&str, &str, &str, &str); 9] = [
+/// What is changed between two calls: a file, and what in it. Surfaces become smaller; a model is another.
+const CHANGES: [(&str, &str, &str, &str); 13] = [
     (
         "the gel's material",
         "gel.toml",
@@ -123,6 +140,15 @@ const CHANGES: [(&str, &str, &str, &str); 9] = [
     ("the training", "settings.toml", "epochs = 3", "epochs = 4"),
     ("the bench", "reality.toml", "seed = 7", "seed = 8"),
     ("the protocol", "protocol.toml", "[0.5, 0.9]", "[0.4, 0.8]"),
+    ("the gel's surface", "gel.stl", "", ""),
+    ("the model", "first/model", "", ""),
+    (
+        "how logs are read",
+        "import.toml",
+        "{ unit = \"kPa\" }",
+        "{ unit = \"hPa\" }",
+    ),
+    ("the presses of a ball", "ball.toml", "[0.5, 0.9]", "[0.4, 0.8]"),
 ];
 
 /// Inputs, and a folder that commands write to.
@@ -144,10 +170,11 @@ impl Desk {
         desk
     }
 
-    /// Gives another desk its own runs: a model, and recordings that the model has not seen.
+    /// Gives another desk its own runs: a model, recordings that the model has not seen, and another model.
     fn give(&self, other: &Self) {
         copy(&self.path("run"), &other.path("first"));
         copy(&self.path("second"), &other.path("second"));
+        copy(&self.path("other-model"), &other.path("other-model"));
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -156,11 +183,16 @@ impl Desk {
 
     fn change(&self, (_, file, from, to): (&str, &str, &str, &str)) {
         let path = self.path(file);
+        if file == "first/model" {
+            fs::remove_dir_all(&path).unwrap();
+            copy(&self.path("other-model"), &path);
+            return;
+        }
         let text = fs::read_to_string(&path).unwrap();
-        let changed = if file == "block.stl" {
-            box_stl(4.0)
-        } else {
-            text.replacen(from, to, 1)
+        let changed = match file {
+            "block.stl" => box_stl([4.0, 4.0, 6.0]),
+            "gel.stl" => box_stl([17.0, 9.0, 8.0]),
+            _ => text.replacen(from, to, 1),
         };
         assert_ne!(text, changed, "{file}");
         fs::write(path, changed).unwrap();
@@ -228,8 +260,8 @@ fn copy(from: &Path, to: &Path) {
 struct Work {
     commands: &'static [&'static str],
     results: &'static [&'static str],
-    /// Commands that another change does not reach.
-    untouched_by: &'static [&'static str],
+    /// Files whose changes reach it.
+    reached_by: &'static [&'static str],
 }
 
 const RECORD: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --out @run";
@@ -237,7 +269,7 @@ const RECORD: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml
 /// Presses that nothing is taught by.
 const UNSEEN: &str = "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @protocol.toml --settings @settings.toml --seed 2 --out @second";
 
-const WORKS: [Work; 5] = [
+const WORKS: [Work; 8] = [
     Work {
         commands: &[
             RECORD,
@@ -249,12 +281,20 @@ const WORKS: [Work; 5] = [
         ],
         results: &[
             "run/recordings/presses.parquet",
+            "run/simulation/places.json",
             "run/simulation/tables.json",
             "run/metrics.json",
             "run/model/weights.safetensors",
             "run/cross_validation/result.json",
         ],
-        untouched_by: &[],
+        reached_by: &[
+            "gel.toml",
+            "block.stl",
+            "sensor.toml",
+            "settings.toml",
+            "reality.toml",
+            "protocol.toml",
+        ],
     },
     // The model is that of a first run, the recordings are those of a second one, and the sensor is another.
     Work {
@@ -262,28 +302,69 @@ const WORKS: [Work; 5] = [
             "adapt --model @first/model --recordings @second/recordings/presses.parquet --sensor @sensor.toml --presses 3 --out @adapted",
         ],
         results: &["adapted/model/weights.safetensors", "adapted/adaptation.json"],
-        untouched_by: &["settings.toml", "reality.toml", "protocol.toml"],
+        reached_by: &["gel.toml", "block.stl", "sensor.toml", "first/model"],
+    },
+    Work {
+        commands: &[
+            "adapt --model @first/model --recordings @second/recordings/presses.parquet --sensor @moulded.toml --presses 3 --out @moulded",
+        ],
+        results: &["moulded/model/weights.safetensors", "moulded/adaptation.json"],
+        reached_by: &["gel.stl"],
     },
     Work {
         commands: &[
             "fast train --sensor @sensor.toml --own-indenters --lessons 20 --exams 1 --steps 20 --out @fast",
+            "dataset --sensor @sensor.toml --fast @fast/fast.safetensors --protocol @protocol.toml --presses 2 --out @felt",
         ],
-        results: &["fast/fast.safetensors", "fast/judgement.json"],
-        untouched_by: &["settings.toml", "reality.toml", "protocol.toml"],
+        results: &[
+            "fast/fast.safetensors",
+            "fast/judgement.json",
+            "felt/shard-000001-of-000001.parquet",
+        ],
+        reached_by: &["gel.toml", "block.stl", "sensor.toml", "protocol.toml"],
     },
     Work {
         commands: &[
             "dataset --sensor @sensor.toml --protocol @protocol.toml --settings @simulate.toml --presses 2 --out @data",
         ],
         results: &["data/shard-000001-of-000001.parquet"],
-        untouched_by: &["reality.toml"],
+        reached_by: &[
+            "gel.toml",
+            "block.stl",
+            "sensor.toml",
+            "settings.toml",
+            "protocol.toml",
+        ],
     },
     Work {
         commands: &[
             "simulate --sensor @sensor.toml --protocol @protocol.toml --settings @simulate.toml --out @simulated",
         ],
         results: &["simulated/block-000.json"],
-        untouched_by: &["reality.toml"],
+        reached_by: &[
+            "gel.toml",
+            "block.stl",
+            "sensor.toml",
+            "settings.toml",
+            "protocol.toml",
+        ],
+    },
+    // A ball whose radius is fitted: cross-validation has tables of several radii, which it keeps itself.
+    Work {
+        commands: &[
+            "record --at-once --lab @reality.toml --sensor @sensor.toml --protocol @ball.toml --settings @settings.toml --out @ball",
+            "align --run @ball",
+            "cross-validate --run @ball --seeds 1",
+        ],
+        results: &["ball/simulation/bench.json", "ball/cross_validation/result.json"],
+        reached_by: &["gel.toml", "settings.toml", "ball.toml"],
+    },
+    Work {
+        commands: &[
+            "import --sensor @sensor.toml --import @import.toml --recordings @presses.csv --out @imported",
+        ],
+        results: &["imported/recordings/presses.parquet"],
+        reached_by: &["import.toml"],
     },
 ];
 
@@ -302,11 +383,16 @@ fn what_is_kept_is_what_a_fresh_folder_has() {
     let first = Desk::new();
     first.all(WORKS[0].commands).unwrap();
     first.all(&[UNSEEN]).unwrap();
+    let other = first.copied();
+    other.change(CHANGES[6]);
+    other.all(&WORKS[0].commands[..5]).unwrap();
+    copy(&other.path("run/model"), &first.path("other-model"));
     let base = Desk::new();
     first.give(&base);
     for work in &WORKS {
         base.all(work.commands).unwrap();
     }
+    assert!(base.path("ball/cross_validation/depth_tables").is_dir());
     let mut wrong = String::new();
     for change in CHANGES {
         let (name, file, ..) = change;
@@ -314,7 +400,7 @@ fn what_is_kept_is_what_a_fresh_folder_has() {
         first.give(&fresh);
         again.change(change);
         fresh.change(change);
-        for work in WORKS.iter().filter(|work| !work.untouched_by.contains(&file)) {
+        for work in WORKS.iter().filter(|work| work.reached_by.contains(&file)) {
             let was = again.results(work.results);
             let (kept, made) = (again.all(work.commands), fresh.all(work.commands));
             match (&kept, &made) {
@@ -384,6 +470,85 @@ fn stages_are_read_only_as_they_would_be_made_now() {
     fs::write(moved.path("run/pairs/paired.json"), "[]").unwrap();
     let refused = moved.all(&["evaluate --run @run"]).unwrap_err();
     assert!(refused.contains("changed since"), "{refused}");
+
+    // Other presses, as another seed draws them.
+    let again = desk.copied();
+    again
+        .all(&[&RECORD.replace("record", "record --seed 7")])
+        .unwrap();
+    for stage in ["train", "evaluate", "report"] {
+        let refused = again.all(&[&format!("{stage} --run @run")]).unwrap_err();
+        assert!(
+            refused.contains("seed") || refused.contains("recordings"),
+            "{refused}"
+        );
+    }
+}
+
+/// A model has all that it needs: the description that it was trained with, and the surfaces that this names.
+#[test]
+fn a_model_stands_alone() {
+    let desk = Desk::new();
+    desk.all(&WORKS[0].commands[..5]).unwrap();
+    desk.all(&[UNSEEN]).unwrap();
+    let elsewhere = Desk::new();
+    copy(&desk.path("run/model"), &elsewhere.path("model"));
+    copy(&desk.path("second"), &elsewhere.path("second"));
+    for file in ["block.stl", "sensor.toml", "gel.toml"] {
+        fs::remove_file(elsewhere.path(file)).unwrap();
+    }
+    elsewhere
+        .all(&[
+            "predict --model @model --protocol @one.toml",
+            "evaluate --model @model --recordings @second/recordings/presses.parquet",
+            "adapt --model @model --recordings @second/recordings/presses.parquet --presses 3 --out @adapted",
+            "dataset --twin @model --protocol @one.toml --out @data",
+        ])
+        .unwrap();
+    let surface = fs::read_dir(elsewhere.path("model/surfaces")).unwrap().next();
+    let surface = surface.unwrap().unwrap().path();
+    let mut bytes = fs::read(&surface).unwrap();
+    bytes[100] ^= 1;
+    fs::write(surface, bytes).unwrap();
+    let refused = elsewhere
+        .all(&["predict --model @model --protocol @one.toml"])
+        .unwrap_err();
+    assert!(refused.contains("SHA-256"), "{refused}");
+}
+
+/// Logs of one bench are not taken for those of another: nothing is recorded anew beside them, and nothing is written over them.
+#[test]
+fn logs_are_of_one_bench_and_sensor() {
+    let wired = "record --lab @reality.toml --sensor @sensor.toml --protocol @one.toml --settings @settings.toml --out @run";
+    let desk = Desk::new();
+    let sensor = fs::read_to_string(desk.path("sensor.toml")).unwrap();
+    fs::write(
+        desk.path("sensor.toml"),
+        sensor.replace("depth_mm = 1.0", "depth_mm = 5.0"),
+    )
+    .unwrap();
+    desk.all(&[wired]).unwrap();
+    for change in [CHANGES[7], CHANGES[4]] {
+        let other = desk.copied();
+        other.change(change);
+        let was = other.results(&[
+            "run/recordings/presses.parquet",
+            "run/sensor.toml",
+            "run/run.json",
+        ]);
+        let refused = other.all(&[wired]).unwrap_err();
+        assert!(refused.contains("another"), "{}: {refused}", change.0);
+        assert_eq!(
+            other.results(&[
+                "run/recordings/presses.parquet",
+                "run/sensor.toml",
+                "run/run.json"
+            ]),
+            was,
+            "{}",
+            change.0
+        );
+    }
 }
 
 /// One program at a time works in a run.
@@ -413,4 +578,35 @@ fn a_run_has_one_owner() {
     }
     desk.all(&["align --run @run", "train --run @run", "evaluate --run @run"])
         .unwrap();
+}
+
+/// While a program works in a folder, every command that would work there says so at once.
+#[test]
+fn a_folder_in_use_is_refused() {
+    let desk = Desk::new();
+    desk.all(&[RECORD]).unwrap();
+    let held: Vec<fs::File> = ["run", "paper", "fast"]
+        .map(|folder| {
+            fs::create_dir_all(desk.path(folder)).unwrap();
+            let file = fs::File::create(desk.path(folder).join(".in-use")).unwrap();
+            file.lock().unwrap();
+            file
+        })
+        .into();
+    for command in [
+        RECORD,
+        "align --run @run",
+        "train --run @run",
+        "cross-validate --run @run --seeds 1",
+        "reproduce --paper --quick --out @paper",
+        "fast train --sensor @sensor.toml --lessons 20 --exams 1 --steps 1 --out @fast",
+    ] {
+        let refused = desk.all(&[command]).unwrap_err();
+        assert!(
+            refused.contains("in use by another program"),
+            "{command}: {refused}"
+        );
+    }
+    drop(held);
+    desk.all(&["align --run @run"]).unwrap();
 }

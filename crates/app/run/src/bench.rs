@@ -1,15 +1,32 @@
 //! The presses of a run, carried out on a bench.
 
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use twintac_emulate::ScheduledFault;
 use twintac_lab::Reality;
 use twintac_press::{Mounting, PressSettings, RunSummary};
 use twintac_protocol::PressPlan;
+use twintac_sensor::SensorFile;
 use twintac_station::{Attended, OpenBench};
 use twintac_work::WorkError;
 
 use crate::Run;
+use crate::run::{LOGS, SENSOR, keyed};
+
+/// The logs in a run's folder, if there are any, are of this sensor, bench and placement: nothing has to be written to see that they are not.
+///
+/// # Errors
+/// They are of others: what differs.
+pub fn check_logs(
+    folder: &Path,
+    sensor: &SensorFile,
+    reality: Option<&Reality>,
+    settings: &PressSettings,
+) -> Result<(), WorkError> {
+    let sensor = keyed(sensor.kept_as(&folder.join(SENSOR))?);
+    twintac_station::check_logs(&folder.join(LOGS), &sensor, reality, settings)
+}
 
 impl Run {
     /// The emulated bench, switched on, with faults. What its gel answers at the places of the plans is computed before, and kept in the run's folder.

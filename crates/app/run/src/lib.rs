@@ -52,6 +52,7 @@ mod settings;
 mod stages;
 
 pub use adaptation_curve::{AdaptationCurve, AdaptationPoint, CurvePlan, SeedOfPoint, adaptation_curve};
+pub use bench::check_logs;
 pub use cross_validation::{
     CertaintySpread, CrossValidated, CrossValidation, CrossValidationPlan, OfSeed, Spread, Without,
 };

@@ -16,7 +16,10 @@ use twintac_work::{At, Caller, Progress, WorkError, go_on};
 use crate::{Metrics, RunSettings};
 
 /// The sensor's description in a run's folder.
-const SENSOR: &str = "sensor.toml";
+pub(crate) const SENSOR: &str = "sensor.toml";
+
+/// The folder of the logs of a bench.
+pub(crate) const LOGS: &str = "logs";
 
 /// What a run is made from: `run.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -203,7 +206,7 @@ impl Run {
     /// The folder of the logs of a bench.
     #[must_use]
     pub fn logs_folder(&self) -> PathBuf {
-        self.folder.join("logs")
+        self.folder.join(LOGS)
     }
 
     /// The gel as the twin simulates it.
@@ -251,7 +254,7 @@ impl Run {
 }
 
 /// The text of a description tells it from every other once its surfaces are called after their contents.
-fn keyed(sensor: SensorFile) -> Keyed<SensorFile> {
+pub(crate) fn keyed(sensor: SensorFile) -> Keyed<SensorFile> {
     let text = sensor.text.clone();
     Keyed::of_bytes(sensor, text.as_bytes())
 }

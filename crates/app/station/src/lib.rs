@@ -8,5 +8,5 @@ mod real;
 
 pub use lab::read_faults;
 pub use open::OpenBench;
-pub use press::Attended;
+pub use press::{Attended, check_logs};
 pub use preview::{Preview, preview};

@@ -27,6 +27,31 @@ struct LogsOf<'a> {
     placement: &'a Placement,
 }
 
+/// Logs in a folder, if there are any, are of this sensor, bench and placement.
+///
+/// # Errors
+/// They are of others: what differs.
+pub fn check_logs(
+    logs: &Path,
+    sensor: &Keyed<SensorFile>,
+    reality: Option<&Reality>,
+    settings: &PressSettings,
+) -> Result<(), WorkError> {
+    Ok(made_from(sensor, reality, settings)?.check(logs)?)
+}
+
+fn made_from(
+    sensor: &Keyed<SensorFile>,
+    reality: Option<&Reality>,
+    settings: &PressSettings,
+) -> Result<MadeFrom, WorkError> {
+    Ok(MadeFrom::without_program(&LogsOf {
+        sensor,
+        reality,
+        placement: &settings.placement,
+    })?)
+}
+
 /// Who is at the bench while it presses.
 pub struct Attended<'a> {
     /// Setting it stops the bench.
@@ -57,12 +82,7 @@ impl OpenBench {
             progress,
         } = attended;
         let limits = sensor_limits(&sensor.sensor)?;
-        let made_from = LogsOf {
-            sensor,
-            reality: self.reality.as_ref(),
-            placement: &settings.placement,
-        };
-        MadeFrom::without_program(&made_from)?.claim(logs)?;
+        made_from(sensor, self.reality.as_ref(), &settings)?.claim(logs)?;
         let runner = Runner::new(settings, limits, self.description(sensor))?;
         let mut attendant = Attendant {
             work: Work::start(progress, "pressing", plans.len()),

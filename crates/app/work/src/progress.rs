@@ -12,7 +12,7 @@ use crate::WorkError;
 ///
 /// ```
 /// use std::sync::atomic::{AtomicUsize, Ordering};
-/// use twintac_run::Progress;
+/// use twintac_work::Progress;
 ///
 /// #[derive(Default)]
 /// struct Steps(AtomicUsize);

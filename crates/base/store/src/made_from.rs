@@ -55,9 +55,22 @@ impl MadeFrom {
     /// # Errors
     /// [`StoreError::OtherContents`] names what differs; a folder that cannot be read or written.
     pub fn claim(&self, folder: &Path) -> Result<(), StoreError> {
+        self.check(folder)?;
+        let path = folder.join(CLAIM);
+        if path.exists() {
+            return Ok(());
+        }
+        write_json(&path, self)
+    }
+
+    /// Makes sure that the contents of a folder, if it says what they are made from, are made from this.
+    ///
+    /// # Errors
+    /// Those of [`claim`](Self::claim).
+    pub fn check(&self, folder: &Path) -> Result<(), StoreError> {
         let path = folder.join(CLAIM);
         if !path.exists() {
-            return write_json(&path, self);
+            return Ok(());
         }
         let there: Self = read_json(&path)?;
         let differences = self.differences(&there);

@@ -293,4 +293,41 @@ mod tests {
         );
         assert!(rough.with_friction(-0.1).is_err());
     }
+
+    /// Whatever a description calls its surfaces, they are kept inside of the folder, by their content.
+    #[test]
+    fn surfaces_are_kept_inside_by_content() {
+        let folder = tempfile::tempdir().unwrap();
+        let parent = folder.path();
+        let inside = parent.join("inside");
+        std::fs::create_dir(&inside).unwrap();
+        let mut surface = String::from("solid s\n");
+        for face in [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]] {
+            surface += "facet normal 0 0 0\nouter loop\n";
+            for corner in face {
+                surface += [
+                    "vertex 0 0 0\n",
+                    "vertex 9 0 0\n",
+                    "vertex 0 9 0\n",
+                    "vertex 0 0 9\n",
+                ][corner];
+            }
+            surface += "endloop\nendfacet\n";
+        }
+        surface += "endsolid s\n";
+        std::fs::write(parent.join("notes.txt"), &surface).unwrap();
+        let indenter =
+            "\n[[indenters]]\nname = \"own\"\nshape = { kind = \"stl\", path = \"../notes.txt\" }\n";
+        let path = inside.join("sensor.toml");
+        std::fs::write(&path, format!("{}{indenter}", PHYSTAC.1)).unwrap();
+        let read = SensorFile::read(&path).unwrap();
+        let kept = read.kept_as(&parent.join("run/sensor.toml")).unwrap();
+        let names: Vec<&String> = kept.surfaces().keys().collect();
+        assert_eq!(names.len(), 1);
+        assert!(
+            names[0].starts_with("surfaces/") && names[0].ends_with(".stl"),
+            "{names:?}"
+        );
+        assert!(!kept.text.contains("notes.txt"));
+    }
 }

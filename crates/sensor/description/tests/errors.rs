@@ -679,3 +679,10 @@ fn absurd_numbers_are_refused() {
         "indenters[0].friction",
     );
 }
+
+#[test]
+fn a_description_is_shown_without_what_would_steer_a_terminal() {
+    let text = GOOD.replace("A small sensor", "a\\u001b[2Jb");
+    let shown = Sensor::parse("small.toml", &text, &no_files).unwrap().describe();
+    assert!(!shown.contains('\u{1b}') && shown.contains("[2Jb"), "{shown}");
+}

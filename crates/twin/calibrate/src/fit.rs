@@ -165,7 +165,7 @@ fn judge(
     let n_samples = evaluation.residuals.len();
     let freedom = (n_samples - all.len()) as f64;
     let variance = evaluation.residuals.iter().map(|r| r * r).sum::<f64>() / freedom;
-    let normal = normal_equations(evaluation, all.len()).matrix;
+    let normal = normal_equations(&evaluation.jacobian, &evaluation.residuals, all.len()).matrix;
     let known = covariance(
         &faer::Mat::from_fn(all.len(), all.len(), |i, j| normal[i * all.len() + j]),
         variance,

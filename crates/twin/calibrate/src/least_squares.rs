@@ -26,9 +26,9 @@ pub(crate) struct Solution {
 }
 
 /// `JᵀJ`, row by row, and `Jᵀr`.
-pub(crate) fn normal_equations(evaluation: &Evaluation, n: usize) -> Quadratic {
+pub(crate) fn normal_equations(jacobian: &[Vec<f64>], residuals: &[f64], n: usize) -> Quadratic {
     let (mut matrix, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
-    for (row, residual) in evaluation.jacobian.iter().zip(&evaluation.residuals) {
+    for (row, residual) in jacobian.iter().zip(residuals) {
         for i in 0..n {
             gradient[i] += row[i] * residual;
             for j in 0..n {
@@ -44,25 +44,40 @@ fn cost(evaluation: &Evaluation) -> f64 {
     0.5 * evaluation.residuals.iter().map(|r| r * r).sum::<f64>()
 }
 
-/// The sum of squares of a problem; its slopes are corrected by steps that were rejected.
-struct Corrected<'a>(&'a Problem<'a>);
+/// All curves at one guess, and their derivatives, corrected by steps that were rejected.
+struct Corrected {
+    evaluation: Evaluation,
+    jacobian: Vec<Vec<f64>>,
+}
 
-impl twintac_fit::Problem for Corrected<'_> {
-    type At = Evaluation;
+impl Corrected {
+    fn of(evaluation: Evaluation) -> Self {
+        Self {
+            jacobian: evaluation.jacobian.clone(),
+            evaluation,
+        }
+    }
+}
+
+/// The sum of squares of a problem.
+struct Squares<'a>(&'a Problem<'a>);
+
+impl twintac_fit::Problem for Squares<'_> {
+    type At = Corrected;
     type Error = Infallible;
 
     /// What can't be simulated is no place to go.
-    fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Evaluation)>, Infallible> {
+    fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Corrected)>, Infallible> {
         let found = self.0.evaluate(x).ok();
-        Ok(found.map(|evaluation| (cost(&evaluation), evaluation)))
+        Ok(found.map(|evaluation| (cost(&evaluation), Corrected::of(evaluation))))
     }
 
-    fn near(&mut self, x: &[f64], at: &Evaluation) -> Result<Quadratic, Infallible> {
-        Ok(normal_equations(at, x.len()))
+    fn near(&mut self, x: &[f64], at: &Corrected) -> Result<Quadratic, Infallible> {
+        Ok(normal_equations(&at.jacobian, &at.evaluation.residuals, x.len()))
     }
 
     /// Changes derivatives as little as can be, each in the unit of its column, so that they lead to what was found at the end of the way.
-    fn rejected(&mut self, here: &mut Evaluation, way: &[f64], there: &Evaluation) -> bool {
+    fn rejected(&mut self, here: &mut Corrected, way: &[f64], there: &Corrected) -> bool {
         let columns = (0..way.len()).map(|i| here.jacobian.iter().map(|row| row[i] * row[i]).sum::<f64>());
         let weighted: Vec<f64> = columns.zip(way).map(|(square, way)| square * way).collect();
         let length: f64 = weighted
@@ -73,7 +88,7 @@ impl twintac_fit::Problem for Corrected<'_> {
         if length == 0.0 {
             return false; // held by the bounds
         }
-        let ends = here.residuals.iter().zip(&there.residuals);
+        let ends = here.evaluation.residuals.iter().zip(&there.evaluation.residuals);
         for (row, (before, after)) in here.jacobian.iter_mut().zip(ends) {
             let foretold: f64 = row.iter().zip(way).map(|(rate, way)| rate * way).sum();
             for (rate, weighted) in row.iter_mut().zip(&weighted) {
@@ -107,11 +122,11 @@ pub(crate) fn minimize(
     });
     let ranges: Vec<Range> = ranges.collect();
     let mut tell = |cost: f64| tell((2.0 * cost / n_residuals).sqrt());
-    let start = (x, cost(&evaluation), evaluation);
-    let Ok(found) = twintac_fit::minimize(&mut Corrected(problem), &ranges, start, &method, &mut tell);
+    let start = (x, cost(&evaluation), Corrected::of(evaluation));
+    let Ok(found) = twintac_fit::minimize(&mut Squares(problem), &ranges, start, &method, &mut tell);
     Solution {
         x: found.x,
-        evaluation: found.at,
+        evaluation: found.at.evaluation,
         iterations: found.n_steps,
         converged: found.is_settled,
     }

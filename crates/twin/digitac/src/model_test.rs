@@ -20,7 +20,7 @@ fn a_model_survives_its_folder_and_notices_damage() {
         bench: made.bench.clone(),
         settings: TrainedWith { settings, seed: 1 },
         provenance: made.recording.provenance,
-        files: vec!["file0".into()],
+        files: vec!["<img src=x>|.csv".into()],
         taught_by: BTreeSet::new(),
         split: made.split.clone(),
         certainty: None,
@@ -39,6 +39,7 @@ fn a_model_survives_its_folder_and_notices_damage() {
         );
     }
     let card = std::fs::read_to_string(folder.join("CARD.md")).unwrap();
+    assert!(card.contains("&lt;img") && !card.contains("<img"), "{card}");
     let percent = model
         .record
         .validation

@@ -12,7 +12,7 @@ use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_li
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_run::built_in::{LAB_RIG, reality};
-use twintac_run::{Run, RunSettings};
+use twintac_run::{Run, RunSettings, check_logs};
 use twintac_sensor::SensorFile;
 use twintac_station::{OpenBench, preview, read_faults};
 use twintac_work::{Caller, Planned, Progress};
@@ -131,7 +131,9 @@ fn press(
             .map_err(|error| anyhow!("{error} with `--lab`"))?;
         "a real"
     };
-    check_folder(&out(arguments).join("logs"), plans)?;
+    let folder = out(arguments);
+    check_logs(&folder, &sensor, reality, &settings)?;
+    check_folder(&folder.join("logs"), plans)?;
     let source = format!("{} presses on {whose} bench, over its wires", plans.len());
     let caller = program.caller()?;
     let run = start(arguments, sensor, &source, caller.clone())?;
