@@ -30,7 +30,7 @@ def test_one_of_many_is_as_alone(kind: str) -> None:
     alone = gym.make(f"TwinTac/{kind}-v0")
     many.action_space.seed(1)
     first, _ = many.reset(seed=7)
-    again, _ = many.reset(seed=np.int64(7))  # NumPy's integers are integers
+    again, _ = many.reset(seed=np.int64(7))  # type: ignore[arg-type]  # NumPy's integers are integers
     assert np.array_equal(first, again)
     observed, _ = alone.reset(seed=7 + 3)
     assert np.array_equal(first[3], observed)
