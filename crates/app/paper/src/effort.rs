@@ -39,6 +39,14 @@ impl Effort {
         }
     }
 
+    /// Steps at most of the fit of the material.
+    pub(super) fn material_steps(self) -> u32 {
+        match self {
+            Self::Full => 30,
+            Self::Quick => 4,
+        }
+    }
+
     /// The presses that the twin learns from.
     pub(super) fn data(self) -> BuiltIn {
         match self {

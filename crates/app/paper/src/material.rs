@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use twintac_calibrate::FitSettings;
 use twintac_gel::calibration::{calibrate, force_curves};
 use twintac_run::built_in::{MATERIAL_PROTOCOL, reality};
 use twintac_run::{Change, read_recording};
@@ -11,6 +12,7 @@ use twintac_simulate::{Gel, SimulateSettings};
 use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
 use twintac_work::{Planned, Progress, WorkError, read_text};
 
+use crate::effort::Effort;
 use crate::experiments::{PAPER_COMMAND, Paper};
 use crate::level::Level;
 
@@ -23,8 +25,28 @@ const FREE: [&str; 5] = [
     "depth_offset_mm",
 ];
 
-/// Frames of each press that are simulated.
-const MOST_FRAMES: usize = 14;
+/// How long is sought, and how many frames of each press are simulated.
+#[derive(Clone, Copy, Serialize)]
+struct Search {
+    most_frames: usize,
+    max_iterations: u32,
+}
+
+impl Search {
+    fn of(effort: Effort) -> Self {
+        Self {
+            most_frames: 14,
+            max_iterations: effort.material_steps(),
+        }
+    }
+
+    fn settings(self) -> FitSettings {
+        FitSettings {
+            most_frames: self.most_frames,
+            max_iterations: self.max_iterations,
+        }
+    }
+}
 
 /// A gel's material, as its presses tell it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +79,7 @@ fn fit_settings() -> SimulateSettings {
 struct Fitting<'a> {
     start: &'a Keyed<SensorFile>,
     settings: SimulateSettings,
+    fit: Search,
     level: &'a Level,
     recordings: Finished,
 }
@@ -77,7 +100,7 @@ impl Stage for Fitting<'_> {
             self.settings.clone(),
             curves,
             &free,
-            MOST_FRAMES,
+            self.fit.settings(),
             progress,
         )?;
         let value = |name: &str| {
@@ -114,6 +137,7 @@ impl Paper {
         let finished = self.run_stage(&Fitting {
             start: &Keyed::of_bytes(start.clone(), start.text.as_bytes()),
             settings: fit_settings(),
+            fit: Search::of(self.effort),
             level,
             recordings: run.recordings()?,
         })?;
@@ -138,10 +162,9 @@ fn yeoh(described: &SensorFile) -> String {
 mod tests {
     #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
     use glam::{DQuat, DVec3};
-    use twintac_calibrate::{Curve, FitSettings, Parameter, Quantity, Signal, fit};
+    use twintac_calibrate::{Curve, Parameter, Quantity, Signal, fit};
 
     use super::*;
-    use crate::effort::Effort;
 
     /// How the gel lies on the bench of reality `harder`, about, rad.
     const TILT_RAD: DVec3 = DVec3::new(0.02, -0.015, 0.0);
@@ -239,7 +262,7 @@ mod tests {
         });
         let curves: Vec<Curve> = curves.collect();
         assert_eq!(curves.len(), gel.sensor().indenters.len());
-        press(&gel, &curves, MOST_FRAMES);
+        press(&gel, &curves, Search::of(Effort::Full).most_frames);
     }
 
     #[test]

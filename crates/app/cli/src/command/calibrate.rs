@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 use anyhow::{Context, Result};
-use twintac_calibrate::Fit;
+use twintac_calibrate::{Fit, FitSettings};
 use twintac_gel::calibration::{CsvPlace, Measured, calibrate, curve_of_csv, curves_of_file};
 use twintac_gel::simulate_settings;
 use twintac_sensor::SensorFile;
@@ -21,7 +21,11 @@ pub(crate) fn run(arguments: &Calibrate) -> Result<()> {
     let settings = simulate_settings(SimulateSettings::fine(), arguments.settings.as_deref())?;
     let measured = measured(arguments, &sensor, &settings)?;
     let bars = Bars::default();
-    let found = calibrate(&sensor, settings, measured, &names, arguments.frames, &bars)?;
+    let how = FitSettings {
+        most_frames: arguments.frames,
+        ..FitSettings::default()
+    };
+    let found = calibrate(&sensor, settings, measured, &names, how, &bars)?;
     if let Some(folder) = &arguments.out {
         found.write(folder, &sensor)?;
     }

@@ -45,7 +45,7 @@ pub struct Calibration {
 }
 
 /// Fits constants of a gel's material, and of the bench, to curves; they start from the material of the gel. `free` says which, by the names
-/// of [`Parameter`]; of each curve, about `most_frames` frames are simulated.
+/// of [`Parameter`]; `fit_settings` say how many frames are simulated, and how long is sought.
 ///
 /// # Errors
 /// A name that is no constant of the material; curves that the gel cannot follow, or that are too few; fewer than two frames.
@@ -54,22 +54,19 @@ pub fn calibrate(
     settings: SimulateSettings,
     measured: Vec<Measured>,
     free: &[String],
-    most_frames: usize,
+    fit_settings: FitSettings,
     progress: &dyn Progress,
 ) -> Result<Calibration, WorkError> {
-    if most_frames < 2 {
+    if fit_settings.most_frames < 2 {
         return Err(WorkError::Input(format!(
-            "{most_frames} frames of each curve are too few, expected 2 or more"
+            "{} frames of each curve are too few, expected 2 or more",
+            fit_settings.most_frames
         )));
     }
     let (curves, mut provenance): (Vec<Curve>, Vec<Provenance>) = measured.into_iter().unzip();
     provenance.sort_unstable();
     provenance.dedup();
     let parameters: Vec<Parameter> = free.iter().map(|name| Parameter::named(name)).collect();
-    let fit_settings = FitSettings {
-        most_frames,
-        ..FitSettings::default()
-    };
     let gel = Gel::new(sensor.sensor.clone(), settings.clone());
     let work = Work::start(progress, "fitting", fit_settings.max_iterations as usize);
     let found = fit(&gel, &curves, &parameters, fit_settings, &mut |deviation| {
@@ -80,7 +77,7 @@ pub fn calibrate(
         provenance,
         free: free.to_vec(),
         settings,
-        most_frames,
+        most_frames: fit_settings.most_frames,
         fit: found,
         n_curves: curves.len(),
     })
