@@ -35,6 +35,15 @@ impl Pose {
         }
     }
 
+    /// The pose in the outer frame of what has this pose in the inner one.
+    #[must_use]
+    pub fn of(&self, inner: &Self) -> Self {
+        Self {
+            position_mm: self.transform_point(inner.position_mm),
+            rotation: (self.rotation * inner.rotation).normalize(),
+        }
+    }
+
     /// Takes a point from the inner to the outer frame, mm.
     #[must_use]
     pub fn transform_point(&self, point_mm: DVec3) -> DVec3 {

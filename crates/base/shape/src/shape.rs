@@ -81,7 +81,7 @@ pub enum Shape {
         /// Rounding of the ridge and edges, mm.
         edge_radius_mm: f64,
     },
-    /// A closed triangle surface in an STL file; its lowest point is moved to the origin's z.
+    /// A closed triangle surface in an STL file; its lowest point is moved to the origin's z. Cavities count as filled: no gel can get into them.
     Stl(SurfaceFile),
     /// Several shapes held together, which may overlap. Their poses are in the frame of the whole, whose origin need not be its lowest point.
     Union {
@@ -357,9 +357,7 @@ impl Shape {
                         "an STL file of this description",
                     )
                 })?;
-                Box::new(Lowered {
-                    surface: Arc::clone(surface),
-                })
+                Box::new(Lowered::new(surface))
             }
             Self::Union { ref parts } => {
                 let placed = parts.iter().map(|part| {
@@ -419,19 +417,63 @@ impl SignedDistance for Ball {
     }
 }
 
-/// A triangle surface moved along z until its lowest point is at 0.
+/// A triangle surface moved along z until its lowest point is at 0, its cavities filled.
 struct Lowered {
     surface: Arc<TriangleSurface>,
+    /// Its bodies, if there are several.
+    bodies: Vec<BodyOf>,
+}
+
+/// One body of a triangle surface.
+struct BodyOf {
+    surface: Arc<TriangleSurface>,
+    body: usize,
+}
+
+impl Lowered {
+    fn new(surface: &Arc<TriangleSurface>) -> Self {
+        let several = (0..surface.n_bodies()).filter(|_| surface.n_bodies() > 1);
+        let bodies = several.map(|body| BodyOf {
+            surface: Arc::clone(surface),
+            body,
+        });
+        Self {
+            bodies: bodies.collect(),
+            surface: Arc::clone(surface),
+        }
+    }
+
+    fn lowest_mm(&self) -> f64 {
+        self.surface.bounds_mm().0.z
+    }
 }
 
 impl SignedDistance for Lowered {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
-        let lowest_mm = self.surface.bounds_mm().0.z;
-        self.surface.signed_distance(point_mm + DVec3::Z * lowest_mm)
+        self.surface
+            .distance_from_outside(point_mm + DVec3::Z * self.lowest_mm())
     }
 
     fn bounds_mm(&self) -> (DVec3, DVec3) {
         let (low, high) = self.surface.bounds_mm();
         (low.with_z(0.0), high.with_z(high.z - low.z))
+    }
+
+    fn parts(&self) -> Vec<(Pose, &dyn SignedDistance)> {
+        let lowered = Pose::from_position(-DVec3::Z * self.lowest_mm());
+        let bodies = self.bodies.iter();
+        bodies
+            .map(|body| (lowered, body as &dyn SignedDistance))
+            .collect()
+    }
+}
+
+impl SignedDistance for BodyOf {
+    fn signed_distance(&self, point_mm: DVec3) -> Distance {
+        self.surface.distance_from_outside_to(self.body, point_mm)
+    }
+
+    fn bounds_mm(&self) -> (DVec3, DVec3) {
+        self.surface.bounds_of_body_mm(self.body)
     }
 }

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::Pose;
+
 /// Signed distance of a point to a surface, with its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
@@ -18,4 +20,10 @@ pub trait SignedDistance: Send + Sync {
 
     /// Smallest box, as (minimum, maximum) corners in the shape's own frame, that holds the shape, mm.
     fn bounds_mm(&self) -> (DVec3, DVec3);
+
+    /// The bodies that the shape is united of, each with its pose in the shape's frame; empty where it is one body. In the corner between two of them the direction of the
+    /// nearest one jumps: contact that treats each by itself finds both.
+    fn parts(&self) -> Vec<(Pose, &dyn SignedDistance)> {
+        Vec::new()
+    }
 }

@@ -60,4 +60,20 @@ impl SignedDistance for Union {
     fn bounds_mm(&self) -> (DVec3, DVec3) {
         self.bounds_mm
     }
+
+    fn parts(&self) -> Vec<(Pose, &dyn SignedDistance)> {
+        let each = self.parts.iter().flat_map(|(whole_from_part, part)| {
+            let within = part.parts();
+            let inner = within.into_iter();
+            let inner: Vec<_> = inner
+                .map(|(pose, part)| (whole_from_part.of(&pose), part))
+                .collect();
+            if inner.is_empty() {
+                vec![(*whole_from_part, part.as_ref())]
+            } else {
+                inner
+            }
+        });
+        each.collect()
+    }
 }

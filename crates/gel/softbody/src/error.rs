@@ -84,6 +84,23 @@ pub enum SolveError {
         /// Part of the step that did converge.
         fraction: f64,
     },
+    /// The indenter and the body would pass through each other: the indenter is too thin for the mesh, or for the step.
+    #[error(
+        "the indenter passes {reach_mm:.2} mm through the surface at {at_mm:.3} mm, beyond {:.1} % of the step: it is {thickness_mm:.2} mm thick there, and the edges of the mesh are \
+         {edge_mm:.2} mm long. Take shorter edges (settings `contact_edge_mm` and `max_nodes`), or shorter steps", fraction * 100.0
+    )]
+    PassedThrough {
+        /// Part of the step that was taken before.
+        fraction: f64,
+        /// A place where they pass through each other, mm.
+        at_mm: glam::DVec3,
+        /// How far, mm.
+        reach_mm: f64,
+        /// Thickness of the indenter there, mm.
+        thickness_mm: f64,
+        /// Longest edge of the body's surface there, mm.
+        edge_mm: f64,
+    },
     /// The indenter would enter something rigid.
     #[error("blocked: the indenter would be at least {depth_mm:.3} mm deep in {by} at {at_mm:.3} mm")]
     Blocked {
@@ -125,7 +142,8 @@ impl SolveError {
         match self {
             Self::NotConverged { fraction, .. }
             | Self::Inverted { fraction }
-            | Self::Singular { fraction } => *fraction,
+            | Self::Singular { fraction }
+            | Self::PassedThrough { fraction, .. } => *fraction,
             _ => 0.0,
         }
     }

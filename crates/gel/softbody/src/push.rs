@@ -172,7 +172,8 @@ impl SoftBody {
 
     /// Force of the indenter at a state, N.
     fn indenter_force_n(&self, state: &State) -> DVec3 {
-        let forces = state.contacts[0].forces_n(&self.boundary);
+        let parts = state.contacts[..state.n_indenter_parts(self)].iter();
+        let forces = parts.flat_map(|contact| contact.forces_n(&self.boundary));
         forces.map(|(_, force_n)| force_n).sum()
     }
 }

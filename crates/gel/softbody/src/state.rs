@@ -16,7 +16,7 @@ pub struct State {
     pub(crate) displacements_mm: Vec<DVec3>,
     pub(crate) pressures_mpa: Vec<f64>,
     pub(crate) history: History,
-    /// The indenter first, then the obstacles.
+    /// Those of the indenter's parts first, then those of the obstacles.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) gel_from_indenter: Option<Pose>,
     /// Last accepted motion, from which the next one is extrapolated.
@@ -46,6 +46,26 @@ impl Motion {
 }
 
 impl State {
+    /// How many of its contacts are those of the indenter.
+    pub(crate) fn n_indenter_parts(&self, body: &SoftBody) -> usize {
+        self.contacts.len() - body.obstacles.len()
+    }
+
+    /// Prepares for an indenter of so many parts. One of another number is another indenter, which nothing touches yet.
+    pub(crate) fn take_parts(&mut self, body: &SoftBody, n_parts: usize) {
+        let n_before = self.n_indenter_parts(body);
+        if n_before == n_parts {
+            return;
+        }
+        let n_nodes = body.boundary.nodes.len();
+        let untouched = || Contact::new(n_nodes, body.settings.friction);
+        let fresh = std::iter::repeat_with(untouched).take(n_parts);
+        self.contacts.splice(..n_before, fresh);
+        for rates in &mut self.sensitivities {
+            rates.take_parts(n_before, n_parts, n_nodes);
+        }
+    }
+
     /// The pose of the indenter; none before the first step.
     #[must_use]
     pub fn gel_from_indenter(&self) -> Option<Pose> {

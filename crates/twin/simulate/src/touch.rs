@@ -102,14 +102,25 @@ pub(crate) fn contact_radius_mm(
 ) -> f64 {
     let (low, high) = indenter.bounds_mm();
     let reach_mm = low.abs().max(high.abs()).length();
+    // A plate may have gone wholly below the surface, so that it is sought at all heights.
+    let goes_below = |place: DVec3| {
+        let mut above_mm = 0.0;
+        while above_mm <= depth_mm {
+            let point = gel_from_indenter_at_touch.inverse_transform_point(place + DVec3::Z * above_mm);
+            let distance_mm = indenter.signed_distance(point).distance_mm;
+            if distance_mm <= 0.0 {
+                return true;
+            }
+            above_mm += distance_mm.max(SAME_HEIGHT_MM.max(1e-3 * depth_mm));
+        }
+        false
+    };
     let mut radius_mm: f64 = 0.0;
     for i in -SAMPLES..=SAMPLES {
         for j in -SAMPLES..=SAMPLES {
             let offset = DVec2::new(f64::from(i), f64::from(j)) * (reach_mm / f64::from(SAMPLES));
-            let point = touched + (offset).extend(depth_mm);
-            let inside = gel_from_indenter_at_touch.inverse_transform_point(point);
-            if indenter.signed_distance(inside).distance_mm <= 0.0 {
-                radius_mm = radius_mm.max(offset.length());
+            if offset.length() > radius_mm && goes_below(touched + offset.extend(0.0)) {
+                radius_mm = offset.length();
             }
         }
     }

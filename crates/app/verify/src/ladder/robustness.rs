@@ -298,6 +298,7 @@ fn kind(error: &SolveError) -> &'static str {
         SolveError::NotConverged { .. } => "not converged",
         SolveError::Inverted { .. } => "inside out",
         SolveError::Singular { .. } => "singular",
+        SolveError::PassedThrough { .. } => "passed through",
         SolveError::Blocked { .. } => "blocked",
         SolveError::ForceNotReached { .. } => "force not reached",
         SolveError::Input { .. } => "refused",

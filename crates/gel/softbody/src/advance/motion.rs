@@ -8,7 +8,7 @@ use twintac_shape::{Pose, SignedDistance};
 use super::drive::Drive;
 use crate::SolveError;
 use crate::body::SoftBody;
-use crate::contact::Contact;
+use crate::contact::{Contact, PassedThrough};
 use crate::frame::Frame;
 use crate::newton::Failure;
 use crate::parallel::on_two_threads;
@@ -127,6 +127,18 @@ impl SoftBody {
                         },
                         Failure::Inverted => SolveError::Inverted { fraction: done },
                         Failure::Singular => SolveError::Singular { fraction: done },
+                        Failure::PassedThrough(PassedThrough {
+                            at_mm,
+                            reach_mm,
+                            thickness_mm,
+                            edge_mm,
+                        }) => SolveError::PassedThrough {
+                            fraction: done,
+                            at_mm,
+                            reach_mm,
+                            thickness_mm,
+                            edge_mm,
+                        },
                     });
                 }
             }

@@ -1,5 +1,7 @@
 //! The frame of a step.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use crate::body::SoftBody;
@@ -22,29 +24,36 @@ impl SoftBody {
             .map_or(DVec3::ZERO, |pose| pose.position_mm);
         let at_mm = |node: usize| self.mesh().nodes_mm[node] + state.displacements_mm[node];
         let mut torque = DVec3::ZERO;
-        let mut forces = vec![DVec3::ZERO; state.contacts.len()];
+        let n_parts = state.n_indenter_parts(self);
+        let [mut indenter_force_n, mut obstacle_reaction_n] = [DVec3::ZERO; 2];
         let gradient_n = std::mem::take(&mut state.workspace.buffers(self).gradient_n);
         for (shape, contact) in state.contacts.iter().enumerate() {
             for (point, force) in contact.forces_n(&self.boundary) {
-                forces[shape] += force;
-                if shape == 0 {
+                if shape >= n_parts {
+                    obstacle_reaction_n += force;
+                } else {
+                    indenter_force_n += force;
                     torque += (self.point_mm(point, &state.displacements_mm) - origin_mm).cross(force);
                 }
             }
         }
         // What is left unbalanced at a node in touch is the contact's own error: the gel's forces are known better.
-        for node in state.contacts[0].pressed_nodes(&self.boundary, self.pattern.halves.free) {
+        let parts = state.contacts[..n_parts].iter();
+        let pressed: BTreeSet<u32> = parts
+            .flat_map(|contact| contact.pressed_nodes(&self.boundary, self.pattern.halves.free))
+            .collect();
+        for node in pressed {
             let missing = gradient_n[node as usize];
-            forces[0] += missing;
+            indenter_force_n += missing;
             torque += (at_mm(node as usize) - origin_mm).cross(missing);
         }
         let held: DVec3 = gradient_n[self.pattern.halves.free..].iter().sum();
         state.workspace.buffers(self).gradient_n = gradient_n;
         Frame {
-            indenter_force_n: forces[0],
+            indenter_force_n,
             indenter_torque_n_mm: torque,
             board_reaction_n: held,
-            obstacle_reaction_n: forces[1..].iter().sum(),
+            obstacle_reaction_n,
             converged: true,
             iterations,
             residual: equilibrium.residual,

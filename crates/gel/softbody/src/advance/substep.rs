@@ -25,9 +25,10 @@ impl SoftBody {
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
         let [from, to] = part.map(|fraction| drive.pose(fraction));
-        let shapes = self.shapes(drive, to);
+        let [before, shapes] = [from, to].map(|pose| self.shapes(drive, pose));
+        state.take_parts(self, shapes.len() - self.obstacles.len());
         let sensitivities_before = state.sensitivities.clone();
-        self.begin(state, &shapes, from);
+        self.begin(state, [&before, &shapes]);
         drive.hold(self, part[1], &mut state.displacements_mm);
         let State {
             displacements_mm,
@@ -58,6 +59,7 @@ impl SoftBody {
         let solved = buffers
             .solve(self, &step, &mut x, iterations)
             .and_then(|equilibrium| {
+                self.check_sides([&before, &shapes], &x, &buffers.old.displacements_mm)?;
                 sensitivity::follow(self, buffers, &step, &mut x, sensitivities)?;
                 Ok(equilibrium)
             });
@@ -90,13 +92,9 @@ impl SoftBody {
         solved
     }
 
-    /// The indenter at a pose, then the obstacles.
+    /// The parts of the indenter at a pose, then the obstacles.
     fn shapes<'a>(&'a self, drive: &'a Drive, gel_from_indenter: Pose) -> Vec<RigidBody<'a>> {
-        let mut shapes = Vec::with_capacity(1 + self.obstacles.len());
-        shapes.push(RigidBody {
-            shape: drive.shape(),
-            gel_from_shape: gel_from_indenter,
-        });
+        let mut shapes = RigidBody::parts(drive.shape(), gel_from_indenter);
         shapes.extend(self.obstacles.iter().map(|(shape, pose)| RigidBody {
             shape: shape.as_ref(),
             gel_from_shape: *pose,
@@ -104,8 +102,9 @@ impl SoftBody {
         shapes
     }
 
-    /// Prepares the contacts for a step in which the indenter comes from a pose, and keeps the unknowns as they were.
-    fn begin(&self, state: &mut State, shapes: &[RigidBody], gel_from_indenter: Pose) {
+    /// Prepares the contacts for a step in which shapes come from where they were, and keeps the unknowns as they were.
+    fn begin(&self, state: &mut State, [before, shapes]: [&[RigidBody]; 2]) {
+        let n_parts = state.n_indenter_parts(self);
         let State {
             displacements_mm,
             pressures_mpa,
@@ -113,7 +112,7 @@ impl SoftBody {
             workspace,
             ..
         } = state;
-        contacts[0].forget_distances();
+        contacts[..n_parts].iter_mut().for_each(Contact::forget_distances);
         let at_mm = |node: u32| self.mesh().nodes_mm[node as usize] + displacements_mm[node as usize];
         for (shape, contact) in shapes.iter().zip(contacts.iter_mut()) {
             contact.look_inside(shape, &self.boundary, &at_mm);
@@ -123,17 +122,9 @@ impl SoftBody {
         old.pressures_mpa.clone_from(pressures_mpa);
         old.contacts.clone_from(contacts);
         contacts.iter_mut().for_each(Contact::update_multipliers);
-        for (index, contact) in contacts.iter_mut().enumerate() {
+        for (shape, contact) in before.iter().zip(contacts.iter_mut()) {
             if let Some(friction) = &mut contact.friction {
-                let gel_from_shape = match index {
-                    0 => gel_from_indenter,
-                    _ => shapes[index].gel_from_shape,
-                };
-                let shape = RigidBody {
-                    gel_from_shape,
-                    ..shapes[index]
-                };
-                friction.begin(&shape, &contact.touches, self.boundary_mm(displacements_mm));
+                friction.begin(shape, &contact.touches, self.boundary_mm(displacements_mm));
             }
         }
     }
@@ -150,6 +141,28 @@ impl SoftBody {
         if !buffers.is_valid(self, x) {
             x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
         }
+    }
+
+    /// Refuses a solution in which the indenter and the body have passed through each other.
+    fn check_sides(
+        &self,
+        [before, now]: [&[RigidBody]; 2],
+        x: &Unknowns,
+        old_mm: &[DVec3],
+    ) -> Result<(), Failure> {
+        let place_mm = |node: u32, displacements_mm: &[DVec3]| {
+            self.mesh.nodes_mm[node as usize] + displacements_mm[node as usize]
+        };
+        let now_mm = |node: u32| place_mm(node, x.displacements_mm);
+        let before_mm = |node: u32| place_mm(node, old_mm);
+        let n_parts = now.len() - self.obstacles.len();
+        for ((before, now), contact) in before.iter().zip(now).zip(x.contacts.iter()).take(n_parts) {
+            let changed = || contact.changed_sides([before, now], &self.boundary, [&before_mm, &now_mm]);
+            if let Some(passed) = contact.pierced(now, &now_mm).or_else(changed) {
+                return Err(Failure::PassedThrough(passed));
+            }
+        }
+        Ok(())
     }
 
     fn settle_friction(&self, shapes: &[RigidBody], x: &mut Unknowns) {

@@ -10,6 +10,7 @@ mod bend;
 mod boundary;
 mod clash;
 mod friction;
+mod pierce;
 mod point;
 mod rigid_body;
 mod state;
@@ -18,6 +19,7 @@ mod triangle;
 
 pub(crate) use boundary::Boundary;
 pub(crate) use clash::clash;
+pub(crate) use pierce::PassedThrough;
 pub(crate) use point::ContactPoint;
 pub(crate) use rigid_body::RigidBody;
 pub(crate) use state::Contact;

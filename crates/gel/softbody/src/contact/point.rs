@@ -45,6 +45,11 @@ impl ContactPoint {
         self.weights[0] == 1.0
     }
 
+    /// The triangle's corners; of a node, itself three times.
+    pub(super) fn corners(&self) -> [u32; 3] {
+        self.nodes
+    }
+
     /// Value of a nodal field.
     #[inline]
     pub(crate) fn value(&self, field: &[DVec3]) -> DVec3 {

@@ -9,7 +9,7 @@ use super::friction::Friction;
 use super::point::ContactPoint;
 use super::rigid_body::RigidBody;
 use super::touch::Touch;
-use super::triangle::SIDES;
+use super::triangle::{BoundaryTriangle, SIDES};
 
 /// How much stiffer a contact is made that an update of its multiplier does not push out.
 const STIFFENING: f64 = 4.0;
@@ -19,6 +19,9 @@ const STUCK: f64 = 0.5;
 
 /// Difference of the normals at two corners, as unit vectors, above which a shape turns sharply.
 const SHARP: f64 = 0.5;
+
+/// The same above which they are those of opposite sides.
+const OPPOSITE: f64 = 1.6;
 
 /// Contact of the boundary with one shape.
 #[derive(Debug)]
@@ -75,8 +78,11 @@ impl Contact {
         &'a self,
         boundary: &'a Boundary,
     ) -> impl Iterator<Item = (&'a ContactPoint, &'a Touch)> {
-        let inside = self.inside.iter().map(|inside| (&inside.point, &inside.touch));
-        boundary.nodes.iter().zip(&self.touches).chain(inside)
+        boundary
+            .nodes
+            .iter()
+            .zip(&self.touches)
+            .chain(self.points_inside())
     }
 
     /// The same, to be changed.
@@ -145,6 +151,11 @@ impl Contact {
         contact
     }
 
+    /// The quadrature points inside triangles, and their contact.
+    pub(super) fn points_inside(&self) -> impl Iterator<Item = (&ContactPoint, &Touch)> {
+        self.inside.iter().map(|inside| (&inside.point, &inside.touch))
+    }
+
     /// Sets all multipliers to zero.
     pub(crate) fn drop_multipliers(&mut self) {
         self.touches
@@ -184,20 +195,35 @@ impl Contact {
             return;
         }
         let mut known = BTreeMap::new();
+        let mut normals_of = |triangle: &BoundaryTriangle| {
+            triangle.nodes.map(|node| {
+                let normal = known.entry(node);
+                *normal.or_insert_with(|| shape.normal(node_mm(node)))
+            })
+        };
+        // Where the shape turns sharply within a triangle, and beside that: gel that slides around a rim takes its neighbours there within the step.
+        let mut is_at_rim = vec![false; boundary.nodes.len()];
         for triangle in &boundary.triangles {
-            if !triangle.free_corners().any(|corner| is_near[corner]) {
-                continue;
+            if triangle.free_corners().any(|corner| is_near[corner]) {
+                let normals = normals_of(triangle);
+                let is_sharp = |[a, b]: [usize; 2]| normals[a].distance(normals[b]) > SHARP;
+                if SIDES.into_iter().any(is_sharp) {
+                    triangle
+                        .free_corners()
+                        .for_each(|corner| is_at_rim[corner] = true);
+                }
             }
-            let at_mm = triangle.nodes.map(node_mm);
-            let normals = [0, 1, 2].map(|corner| {
-                let normal = known.entry(triangle.nodes[corner]);
-                *normal.or_insert_with(|| shape.normal(at_mm[corner]))
-            });
-            let is_sharp = |[a, b]: [usize; 2]| normals[a].distance(normals[b]) > SHARP;
-            if SIDES.into_iter().any(is_sharp) {
+        }
+        for triangle in &boundary.triangles {
+            if triangle.free_corners().any(|corner| is_at_rim[corner]) {
+                let at_mm = triangle.nodes.map(node_mm);
+                let normals = normals_of(triangle);
                 let bends_mm =
                     SIDES.map(|[a, b]| shape.bend_mm([at_mm[a], at_mm[b]], [normals[a], normals[b]]));
-                let points = triangle.points(bends_mm);
+                let is_across_wall = SIDES
+                    .iter()
+                    .any(|[a, b]| normals[*a].distance(normals[*b]) > OPPOSITE);
+                let points = triangle.points(bends_mm, is_across_wall);
                 self.inside.extend(points.map(|point| Inside {
                     point,
                     touch: Touch::OFF,

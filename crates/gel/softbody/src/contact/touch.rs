@@ -51,7 +51,7 @@ impl Touch {
 
     /// Least distance that a point in the shape's frame can have, mm.
     #[inline]
-    fn bound_mm(&self, local_mm: DVec3) -> f64 {
+    pub(super) fn bound_mm(&self, local_mm: DVec3) -> f64 {
         self.measured_mm - local_mm.distance(self.measured_at_mm)
     }
 

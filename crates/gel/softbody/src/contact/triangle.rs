@@ -18,8 +18,12 @@ pub(super) const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 /// Factor of the depth in an arc: an arc only approximates the shape, and points must not be in touch because of that.
 const MARGIN: f64 = 1.25;
 
-/// Stiffness of the points inside as part of that of nodes.
-const SOFTNESS: f64 = 0.5;
+/// Stiffness of the points inside as part of that of nodes. Stiffer ones widen a punch by a part of an edge, and let its force rise in steps, as one row of nodes after the
+/// other slides around its rim; softer ones narrow it.
+const SOFTNESS: f64 = 0.35;
+
+/// How much stiffer they are where the triangle lies across a wall that is thinner than itself: no node presses there.
+const ACROSS_WALL: f64 = 2.0;
 
 /// A triangle of the boundary.
 pub(crate) struct BoundaryTriangle {
@@ -51,8 +55,13 @@ impl BoundaryTriangle {
     }
 
     /// The quadrature points of a triangle along whose sides the shape bends so: [`bend_mm`](super::rigid_body::RigidBody::bend_mm).
-    pub(super) fn points(&self, bends_mm: [f64; 3]) -> impl Iterator<Item = ContactPoint> {
-        let stiffness = self.stiffness / f64::from(CUTS * CUTS);
+    pub(super) fn points(
+        &self,
+        bends_mm: [f64; 3],
+        is_across_wall: bool,
+    ) -> impl Iterator<Item = ContactPoint> {
+        let stiffening = if is_across_wall { ACROSS_WALL } else { 1.0 };
+        let stiffness = stiffening * self.stiffness / f64::from(CUTS * CUTS);
         middles().map(move |weights| {
             // Of an arc of curvature c, which bends by c l² over a length l: c/2 times the sum of w w l² over the sides.
             let sides = SIDES.into_iter().zip(bends_mm);

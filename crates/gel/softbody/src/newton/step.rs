@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::contact::{Contact, RigidBody};
+use crate::contact::{Contact, PassedThrough, RigidBody};
 use crate::element::Response;
 
 /// A step to solve: everything that stays fixed while the displacements are sought.
@@ -39,6 +39,7 @@ pub(crate) enum Failure {
     NotConverged { residual: f64 },
     Inverted,
     Singular,
+    PassedThrough(PassedThrough),
 }
 
 /// How a step ended well.

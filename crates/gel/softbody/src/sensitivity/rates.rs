@@ -1,5 +1,7 @@
 //! The rates of a state, and how they follow a step.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::direction::Direction;
@@ -122,6 +124,13 @@ impl Sensitivity {
         }
     }
 
+    /// Prepares for an indenter of so many parts instead of `n_before`, which nothing touches yet.
+    pub(crate) fn take_parts(&mut self, n_before: usize, n_parts: usize, n_boundary_nodes: usize) {
+        for of_touches in [&mut self.multipliers_mm, &mut self.gaps_mm] {
+            of_touches.splice(..n_before, vec![vec![0.0; n_boundary_nodes]; n_parts]);
+        }
+    }
+
     /// The direction along which these are the rates.
     pub(crate) fn direction(&self) -> &Direction {
         &self.direction
@@ -189,16 +198,18 @@ impl Sensitivity {
             self.direction.rate(Material::volume_modulus_kpa) / body.material().volume_modulus_kpa();
         self.pressures_mpa = moved(&rates_mpa, x.pressures_mpa, stiffening);
         // As in a frame, what is left unbalanced at a node in touch is the contact's own error.
-        let pushes = self.contact_forces_n(body, step, x, 0, &rates_mm);
-        let pressed = x.contacts[0].pressed_nodes(&body.boundary, n_free);
+        let n_parts = x.contacts.len() - body.obstacles.len();
+        let pushes = (0..n_parts).flat_map(|part| self.contact_forces_n(body, step, x, part, &rates_mm));
+        let pushes: DVec3 = pushes.sum();
+        let parts = x.contacts[..n_parts].iter();
+        let pressed: BTreeSet<u32> = parts
+            .flat_map(|contact| contact.pressed_nodes(&body.boundary, n_free))
+            .collect();
         let left: DVec3 = pressed.iter().map(|&node| left_n[node as usize]).sum();
-        self.indenter_force_n = pushes.into_iter().sum::<DVec3>() - left;
+        self.indenter_force_n = pushes - left;
+        let indenter_mm = self.direction.indenter_mm;
         for (shape, (gaps_mm, contact)) in self.gaps_mm.iter_mut().zip(x.contacts.iter()).enumerate() {
-            let shape_mm = if shape == 0 {
-                self.direction.indenter_mm
-            } else {
-                DVec3::ZERO
-            };
+            let shape_mm = if shape < n_parts { indenter_mm } else { DVec3::ZERO };
             for (gap, (point, touch)) in gaps_mm.iter_mut().zip(contact.each(&body.boundary)) {
                 *gap = touch.normal.dot(point.value(&rates_mm) - shape_mm);
             }
@@ -250,7 +261,7 @@ impl Sensitivity {
     ) -> Vec<DVec3> {
         let shear_kpa = |material: &Material| material.model.shear_modulus_kpa();
         let stiffening = self.direction.rate(shear_kpa) / shear_kpa(body.material());
-        let shape_mm = if shape == 0 {
+        let shape_mm = if shape < step.shapes.len() - body.obstacles.len() {
             self.direction.indenter_mm
         } else {
             DVec3::ZERO
