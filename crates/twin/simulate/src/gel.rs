@@ -416,6 +416,7 @@ impl GelMesh {
             let depths = [&[*untouched], deeper].concat();
             history = self.press(place, &depths, show);
         }
+        history.end_where_force_falls();
         DepthTable {
             indenter: place.indenter.clone(),
             gel_from_indenter_at_touch: history.gel_from_indenter_at_touch,

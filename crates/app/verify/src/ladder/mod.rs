@@ -14,6 +14,7 @@ mod random_press;
 mod robustness;
 mod rubbers;
 mod surface_load;
+mod thin;
 
 use std::io::Write as _;
 use std::path::PathBuf;

@@ -10,11 +10,16 @@ use twintac_sensor::Sensor;
 use twintac_shape::{Distance, Shape, SignedDistance};
 use twintac_simulate::PressPlace;
 
+use super::thin;
+
 /// Largest angle between the indenter's axis and the gel's normal, radians.
 const MAX_TILT_RAD: f64 = 0.35;
 
 /// Part of the gel's height that presses reach into.
 const DEPTHS: [f64; 2] = [0.1, 0.7];
+
+/// Part of the gel's height that presses with thin bodies reach into at most.
+const THIN_DEPTH: f64 = 0.35;
 
 /// Force that ends a press, N.
 pub(crate) const ENOUGH_N: f64 = 200.0;
@@ -43,19 +48,46 @@ pub(crate) fn draw(sensor: &Sensor, seed: u64, index: u64) -> Result<RandomPress
             .signed_distance_field(&sensor.surfaces)
             .with_context(|| format!("{shape:?}"))?,
     };
-    let tilt_about = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
-    let tilt = DQuat::from_axis_angle(tilt_about, random.random_range(0.0..MAX_TILT_RAD));
-    let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
+    let rotation = turn(&mut random);
     let place = PressPlace {
         indenter: name,
         shape,
         x_mm: random.random_range(low.x..high.x),
         y_mm: random.random_range(low.y..high.y),
-        rotation: (tilt * spin).normalize(),
+        rotation,
         depth_mm,
         enough_force_n: Some(ENOUGH_N),
     };
     Ok(RandomPress { place, indenter })
+}
+
+/// The press of an index with a body that is thin, hollow, sharp or made of several.
+pub(crate) fn draw_thin(sensor: &Sensor, seed: u64, index: u64) -> Result<RandomPress> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(index);
+    let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
+    let (name, shape) = thin::invent(&mut random);
+    let indenter = shape
+        .signed_distance_field(&sensor.surfaces)
+        .with_context(|| format!("{shape:?}"))?;
+    let place = PressPlace {
+        indenter: name.to_owned(),
+        shape,
+        x_mm: random.random_range(0.7 * low.x..0.7 * high.x),
+        y_mm: random.random_range(0.7 * low.y..0.7 * high.y),
+        rotation: turn(&mut random),
+        depth_mm: high.z * random.random_range(DEPTHS[0]..THIN_DEPTH),
+        enough_force_n: Some(ENOUGH_N),
+    };
+    Ok(RandomPress { place, indenter })
+}
+
+/// A random tilt and spin.
+fn turn(random: &mut ChaCha8Rng) -> DQuat {
+    let tilt_about = DVec2::from_angle(random.random_range(0.0..TAU)).extend(0.0);
+    let tilt = DQuat::from_axis_angle(tilt_about, random.random_range(0.0..MAX_TILT_RAD));
+    let spin = DQuat::from_rotation_z(random.random_range(0.0..TAU));
+    (tilt * spin).normalize()
 }
 
 /// A sphere, cylinder, box or cone of random size and rounding. The shape that stands for a cone where meshes are made is a sphere.

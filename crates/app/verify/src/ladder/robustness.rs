@@ -13,7 +13,7 @@ use twintac_shape::{Pose, SignedDistance};
 use twintac_simulate::{Gel, SimulateSettings};
 use twintac_softbody::{Frame, SoftBody, SolveError, State};
 
-use super::random_press::{ENOUGH_N, draw};
+use super::random_press::{ENOUGH_N, RandomPress, draw, draw_thin};
 use crate::rung::{Effort, Figure, Outcome, Plot, plots};
 
 const SEED: u64 = 10;
@@ -23,6 +23,24 @@ const STEP_MM: f64 = 0.4;
 
 /// Part of the indenter's force that may be missing in the balance of a frame: what the solver's tolerance leaves, many times over.
 const UNBALANCED: f64 = 0.01;
+
+/// Part of the largest force so far by which force may fall as the depth rises: gel slides off an edge, or around a rim.
+const MAY_FALL: f64 = 0.1;
+
+/// A force below which presses are not compared, N.
+const LEAST_N: f64 = 0.1;
+
+/// Presses of one kind, on one kind of mesh.
+struct Set {
+    name: &'static str,
+    settings: SimulateSettings,
+    draw: fn(&Sensor, u64, u64) -> Result<RandomPress>,
+    n_presses: u64,
+    /// How many of them are solved on a finer mesh as well.
+    n_compared: u64,
+    /// Part that has to arrive, or to meet something rigid, %.
+    least_well_percent: f64,
+}
 
 /// How a press ended.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,6 +69,8 @@ struct Pressed {
     wanted_mm: f64,
     depth_mm: f64,
     force_n: f64,
+    /// Along the press, N, a force for each frame.
+    forces_n: Vec<f64>,
     /// Newton iterations of each frame.
     iterations: Vec<u32>,
     smallest_volume_ratio: f64,
@@ -75,9 +95,44 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         max_nodes: 7300,
         ..SimulateSettings::fine()
     };
+    let finest = SimulateSettings {
+        edges_per_contact_radius: 12.0,
+        max_nodes: 30_000,
+        ..SimulateSettings::fine()
+    };
     let sets = [
-        ("a coarse mesh", coarse, effort.choose(300, 10_000)),
-        ("the paper's mesh", fine, effort.choose(4, 200)),
+        Set {
+            name: "a coarse mesh",
+            settings: coarse.clone(),
+            draw,
+            n_presses: effort.choose(300, 10_000),
+            n_compared: 0,
+            least_well_percent: 99.5,
+        },
+        Set {
+            name: "the paper's mesh",
+            settings: fine.clone(),
+            draw,
+            n_presses: effort.choose(4, 200),
+            n_compared: 0,
+            least_well_percent: 99.5,
+        },
+        Set {
+            name: "thin bodies, a coarse mesh",
+            settings: coarse,
+            draw: draw_thin,
+            n_presses: effort.choose(60, 3000),
+            n_compared: 0,
+            least_well_percent: 40.0,
+        },
+        Set {
+            name: "thin bodies, the paper's mesh",
+            settings: fine,
+            draw: draw_thin,
+            n_presses: effort.choose(8, 200),
+            n_compared: effort.choose(0, 40),
+            least_well_percent: 40.0,
+        },
     ];
     let mut figures = Vec::new();
     let mut histograms = Histograms::default();
@@ -85,18 +140,25 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
         "Every other press is on the sensor in its shell, the others on its gel alone. Half of the presses take an indenter of the sensor, half an invented sphere, cylinder, box or cone with rounded edges; each \
          stands anywhere above the gel, tilted by up to 20°, and goes on from first touch in frames of at most {STEP_MM} mm to a depth \
          of 10 to 70 % of the gel's thickness, to {ENOUGH_N} N, or to where it meets the shell or the board. A frame counts as wrong, whatever the solver says, if a number is not \
-         finite, a tetrahedron is inside out, a node is too deep inside a shape, or the forces do not balance within {} %; so does an \
-         error after which the state is not the one before. Seed {SEED}.\n",
-        100.0 * UNBALANCED
+         finite, a tetrahedron is inside out, a node is too deep inside a shape, or the forces do not balance within {} %; so does an error after which the state is not the one before. A press ends where its force falls by more than {} % as the depth \
+         rises, as a table does. Thin bodies are plates, rings, blades and pins of 0.2 to 3 mm, wedges, cups, brackets and crosses of several bodies, pressed to a third \
+         of the thickness at most; those that are too thin for the mesh have to end in an error that says so. Seed {SEED}.\n",
+        100.0 * UNBALANCED,
+        100.0 * MAY_FALL
     );
-    for (color, (set, settings, n_presses)) in sets.into_iter().enumerate() {
-        let gels = sensors
-            .each_ref()
-            .map(|sensor| Gel::new(sensor.clone(), settings.clone()));
-        let all = press_all(set, &gels, n_presses)?;
+    for (color, set) in sets.iter().enumerate() {
+        let gels_of = |settings: &SimulateSettings| {
+            let gel = |sensor: &Arc<Sensor>| Gel::new(Arc::clone(sensor), settings.clone());
+            sensors.each_ref().map(gel)
+        };
+        let all = press_all(set, &gels_of(&set.settings), set.n_presses)?;
         figures.extend(figures_of(set, &all));
-        done.push_str(&failures(set, &all));
-        histograms.add(set, color, &all);
+        if set.n_compared > 0 {
+            let compared = press_all(set, &gels_of(&finest), set.n_compared)?;
+            figures.extend(differences(set, &all, &compared));
+        }
+        done.push_str(&failures(set.name, &all));
+        histograms.add(set.name, color, &all);
     }
     Ok(Outcome {
         done,
@@ -106,12 +168,14 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
 }
 
 /// How many presses of a set ended how.
-fn figures_of(set: &str, all: &[Pressed]) -> Vec<Figure> {
+fn figures_of(set: &Set, all: &[Pressed]) -> Vec<Figure> {
+    let least_percent = set.least_well_percent;
+    let set = set.name;
     let count = |is_it: &dyn Fn(&End) -> bool| all.iter().filter(|press| is_it(&press.end)).count() as f64;
     let percent = 100.0 / all.len() as f64;
     let n_nodes = all.iter().map(|press| press.n_nodes).sum::<usize>() / all.len();
     let mut figures = vec![Figure::at_least(
-        99.5,
+        least_percent,
         format!(
             "{set}: {} presses, {n_nodes} nodes: converged or stopped",
             all.len()
@@ -138,6 +202,30 @@ fn figures_of(set: &str, all: &[Pressed]) -> Vec<Figure> {
     let wrong = count(&|end| matches!(end, End::Wrong(_)));
     figures.push(Figure::at_most(0.0, format!("{set}: wrong answers"), wrong, ""));
     figures
+}
+
+/// How far forces are from those on a finer mesh, at the last depth that both reach.
+fn differences(set: &Set, all: &[Pressed], finer: &[Pressed]) -> Vec<Figure> {
+    let difference = |(coarse, fine): (&Pressed, &Pressed)| {
+        let frame = coarse.forces_n.len().min(fine.forces_n.len()).checked_sub(1)?;
+        let [coarse_n, fine_n] = [coarse.forces_n[frame], fine.forces_n[frame]];
+        (fine_n > LEAST_N).then_some(100.0 * (coarse_n / fine_n - 1.0).abs())
+    };
+    let mut percent: Vec<f64> = all.iter().zip(finer).filter_map(difference).collect();
+    percent.sort_by(f64::total_cmp);
+    let at = |part: f64| percent.get((part * percent.len() as f64) as usize).copied();
+    let figure = |limit, what: &str, value: Option<f64>| {
+        let name = format!(
+            "{}: force beside that of a finer mesh, {what} of {}",
+            set.name,
+            percent.len()
+        );
+        Figure::at_most(limit, name, value.unwrap_or(f64::NAN), "%")
+    };
+    vec![
+        figure(6.0, "the median", at(0.5)),
+        figure(25.0, "nine of ten", at(0.9)),
+    ]
 }
 
 /// Histograms, a line for each set of presses.
@@ -192,15 +280,17 @@ impl Histograms {
     }
 }
 
-fn press_all(set: &str, gels: &[Gel; 2], n_presses: u64) -> Result<Vec<Pressed>> {
+fn press_all(set: &Set, gels: &[Gel; 2], n_presses: u64) -> Result<Vec<Pressed>> {
     let style = ProgressStyle::with_template("{prefix:>16} [{bar:30}] {pos}/{len} {elapsed}, {eta} left")?;
     let bar = ProgressBar::new(n_presses)
         .with_style(style)
-        .with_prefix(set.to_owned());
+        .with_prefix(set.name);
     let all = (0..n_presses)
         .into_par_iter()
         .map(|index| {
-            let pressed = press(&gels[index as usize % 2], index)
+            let gel = &gels[index as usize % 2];
+            let pressed = (set.draw)(gel.sensor(), SEED, index)
+                .and_then(|drawn| press(gel, &drawn, index))
                 .with_context(|| format!("press {index} of seed {SEED}"));
             bar.inc(1);
             pressed
@@ -210,8 +300,7 @@ fn press_all(set: &str, gels: &[Gel; 2], n_presses: u64) -> Result<Vec<Pressed>>
     all
 }
 
-fn press(gel: &Gel, index: u64) -> Result<Pressed> {
-    let press = draw(gel.sensor(), SEED, index)?;
+fn press(gel: &Gel, press: &RandomPress, index: u64) -> Result<Pressed> {
     let (place, indenter) = (&press.place, press.indenter.as_ref());
     let mesh = gel.mesh(place)?;
     let body = mesh.body();
@@ -227,6 +316,7 @@ fn press(gel: &Gel, index: u64) -> Result<Pressed> {
         wanted_mm: place.depth_mm,
         depth_mm: 0.0,
         force_n: 0.0,
+        forces_n: Vec::new(),
         iterations: Vec::new(),
         smallest_volume_ratio: 1.0,
         n_nodes: body.mesh().nodes_mm.len(),
@@ -253,7 +343,13 @@ fn press(gel: &Gel, index: u64) -> Result<Pressed> {
                         return Ok(pressed);
                     }
                 }
+                let most_n = pressed.forces_n.iter().copied().fold(0.0, f64::max);
                 (pressed.depth_mm, pressed.force_n) = (depth_mm, -frame.indenter_force_n.z);
+                pressed.forces_n.push(pressed.force_n);
+                if pressed.force_n < (1.0 - MAY_FALL) * most_n {
+                    pressed.end = End::Failed("the force fell as the depth rose");
+                    return Ok(pressed);
+                }
                 if pressed.force_n >= ENOUGH_N {
                     return Ok(pressed);
                 }

@@ -9,14 +9,11 @@ use super::boundary::Boundary;
 use super::rigid_body::RigidBody;
 use super::state::Contact;
 
-/// How far a shape may reach through a triangle, as part of that triangle's longest edge: a rim that the mesh does not resolve reaches half of it.
-const MOST_OF_EDGE: f64 = 1.0;
+/// A shape is a wall where it is thinner than this part of the longest edge of the triangle that it goes through.
+const WALL: f64 = 0.5;
 
-/// The same as part of the shape's thickness there.
+/// How far a wall may reach through a triangle, as part of its thickness.
 const MOST_OF_THICKNESS: f64 = 0.6;
-
-/// Reaches below this part of an edge are those of rims.
-const LEAST_OF_EDGE: f64 = 0.1;
 
 /// Cosine of the angle between the outward normals at both ends of a way below which these are on opposite sides of a shape.
 const OPPOSITE: f64 = -0.5;
@@ -40,28 +37,26 @@ pub(crate) struct PassedThrough {
 }
 
 impl Contact {
-    /// A triangle through which the shape reaches, if there is one.
+    /// A triangle through which a wall of the shape goes, if there is one.
     pub(crate) fn pierced(&self, shape: &RigidBody, node_mm: &dyn Fn(u32) -> DVec3) -> Option<PassedThrough> {
-        self.points_inside().find_map(|(point, touch)| {
+        self.points_inside().find_map(|(point, edge_mm, touch)| {
             if touch.force_n <= 0.0 || touch.measured_mm > -ON_SURFACE_MM {
                 return None;
             }
             let [a, b, c] = point.corners().map(node_mm);
-            let edge_mm = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            let at_mm = point.parts().map(|(node, part)| node_mm(node) * part).sum();
             let inwards = (c - a).cross(b - a).normalize_or_zero();
-            let reach_mm = shape.way_out_mm(at_mm, inwards);
-            if reach_mm < LEAST_OF_EDGE * edge_mm {
+            let at_mm = point.parts().map(|(node, part)| node_mm(node) * part).sum();
+            let aside = shape.normal(at_mm).reject_from(inwards).try_normalize()?;
+            let across_mm = [aside, -aside].map(|aside| shape.way_out_mm(at_mm, aside));
+            let thickness_mm = across_mm[0] + across_mm[1];
+            let sides =
+                [at_mm + aside * across_mm[0], at_mm - aside * across_mm[1]].map(|side| shape.normal(side));
+            // Of what is thicker, nodes feel the one side and the other; at a corner there is no other side.
+            if thickness_mm > WALL * edge_mm || sides[0].dot(sides[1]) > OPPOSITE {
                 return None;
             }
-            // Across the wall that goes through the triangle.
-            let aside = shape.normal(at_mm).reject_from(inwards).normalize_or_zero();
-            let thickness_mm: f64 = [aside, -aside]
-                .map(|aside| shape.way_out_mm(at_mm, aside))
-                .iter()
-                .sum();
-            let is_wall = aside != DVec3::ZERO && reach_mm > MOST_OF_THICKNESS * thickness_mm;
-            (is_wall || reach_mm > MOST_OF_EDGE * edge_mm).then_some(PassedThrough {
+            let reach_mm = shape.way_out_mm(at_mm, inwards);
+            (reach_mm > MOST_OF_THICKNESS * thickness_mm).then_some(PassedThrough {
                 at_mm,
                 reach_mm,
                 thickness_mm,

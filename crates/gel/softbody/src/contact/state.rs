@@ -40,6 +40,8 @@ pub(crate) struct Contact {
 #[derive(Clone, Debug)]
 struct Inside {
     point: ContactPoint,
+    /// Longest edge of its triangle at rest, mm.
+    edge_mm: f64,
     touch: Touch,
 }
 
@@ -78,11 +80,8 @@ impl Contact {
         &'a self,
         boundary: &'a Boundary,
     ) -> impl Iterator<Item = (&'a ContactPoint, &'a Touch)> {
-        boundary
-            .nodes
-            .iter()
-            .zip(&self.touches)
-            .chain(self.points_inside())
+        let inside = self.inside.iter().map(|inside| (&inside.point, &inside.touch));
+        boundary.nodes.iter().zip(&self.touches).chain(inside)
     }
 
     /// The same, to be changed.
@@ -145,15 +144,16 @@ impl Contact {
     /// the rounding: a stiffness below zero that has nothing to do with the gel. Newton's tangent leaves it out for the same reason ([`RigidBody::stiffness`]).
     pub(crate) fn with_planes_inside(&self) -> Self {
         let mut contact = self.clone();
-        for Inside { point, touch } in &mut contact.inside {
+        for Inside { point, touch, .. } in &mut contact.inside {
             point.sees_a_plane = touch.force_n > 0.0;
         }
         contact
     }
 
-    /// The quadrature points inside triangles, and their contact.
-    pub(super) fn points_inside(&self) -> impl Iterator<Item = (&ContactPoint, &Touch)> {
-        self.inside.iter().map(|inside| (&inside.point, &inside.touch))
+    /// The quadrature points inside triangles, the longest edge of each one's triangle at rest, mm, and their contact.
+    pub(super) fn points_inside(&self) -> impl Iterator<Item = (&ContactPoint, f64, &Touch)> {
+        let inside = self.inside.iter();
+        inside.map(|inside| (&inside.point, inside.edge_mm, &inside.touch))
     }
 
     /// Sets all multipliers to zero.
@@ -226,6 +226,7 @@ impl Contact {
                 let points = triangle.points(bends_mm, is_across_wall);
                 self.inside.extend(points.map(|point| Inside {
                     point,
+                    edge_mm: triangle.longest_mm,
                     touch: Touch::OFF,
                 }));
             }
