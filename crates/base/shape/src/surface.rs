@@ -35,6 +35,8 @@ pub struct TriangleSurface {
     vertex_normals: Vec<DVec3>,
     /// The triangles of each body, those of its cavities among them.
     bodies: Vec<Bvh>,
+    /// Whether each triangle is one of a cavity's.
+    pub(crate) is_cavity: Vec<bool>,
     bounds_mm: (DVec3, DVec3),
     volume_mm3: f64,
 }
@@ -146,7 +148,12 @@ impl TriangleSurface {
             .into_iter()
             .map(|triangles| Bvh::new(&boxes, triangles));
         let bodies = bodies.collect();
+        let of_component = manifold.component.iter();
+        let is_cavity = of_component
+            .map(|&component| roles[component].is_cavity)
+            .collect();
         Ok(Self {
+            is_cavity,
             bounds_mm: bounds(&vertices_mm).expect("four triangles at least"),
             bodies,
             volume_mm3,
@@ -195,6 +202,7 @@ impl TriangleSurface {
             edge_normals,
             vertex_normals,
             bodies: Vec::new(),
+            is_cavity: Vec::new(),
             bounds_mm: (DVec3::ZERO, DVec3::ZERO),
             volume_mm3: 0.0,
         }
@@ -251,7 +259,7 @@ impl TriangleSurface {
         highest
     }
 
-    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|vertex| self.vertices_mm[vertex as usize])
     }
 

@@ -2,7 +2,13 @@
 
 mod field;
 mod formulas;
+mod open;
 mod samples;
+mod thickness;
+mod upward;
+
+use std::borrow::Cow;
+use std::sync::Arc;
 
 use glam::Vec3;
 use twintac_shape::{Shape, ShapeError, Surfaces};
@@ -10,6 +16,7 @@ use twintac_shape::{Shape, ShapeError, Surfaces};
 pub(crate) use field::{Field, REACH_MM};
 use formulas::{Ball, RoundedBox, RoundedCylinder};
 use samples::Samples;
+pub(crate) use upward::Upward;
 
 /// A rigid shape whose distance is known at once: balls, boxes and cylinders by formulas, any other shape by samples on a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +40,8 @@ impl Body {
     /// # Errors
     /// A shape that can't be.
     pub fn new(shape: &Shape, surfaces: &Surfaces) -> Result<Self, ShapeError> {
-        let exact = shape.signed_distance_field(surfaces)?;
+        let surfaces = filled(shape, surfaces);
+        let exact = shape.signed_distance_field(&surfaces)?;
         let (low, high) = exact.bounds_mm();
         let form = match *shape {
             Shape::Sphere { radius_mm } => Form::Ball(Ball::new(radius_mm)),
@@ -54,6 +62,24 @@ impl Body {
         })
     }
 
+    /// Half of how thick it is where it is thinnest, mm.
+    pub(crate) fn half_thickness_mm(&self) -> f32 {
+        let [low, high] = self.bounds_mm;
+        match &self.form {
+            Form::Sampled(samples) => samples.half_thickness_mm(),
+            Form::Ball(_) | Form::Box(_) | Form::Cylinder(_) => 0.5 * (high - low).min_element(),
+        }
+    }
+
+    /// Whether something that is so deep in it, mm, may be nearer to its top than to what is below.
+    pub(crate) fn is_thin(&self, depth_mm: f32, upward: Upward) -> bool {
+        let is_thin = depth_mm > self.half_thickness_mm();
+        match &self.form {
+            Form::Sampled(samples) => is_thin && samples.is_thin(depth_mm, upward),
+            Form::Ball(_) | Form::Box(_) | Form::Cylinder(_) => is_thin,
+        }
+    }
+
     /// Bytes that the body occupies.
     #[must_use]
     pub fn n_bytes(&self) -> usize {
@@ -63,4 +89,19 @@ impl Body {
         };
         size_of::<Self>() + samples
     }
+}
+
+/// Surfaces without the cavities of those that a shape is made of: no gel can be in there.
+fn filled<'a>(shape: &Shape, surfaces: &'a Surfaces) -> Cow<'a, Surfaces> {
+    let mut filled = Cow::Borrowed(surfaces);
+    for (_, file) in shape.surface_files() {
+        let name = file.name();
+        let surface = surfaces.get(&*name).filter(|surface| surface.has_cavities());
+        if let Some(surface) = surface {
+            filled
+                .to_mut()
+                .insert(name.to_string(), Arc::new(surface.filled()));
+        }
+    }
+    filled
 }
