@@ -168,6 +168,30 @@ fn what_is_thin_presses_as_what_is_thick() {
 }
 
 #[test]
+fn a_coin_that_is_pushed_rests_on_the_gel() {
+    let mut reader = FastGel::phystac().unwrap().reader();
+    let mut rests_mm = |height_mm: f64, push_n: f32| {
+        let coin = body(&coin(height_mm));
+        let mut depth_mm = 0.0;
+        for _ in 0..400 {
+            let more_n = push_n - force_n(&mut reader, &coin, at([1.0, 0.5], depth_mm, 0.02));
+            depth_mm += 0.1 * f64::from(more_n).min(1.0);
+        }
+        depth_mm
+    };
+    for push_n in [0.5, 1.0, 2.0, 3.0] {
+        let thick_mm = rests_mm(10.0, push_n);
+        for height_mm in [0.3, 1.0] {
+            let thin_mm = rests_mm(height_mm, push_n);
+            assert!(
+                (thin_mm - thick_mm).abs() < 0.02,
+                "{height_mm} mm, {push_n} N: {thin_mm}, {thick_mm}"
+            );
+        }
+    }
+}
+
+#[test]
 fn closed_cavities_are_filled() {
     let mut reader = FastGel::phystac().unwrap().reader();
     for wall_mm in [0.1, 0.3, 1.0, 2.0] {
