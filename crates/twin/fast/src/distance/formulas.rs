@@ -69,7 +69,7 @@ impl Field for Ball {
 impl RoundedBox {
     /// The distance by how far a point is beyond the smaller box along each axis, mm.
     #[inline(always)]
-    pub(super) fn from_sides_mm(&self, beyond: Vec3A) -> f32 {
+    pub(super) fn over_sides_mm(&self, beyond: Vec3A) -> f32 {
         let outside = beyond.max(Vec3A::ZERO).length();
         outside + beyond.max_element().min(0.0) - self.edge_radius_mm
     }
@@ -78,7 +78,7 @@ impl RoundedBox {
 impl RoundedCylinder {
     /// The distance by how far a point is beyond the smaller cylinder's side and ends, mm.
     #[inline(always)]
-    pub(super) fn from_sides_mm(&self, aside: f32, above: f32) -> f32 {
+    pub(super) fn over_sides_mm(&self, aside: f32, above: f32) -> f32 {
         let [out_aside, out_above] = [aside.max(0.0), above.max(0.0)];
         let outside = (out_aside * out_aside + out_above * out_above).sqrt();
         outside + aside.max(above).min(0.0) - self.edge_radius_mm
@@ -88,7 +88,7 @@ impl RoundedCylinder {
 impl Field for RoundedBox {
     #[inline(always)]
     fn distance_mm(&self, point: Vec3A) -> f32 {
-        self.from_sides_mm((point - self.middle_mm).abs() - self.half_mm)
+        self.over_sides_mm((point - self.middle_mm).abs() - self.half_mm)
     }
 }
 
@@ -97,7 +97,7 @@ impl Field for RoundedCylinder {
     fn distance_mm(&self, point: Vec3A) -> f32 {
         let aside = (point.x * point.x + point.y * point.y).sqrt() - self.radius_mm;
         let above = (point.z - self.middle_mm).abs() - self.half_height_mm;
-        self.from_sides_mm(aside, above)
+        self.over_sides_mm(aside, above)
     }
 }
 

@@ -119,7 +119,7 @@ impl Field for OpenBox<'_> {
         let over_top = (from_middle - self.out * half_mm).dot(self.out);
         let [cosine, sine] = self.lean;
         let beside = (from_middle * self.down - half_mm) * cosine + over_top * sine;
-        self.solid.from_sides_mm(beyond.max(beside))
+        self.solid.over_sides_mm(beyond.max(beside))
     }
 }
 
@@ -133,7 +133,7 @@ impl Field for OpenCylinder<'_> {
         // Beside a top that leans, the side is upright.
         let over_top = (from_middle * self.out - self.solid.half_height_mm).max(0.0);
         let aside = beside.length().max((beside - self.lean * over_top).length());
-        self.solid.from_sides_mm(aside - self.solid.radius_mm, above)
+        self.solid.over_sides_mm(aside - self.solid.radius_mm, above)
     }
 }
 
