@@ -8,6 +8,7 @@ mod block;
 mod bvh;
 mod dome;
 mod extent;
+mod filled;
 mod manifold;
 mod nesting;
 mod overlap;

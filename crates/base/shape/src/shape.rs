@@ -432,6 +432,10 @@ struct BodyOf {
 
 impl Lowered {
     fn new(surface: &Arc<TriangleSurface>) -> Self {
+        let surface = match surface.has_cavities() {
+            true => &Arc::new(surface.filled()),
+            false => surface,
+        };
         let several = (0..surface.n_bodies()).filter(|_| surface.n_bodies() > 1);
         let bodies = several.map(|body| BodyOf {
             surface: Arc::clone(surface),
@@ -451,7 +455,7 @@ impl Lowered {
 impl SignedDistance for Lowered {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
         self.surface
-            .distance_from_outside(point_mm + DVec3::Z * self.lowest_mm())
+            .signed_distance(point_mm + DVec3::Z * self.lowest_mm())
     }
 
     fn bounds_mm(&self) -> (DVec3, DVec3) {
@@ -470,7 +474,7 @@ impl SignedDistance for Lowered {
 
 impl SignedDistance for BodyOf {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
-        self.surface.distance_from_outside_to(self.body, point_mm)
+        self.surface.distance_to_body(self.body, point_mm)
     }
 
     fn bounds_mm(&self) -> (DVec3, DVec3) {

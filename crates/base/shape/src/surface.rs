@@ -35,8 +35,8 @@ pub struct TriangleSurface {
     vertex_normals: Vec<DVec3>,
     /// The triangles of each body, those of its cavities among them.
     bodies: Vec<Bvh>,
-    /// The same without cavities; `None` where there are none.
-    outsides: Option<Vec<Bvh>>,
+    /// Whether each triangle is one of a cavity's.
+    pub(crate) is_cavity: Vec<bool>,
     bounds_mm: (DVec3, DVec3),
     volume_mm3: f64,
 }
@@ -144,20 +144,18 @@ impl TriangleSurface {
             .map(|&component| roles[component].body)
             .collect();
         let n_bodies = 1 + body_of.iter().copied().max().expect("four triangles at least");
-        let bodies = members(&body_of, n_bodies);
-        let is_outside = |triangle: &usize| !roles[manifold.component[*triangle]].is_cavity;
-        let outsides = roles.iter().any(|role| role.is_cavity).then(|| {
-            let of_body = |body: &Vec<usize>| body.iter().copied().filter(is_outside).collect();
-            bodies
-                .iter()
-                .map(|body| Bvh::new(&boxes, of_body(body)))
-                .collect()
-        });
-        let bodies = bodies.into_iter().map(|body| Bvh::new(&boxes, body)).collect();
+        let bodies = members(&body_of, n_bodies)
+            .into_iter()
+            .map(|triangles| Bvh::new(&boxes, triangles));
+        let bodies = bodies.collect();
+        let of_component = manifold.component.iter();
+        let is_cavity = of_component
+            .map(|&component| roles[component].is_cavity)
+            .collect();
         Ok(Self {
+            is_cavity,
             bounds_mm: bounds(&vertices_mm).expect("four triangles at least"),
             bodies,
-            outsides,
             volume_mm3,
             ..Self::with_normals(vertices_mm, manifold)
         })
@@ -204,7 +202,7 @@ impl TriangleSurface {
             edge_normals,
             vertex_normals,
             bodies: Vec::new(),
-            outsides: None,
+            is_cavity: Vec::new(),
             bounds_mm: (DVec3::ZERO, DVec3::ZERO),
             volume_mm3: 0.0,
         }
@@ -261,7 +259,7 @@ impl TriangleSurface {
         highest
     }
 
-    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+    pub(crate) fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|vertex| self.vertices_mm[vertex as usize])
     }
 
@@ -273,14 +271,9 @@ impl TriangleSurface {
         }
     }
 
-    /// Signed distance of a point, as that of what presses: its cavities count as filled, as nothing can get into them.
-    pub(crate) fn distance_from_outside(&self, point_mm: DVec3) -> Distance {
-        self.distance_to_any(self.outsides.as_ref().unwrap_or(&self.bodies), point_mm)
-    }
-
-    /// The same, to one of the bodies.
-    pub(crate) fn distance_from_outside_to(&self, body: usize, point_mm: DVec3) -> Distance {
-        self.distance_to(&self.outsides.as_ref().unwrap_or(&self.bodies)[body], point_mm)
+    /// Signed distance to one of the bodies.
+    pub(crate) fn distance_to_body(&self, body: usize, point_mm: DVec3) -> Distance {
+        self.distance_to(&self.bodies[body], point_mm)
     }
 
     /// Number of bodies.
@@ -291,20 +284,6 @@ impl TriangleSurface {
     /// Box around one of the bodies, as (minimum, maximum) corners, mm.
     pub(crate) fn bounds_of_body_mm(&self, body: usize) -> (DVec3, DVec3) {
         self.bodies[body].bounds_mm()
-    }
-
-    fn distance_to_any(&self, bodies: &[Bvh], point_mm: DVec3) -> Distance {
-        let mut nearest = self.distance_to(&bodies[0], point_mm);
-        for body in &bodies[1..] {
-            let away_mm = body.box_distance_mm(point_mm);
-            if away_mm == 0.0 || away_mm < nearest.distance_mm {
-                let found = self.distance_to(body, point_mm);
-                if found.distance_mm < nearest.distance_mm {
-                    nearest = found;
-                }
-            }
-        }
-        nearest
     }
 
     /// Distance to the surface of one body.
@@ -346,7 +325,17 @@ impl TriangleSurface {
 
 impl SignedDistance for TriangleSurface {
     fn signed_distance(&self, point_mm: DVec3) -> Distance {
-        self.distance_to_any(&self.bodies, point_mm)
+        let mut nearest = self.distance_to(&self.bodies[0], point_mm);
+        for body in &self.bodies[1..] {
+            let away_mm = body.box_distance_mm(point_mm);
+            if away_mm == 0.0 || away_mm < nearest.distance_mm {
+                let found = self.distance_to(body, point_mm);
+                if found.distance_mm < nearest.distance_mm {
+                    nearest = found;
+                }
+            }
+        }
+        nearest
     }
 
     fn bounds_mm(&self) -> (DVec3, DVec3) {

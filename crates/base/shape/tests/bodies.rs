@@ -103,6 +103,18 @@ fn a_body_within_another_is_a_cavity_if_it_faces_against_it() {
 }
 
 #[test]
+fn cavities_can_be_filled() {
+    let (outer, inner) = (cube(5.0, [0.0; 3]), cube(4.0, [0.0; 3]));
+    let hollow = surface(&[outer.clone(), turned(&inner), cube(1.0, [0.0; 3])]);
+    let solid = hollow.filled();
+    assert!(hollow.has_cavities() && !solid.has_cavities());
+    assert!((distance_mm(&hollow, 4.8, 0.0, 0.0) + 0.2).abs() < 1e-12);
+    assert!((distance_mm(&solid, 3.0, 0.0, 0.0) + 2.0).abs() < 1e-12);
+    let same = surface(&[outer]).filled();
+    assert!((same.volume_mm3() - 1000.0).abs() < 1e-9);
+}
+
+#[test]
 fn bodies_that_overlap_are_united() {
     // Askew, and with faces in the same planes.
     for (size, other) in [

@@ -6,7 +6,8 @@ use glam::{Mat3, Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 use twintac_shape::Pose;
 
-use crate::distance::{Body, Field, Form, REACH_MM};
+use crate::columns::{AROUND, Columns, Standing};
+use crate::distance::{Body, Field, Form, REACH_MM, Upward};
 use crate::simd::dispatch;
 use crate::surface::SurfaceGrid;
 
@@ -121,10 +122,13 @@ impl ContactGrid {
         let rotation = rotation.as_quat();
         let body_from_gel = Mat3::from_quat(rotation.inverse());
         let origin = position_mm.as_vec3();
-        let [low, high] = self.box_in_gel(body, &Mat3::from_quat(rotation), origin);
+        let [low, high] = box_in_gel(body, &Mat3::from_quat(rotation), origin);
         if low.z > self.highest_mm {
             return;
         }
+        let upward = Upward::new(body_from_gel.z_axis.into());
+        // What is less deep than half of its thickness has its top nowhere near a point.
+        let is_open = body.is_thin(self.highest_mm - low.z - REACH_MM, upward);
         let [n_x, n_y] = self.n;
         let range = |axis: usize| {
             let cells = |mm: f32| (mm - self.first_mm[axis]) / self.spacing_mm;
@@ -140,12 +144,56 @@ impl ContactGrid {
             columns,
             rows,
         };
-        match &body.form {
-            Form::Ball(ball) => self.add_placed(&placed, inputs, ball),
-            Form::Box(rounded) => self.add_placed(&placed, inputs, rounded),
-            Form::Cylinder(rounded) => self.add_placed(&placed, inputs, rounded),
-            Form::Sampled(samples) => self.add_placed(&placed, inputs, samples),
+        match (&body.form, is_open) {
+            (Form::Ball(ball), false) => self.add_placed(&placed, inputs, ball),
+            (Form::Box(rounded), false) => self.add_placed(&placed, inputs, rounded),
+            (Form::Cylinder(rounded), false) => self.add_placed(&placed, inputs, rounded),
+            (Form::Ball(ball), true) => self.add_placed(&placed, inputs, &ball.open(upward)),
+            (Form::Box(rounded), true) => self.add_placed(&placed, inputs, &rounded.open(upward)),
+            (Form::Cylinder(rounded), true) => self.add_placed(&placed, inputs, &rounded.open(upward)),
+            (Form::Sampled(samples), false) => self.add_placed(&placed, inputs, samples),
+            (Form::Sampled(_), true) => {
+                let standing = Standing {
+                    body,
+                    body_from_gel,
+                    origin,
+                    from_mm: low.z + REACH_MM,
+                };
+                self.add_columns(&placed.columns, &placed.rows, &standing, inputs);
+            }
         }
+    }
+
+    /// The points of a thin body's box.
+    fn add_columns(
+        &self,
+        columns: &Range<usize>,
+        rows: &Range<usize>,
+        standing: &Standing<'_>,
+        inputs: &mut [f32],
+    ) {
+        let around = |range: &Range<usize>| range.start as i32 - AROUND..range.end as i32 + AROUND;
+        let all = Columns {
+            first_mm: self.first_mm,
+            spacing_mm: self.spacing_mm,
+            columns: around(columns),
+            rows: around(rows),
+        };
+        let [n_x, n_y] = self.n.map(|n| n as i32);
+        let levels_mm = |[i, j]: [i32; 2]| {
+            let point = j.clamp(0, n_y - 1) * n_x + i.clamp(0, n_x - 1);
+            self.levels_mm
+                .map(|level_mm| self.height_mm[point as usize] + level_mm)
+        };
+        let inputs = inputs.as_chunks_mut::<N_CHANNELS>().0;
+        all.open(standing, levels_mm, |[i, j], distances_mm| {
+            if (0..n_x).contains(&i) && (0..n_y).contains(&j) {
+                let point = &mut inputs[(j * n_x + i) as usize];
+                for (input, distance_mm) in point.iter_mut().zip(distances_mm) {
+                    *input = larger(*input, share(larger(distance_mm, -self.deepest_mm)));
+                }
+            }
+        });
     }
 
     /// The points of a body's box.
@@ -179,20 +227,20 @@ impl ContactGrid {
             }
         }
     }
+}
 
-    /// The box in the gel's frame that holds all points within reach of a body, mm.
-    fn box_in_gel(&self, body: &Body, gel_from_body: &Mat3, origin: Vec3) -> [Vec3; 2] {
-        let [low, high] = body.bounds_mm;
-        let middle = *gel_from_body * (0.5 * (low + high)) + origin;
-        let half = 0.5 * (high - low);
-        let abs = Mat3::from_cols(
-            gel_from_body.x_axis.abs(),
-            gel_from_body.y_axis.abs(),
-            gel_from_body.z_axis.abs(),
-        );
-        let around = abs * half + Vec3::splat(REACH_MM);
-        [middle - around, middle + around]
-    }
+/// The box in the gel's frame that holds all points within reach of a body, mm.
+pub(crate) fn box_in_gel(body: &Body, gel_from_body: &Mat3, origin: Vec3) -> [Vec3; 2] {
+    let [low, high] = body.bounds_mm;
+    let middle = *gel_from_body * (0.5 * (low + high)) + origin;
+    let half = 0.5 * (high - low);
+    let abs = Mat3::from_cols(
+        gel_from_body.x_axis.abs(),
+        gel_from_body.y_axis.abs(),
+        gel_from_body.z_axis.abs(),
+    );
+    let around = abs * half + Vec3::splat(REACH_MM);
+    [middle - around, middle + around]
 }
 
 /// [`ContactPoints::fill`], compiled for each instruction set.

@@ -1,6 +1,7 @@
 //! The twin without finite elements.
 
 mod batch;
+mod columns;
 mod contact;
 mod distance;
 mod engine;

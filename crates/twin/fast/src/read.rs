@@ -8,7 +8,7 @@ use twintac_shape::Pose;
 use crate::contact::{ContactPoints, N_CHANNELS};
 use crate::engine::{Engine, Scratch};
 use crate::footprint::Footprint;
-use crate::novelty::Novelty;
+use crate::novelty::{Novelty, narrowness};
 use crate::surface::SurfaceGrid;
 use crate::taught::TaughtGel;
 use crate::{Body, FastGel, Touch};
@@ -86,16 +86,20 @@ impl FastReader {
     /// How unlike what was taught a contact is: 0 where nothing is near the gel; above 1 where
     /// readings and force may be wrong. That is where it is farther from all that was taught than
     /// 99 of 100 contacts of the same kinds, by how deep, steep, large, tilted and uneven it is;
-    /// where it is deeper than lessons pressed; and where so few lessons pressed that more than one
+    /// where it is deeper than lessons pressed; where so few lessons pressed that more than one
     /// of ten readings would be off by more than a tenth, as presses have shown that were not
-    /// taught.
+    /// taught; and where more than a twentieth of what presses is narrower than 1.25 distances of
+    /// the grid's points (2.5 mm on PhysTac), as blades, pins and thin walls are.
     ///
     /// # Panics
     /// A pose that is not finite.
     pub fn novelty(&mut self, bodies: &[(&Body, Pose)]) -> f32 {
         let inputs = &mut self.inputs[..self.points.n_inputs()];
         self.points.fill(bodies.iter().copied(), inputs);
-        self.novelty.score(&self.grid, inputs)
+        let narrow = bodies
+            .iter()
+            .map(|(body, pose)| narrowness(&self.grid, body, pose));
+        narrow.fold(self.novelty.score(&self.grid, inputs), f32::max)
     }
 
     /// What touches the points of all grids. `[n_points * N_CHANNELS]`

@@ -4,6 +4,12 @@ use twintac_depth_table::{PressFrame, SolveQuality};
 use twintac_shape::Pose;
 use twintac_softbody::Frame;
 
+/// Part of the largest force so far below which no force may be while the depth rises.
+const MAY_FALL_TO: f64 = 0.9;
+
+/// Forces that are smaller may come and go, N.
+const LEAST_N: f64 = 0.02;
+
 /// A press along a trajectory in time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressHistory {
@@ -13,6 +19,28 @@ pub struct PressHistory {
     pub frames: Vec<PressFrame>,
     /// Why the frames end before the keyframes do; `None` if they do not.
     pub failure: Option<String>,
+}
+
+impl PressHistory {
+    /// Ends a press of ever greater depth before its force falls: there the gel slides off, or has found a way past what presses.
+    pub(crate) fn end_where_force_falls(&mut self) {
+        let mut most_n = 0.0;
+        let falls = |frame: &PressFrame| {
+            most_n = f64::max(most_n, frame.force_n);
+            most_n > LEAST_N && frame.force_n < MAY_FALL_TO * most_n
+        };
+        if let Some(first) = self.frames.iter().position(falls) {
+            let PressFrame {
+                depth_mm, force_n, ..
+            } = self.frames[first];
+            self.failure = Some(format!(
+                "at {depth_mm:.3} mm: the force falls to {force_n:.3} N, from {:.3} N at {:.3} mm: the gel slides off the indenter, or past it",
+                self.frames[first - 1].force_n,
+                self.frames[first - 1].depth_mm
+            ));
+            self.frames.truncate(first);
+        }
+    }
 }
 
 pub(crate) fn solve_quality(frame: &Frame) -> SolveQuality {

@@ -7,25 +7,25 @@ use super::field::Field;
 /// A ball.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ball {
-    radius_mm: f32,
+    pub(super) radius_mm: f32,
 }
 
 /// A box with rounded edges: a smaller box, grown by the edges' radius in all directions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RoundedBox {
     /// Half the size of the smaller box.
-    half_mm: Vec3A,
-    middle_mm: Vec3A,
-    edge_radius_mm: f32,
+    pub(super) half_mm: Vec3A,
+    pub(super) middle_mm: Vec3A,
+    pub(super) edge_radius_mm: f32,
 }
 
 /// An upright cylinder with rounded edges: a smaller cylinder, grown by the edges' radius.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RoundedCylinder {
-    radius_mm: f32,
-    half_height_mm: f32,
-    middle_mm: f32,
-    edge_radius_mm: f32,
+    pub(super) radius_mm: f32,
+    pub(super) half_height_mm: f32,
+    pub(super) middle_mm: f32,
+    pub(super) edge_radius_mm: f32,
 }
 
 impl Ball {
@@ -66,12 +66,29 @@ impl Field for Ball {
     }
 }
 
+impl RoundedBox {
+    /// The distance by how far a point is beyond the smaller box along each axis, mm.
+    #[inline(always)]
+    pub(super) fn over_sides_mm(&self, beyond: Vec3A) -> f32 {
+        let outside = beyond.max(Vec3A::ZERO).length();
+        outside + beyond.max_element().min(0.0) - self.edge_radius_mm
+    }
+}
+
+impl RoundedCylinder {
+    /// The distance by how far a point is beyond the smaller cylinder's side and ends, mm.
+    #[inline(always)]
+    pub(super) fn over_sides_mm(&self, aside: f32, above: f32) -> f32 {
+        let [out_aside, out_above] = [aside.max(0.0), above.max(0.0)];
+        let outside = (out_aside * out_aside + out_above * out_above).sqrt();
+        outside + aside.max(above).min(0.0) - self.edge_radius_mm
+    }
+}
+
 impl Field for RoundedBox {
     #[inline(always)]
     fn distance_mm(&self, point: Vec3A) -> f32 {
-        let beyond = (point - self.middle_mm).abs() - self.half_mm;
-        let outside = beyond.max(Vec3A::ZERO).length();
-        outside + beyond.max_element().min(0.0) - self.edge_radius_mm
+        self.over_sides_mm((point - self.middle_mm).abs() - self.half_mm)
     }
 }
 
@@ -80,9 +97,7 @@ impl Field for RoundedCylinder {
     fn distance_mm(&self, point: Vec3A) -> f32 {
         let aside = (point.x * point.x + point.y * point.y).sqrt() - self.radius_mm;
         let above = (point.z - self.middle_mm).abs() - self.half_height_mm;
-        let [out_aside, out_above] = [aside.max(0.0), above.max(0.0)];
-        let outside = (out_aside * out_aside + out_above * out_above).sqrt();
-        outside + aside.max(above).min(0.0) - self.edge_radius_mm
+        self.over_sides_mm(aside, above)
     }
 }
 

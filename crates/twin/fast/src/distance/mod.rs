@@ -2,7 +2,10 @@
 
 mod field;
 mod formulas;
+mod open;
 mod samples;
+mod thickness;
+mod upward;
 
 use glam::Vec3;
 use twintac_shape::{Shape, ShapeError, Surfaces};
@@ -10,6 +13,7 @@ use twintac_shape::{Shape, ShapeError, Surfaces};
 pub(crate) use field::{Field, REACH_MM};
 use formulas::{Ball, RoundedBox, RoundedCylinder};
 use samples::Samples;
+pub(crate) use upward::Upward;
 
 /// A rigid shape whose distance is known at once: balls, boxes and cylinders by formulas, any other shape by samples on a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +56,24 @@ impl Body {
             form,
             bounds_mm: [low.as_vec3(), high.as_vec3()],
         })
+    }
+
+    /// Half of how thick it is where it is thinnest, mm.
+    pub(crate) fn half_thickness_mm(&self) -> f32 {
+        let [low, high] = self.bounds_mm;
+        match &self.form {
+            Form::Sampled(samples) => samples.half_thickness_mm(),
+            Form::Ball(_) | Form::Box(_) | Form::Cylinder(_) => 0.5 * (high - low).min_element(),
+        }
+    }
+
+    /// Whether something that is so deep in it, mm, may be nearer to its top than to what is below.
+    pub(crate) fn is_thin(&self, depth_mm: f32, upward: Upward) -> bool {
+        let is_thin = depth_mm > self.half_thickness_mm();
+        match &self.form {
+            Form::Sampled(samples) => is_thin && samples.is_thin(depth_mm, upward),
+            Form::Ball(_) | Form::Box(_) | Form::Cylinder(_) => is_thin,
+        }
     }
 
     /// Bytes that the body occupies.

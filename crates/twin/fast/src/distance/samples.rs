@@ -4,9 +4,14 @@ use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
 use twintac_shape::SignedDistance;
 
 use super::field::{Field, REACH_MM};
+use super::thickness::Thickness;
+use super::upward::Upward;
 
 /// Distance of the samples, mm, unless there would be too many.
 const SPACING_MM: f64 = 0.5;
+
+/// Cells across the thinnest body, where there would not be too many: one with fewer would have no inside.
+const CELLS_OF_THICKNESS: f64 = 6.0;
 
 /// Samples of a body at most: those of a larger one are farther apart.
 const MOST_SAMPLES: f64 = 4e6;
@@ -17,21 +22,25 @@ pub(crate) struct Samples {
     first_mm: Vec3A,
     /// Cells along each axis.
     n_cells: Vec3A,
-    cells_per_mm: f32,
+    cells_per_mm: Vec3A,
     /// How far apart in memory sides of cells are that are neighbours along each axis: whole numbers.
     strides: Vec3A,
     along_x: usize,
     /// Distances of the four corners of each cell on its side towards lower x, mm, so that they are read at once: lower y first, then lower z.
     /// `[n_cells.x + 1][n_cells.y][n_cells.z]`
     sides_mm: Vec<Vec4>,
+    thickness: Thickness,
 }
 
 impl Samples {
     pub(super) fn of(exact: &dyn SignedDistance) -> Self {
         let (low, high) = exact.bounds_mm();
         let around = DVec3::splat(f64::from(REACH_MM));
-        let fewest = (high - low + 2.0 * around).element_product() / MOST_SAMPLES;
-        let spacing_mm = fewest.cbrt().max(SPACING_MM);
+        let volume_mm3 = (high - low + 2.0 * around).element_product();
+        let even_mm = DVec3::splat((volume_mm3 / MOST_SAMPLES).cbrt().max(SPACING_MM));
+        let finer_mm = even_mm.min((high - low) / CELLS_OF_THICKNESS);
+        let is_many = volume_mm3 / finer_mm.element_product() > MOST_SAMPLES;
+        let spacing_mm = if is_many { even_mm } else { finer_mm };
         let (low, high) = (low - around - spacing_mm, high + around + spacing_mm);
         let n_cells = ((high - low) / spacing_mm).ceil().to_array().map(|n| n as usize);
         let [n_x, n_y, n_z] = n_cells;
@@ -49,14 +58,38 @@ impl Samples {
                 sides_mm.extend(pairs.map(|(y0, y1)| Vec4::new(y0[0], y0[1], y1[0], y1[1])));
             }
         }
-        Self {
+        let mut samples = Self {
             first_mm: low.as_vec3a(),
             n_cells: Vec3A::from_array(n_cells.map(|n| n as f32)),
-            cells_per_mm: (1.0 / spacing_mm) as f32,
+            cells_per_mm: (1.0 / spacing_mm).as_vec3a(),
             strides: Vec3A::new((n_y * n_z) as f32, n_z as f32, 1.0),
             along_x: n_y * n_z,
             sides_mm,
-        }
+            thickness: Thickness::default(),
+        };
+        samples.thickness = Thickness::of(&samples, samples.near_surface());
+        samples
+    }
+
+    /// Corners of cells next to the surface.
+    fn near_surface(&self) -> impl Iterator<Item = Vec3A> + '_ {
+        let step = 1.0 / self.cells_per_mm;
+        let sides = self.sides_mm.iter().enumerate();
+        let near = sides.filter(move |(_, side)| side.x.abs() < 0.5 * step.max_element());
+        near.map(move |(number, _)| {
+            let [n_y, n_z] = [self.n_cells.y as usize, self.n_cells.z as usize];
+            let corner = [number / self.along_x, number / n_z % n_y, number % n_z];
+            self.first_mm + step * Vec3A::from_array(corner.map(|n| n as f32))
+        })
+    }
+
+    pub(super) fn half_thickness_mm(&self) -> f32 {
+        self.thickness.least_mm
+    }
+
+    /// Whether something that is so deep in it, mm, may be nearer to its top than to what is below.
+    pub(super) fn is_thin(&self, depth_mm: f32, upward: Upward) -> bool {
+        self.thickness.is_thin(depth_mm, upward.direction)
     }
 
     pub(super) fn n_bytes(&self) -> usize {

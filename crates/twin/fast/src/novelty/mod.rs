@@ -2,6 +2,7 @@
 
 mod coverage;
 mod descriptor;
+mod narrow;
 mod nearest;
 
 use crate::surface::SurfaceGrid;
@@ -11,6 +12,7 @@ use coverage::LEAST_ERROR_OF_ONE;
 
 pub(crate) use coverage::Coverage;
 pub(crate) use descriptor::N_TRAITS;
+pub(crate) use narrow::narrowness;
 pub(crate) use nearest::Nearest;
 
 /// Readings that are off by more than this part of them are said to be unsure.

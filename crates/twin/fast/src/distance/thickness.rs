@@ -1,0 +1,71 @@
+//! How thick a sampled body is under its faces.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3A;
+
+use super::field::Field;
+
+/// What is thicker is as good as without end, mm: nothing is pressed so deep.
+const THICKEST_MM: f32 = 12.0;
+
+/// Steps into a body, mm.
+const STEP_MM: f32 = 0.25;
+
+/// Normals that differ by less than one over this count as one.
+const NORMALS: f32 = 4.0;
+
+/// How high a normal looks up at least for its face to be a top.
+const LEAST_TOP: f32 = 0.5 - 1.0 / NORMALS;
+
+/// Half of how thick a body is under each face that is not thick, mm, by the faces' normals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Thickness {
+    halves_mm: Vec<(Vec3A, f32)>,
+    /// The least of them, mm.
+    pub(super) least_mm: f32,
+}
+
+impl Thickness {
+    /// Of faces near points.
+    pub(super) fn of(field: &impl Field, near_surface: impl Iterator<Item = Vec3A>) -> Self {
+        let mut thinnest: BTreeMap<[i8; 3], f32> = BTreeMap::new();
+        for point in near_surface {
+            let normal = normal(field, point);
+            let surface = point - field.distance_mm(point) * normal;
+            let n_steps = (THICKEST_MM / STEP_MM) as u32;
+            let outside = |step: &u32| field.distance_mm(surface - STEP_MM * *step as f32 * normal) > 0.0;
+            let Some(step) = (1..n_steps).find(outside) else {
+                continue;
+            };
+            let key = (NORMALS * normal).round().to_array().map(|part| part as i8);
+            let half_mm = 0.5 * STEP_MM * (step - 1) as f32;
+            let known = thinnest.entry(key).or_insert(half_mm);
+            *known = known.min(half_mm);
+        }
+        let halves_mm: Vec<(Vec3A, f32)> = thinnest
+            .into_iter()
+            .map(|(key, half_mm)| (Vec3A::from_array(key.map(f32::from)).normalize_or_zero(), half_mm))
+            .collect();
+        Self {
+            least_mm: halves_mm
+                .iter()
+                .map(|half| half.1)
+                .fold(0.5 * THICKEST_MM, f32::min),
+            halves_mm,
+        }
+    }
+
+    /// Whether something that is so deep, mm, may be nearer to a top than to what is below.
+    pub(super) fn is_thin(&self, depth_mm: f32, up: Vec3A) -> bool {
+        let mut halves = self.halves_mm.iter();
+        halves.any(|(normal, half_mm)| depth_mm > *half_mm && normal.dot(up) > LEAST_TOP)
+    }
+}
+
+/// The direction away from a body.
+fn normal(field: &impl Field, point: Vec3A) -> Vec3A {
+    let difference = |axis: Vec3A| field.distance_mm(point + axis) - field.distance_mm(point - axis);
+    let axes = [Vec3A::X, Vec3A::Y, Vec3A::Z].map(|axis| difference(STEP_MM * axis));
+    Vec3A::from_array(axes).normalize_or_zero()
+}
