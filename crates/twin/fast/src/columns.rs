@@ -1,10 +1,10 @@
 //! A thin body, known by samples, column by column from below: what is above it is inside it too.
 
+use std::cell::RefCell;
 use std::ops::Range;
 
 use glam::{Mat3, Vec2, Vec3};
 
-use crate::contact::N_CHANNELS;
 use crate::distance::{Body, Field, Form, REACH_MM};
 
 /// Columns beside those that are asked for: how far a body reaches aside is told by what is beside it.
@@ -58,13 +58,18 @@ struct Level {
     is_inside: bool,
 }
 
+thread_local! {
+    /// What is known of the columns about a body, level by level. It is kept, so that readings allocate nothing.
+    static KNOWN: RefCell<Vec<Level>> = const { RefCell::new(Vec::new()) };
+}
+
 impl Columns {
     /// Calls `put` with each column and row and the distances there, mm, to a body that goes on above its tops. `levels_mm`: heights in a column, falling.
-    pub(crate) fn open(
+    pub(crate) fn open<const N: usize>(
         &self,
         standing: &Standing<'_>,
-        levels_mm: impl Fn([i32; 2]) -> [f32; N_CHANNELS],
-        put: impl FnMut([i32; 2], [f32; N_CHANNELS]),
+        levels_mm: impl Fn([i32; 2]) -> [f32; N],
+        put: impl FnMut([i32; 2], [f32; N]),
     ) {
         match &standing.body.form {
             Form::Ball(ball) => self.open_field(standing, ball, levels_mm, put),
@@ -74,12 +79,12 @@ impl Columns {
         }
     }
 
-    fn open_field(
+    fn open_field<const N: usize>(
         &self,
         standing: &Standing<'_>,
         field: &impl Field,
-        levels_mm: impl Fn([i32; 2]) -> [f32; N_CHANNELS],
-        mut put: impl FnMut([i32; 2], [f32; N_CHANNELS]),
+        levels_mm: impl Fn([i32; 2]) -> [f32; N],
+        mut put: impl FnMut([i32; 2], [f32; N]),
     ) {
         let all = || {
             self.rows
@@ -93,29 +98,33 @@ impl Columns {
                 field.distance_mm((standing.body_from_gel * point).into())
             })
         });
-        let known: Vec<[Level; N_CHANNELS]> = climbed.collect();
-        for (at, levels) in all().zip(&known) {
-            let mut found_mm = [0.0; N_CHANNELS];
-            for (number, (level, found_mm)) in levels.iter().zip(&mut found_mm).enumerate() {
-                let mut open_mm = level.open_mm;
-                if level.is_inside && level.top > 0.0 {
-                    open_mm = open_mm.max(-self.reach_aside_mm(&known, at, number).max(-level.least_mm));
+        KNOWN.with_borrow_mut(|known| {
+            known.clear();
+            known.extend(climbed.flatten());
+            for (at, levels) in all().zip(known.chunks_exact(N)) {
+                let mut found_mm = [0.0; N];
+                for (number, (level, found_mm)) in levels.iter().zip(&mut found_mm).enumerate() {
+                    let mut open_mm = level.open_mm;
+                    if level.is_inside && level.top > 0.0 {
+                        let aside_mm = self.reach_aside_mm(at, |column| known[column * N + number]);
+                        open_mm = open_mm.max(-aside_mm.max(-level.least_mm));
+                    }
+                    *found_mm = level.plain_mm + level.top * (open_mm - level.plain_mm).min(0.0);
                 }
-                *found_mm = level.plain_mm + level.top * (open_mm - level.plain_mm).min(0.0);
+                put(at, found_mm);
             }
-            put(at, found_mm);
-        }
+        });
     }
 
     /// How far a body at most reaches aside of a point in it: no farther than what is beside it leaves.
-    fn reach_aside_mm(&self, known: &[[Level; N_CHANNELS]], [i, j]: [i32; 2], number: usize) -> f32 {
+    fn reach_aside_mm(&self, [i, j]: [i32; 2], level_of: impl Fn(usize) -> Level) -> f32 {
         let n_columns = self.columns.len();
         let mut least_mm = f32::INFINITY;
         for row in (j - FARTHEST).max(self.rows.start)..(j + FARTHEST + 1).min(self.rows.end) {
             for column in (i - FARTHEST).max(self.columns.start)..(i + FARTHEST + 1).min(self.columns.end) {
                 let place =
                     (row - self.rows.start) as usize * n_columns + (column - self.columns.start) as usize;
-                let level = &known[place][number];
+                let level = level_of(place);
                 if !level.is_inside {
                     let away_mm = self.spacing_mm * Vec2::new((column - i) as f32, (row - j) as f32).length();
                     least_mm = least_mm.min(away_mm - level.open_mm);
@@ -170,11 +179,7 @@ impl Climb {
 }
 
 /// The levels of a column, from below.
-fn climb(
-    levels_mm: [f32; N_CHANNELS],
-    from_mm: f32,
-    distance_mm: impl Fn(f32) -> f32,
-) -> [Level; N_CHANNELS] {
+fn climb<const N: usize>(levels_mm: [f32; N], from_mm: f32, distance_mm: impl Fn(f32) -> f32) -> [Level; N] {
     let plain_mm = distance_mm(from_mm);
     let mut climb = Climb {
         height_mm: from_mm,
@@ -184,7 +189,7 @@ fn climb(
         steepest: 0.0,
         slope: None,
     };
-    let mut levels = [Level::default(); N_CHANNELS];
+    let mut levels = [Level::default(); N];
     for (level, level_mm) in levels.iter_mut().zip(levels_mm).rev() {
         loop {
             let next_mm = climb.height_mm + climb.step_mm();
