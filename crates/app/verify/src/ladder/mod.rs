@@ -11,6 +11,7 @@ mod locking;
 mod page;
 mod patch_test;
 mod random_press;
+mod rims;
 mod robustness;
 mod rubbers;
 mod surface_load;
@@ -92,6 +93,12 @@ const RUNGS: &[Rung] = &[
         name: "calibration",
         title: "Known materials are found again in noisy forces",
         run: calibration::run,
+    },
+    Rung {
+        number: 12,
+        name: "rims",
+        title: "Force and pressure under shapes with rims, on meshes that are pressed in real time",
+        run: rims::run,
     },
 ];
 
