@@ -134,7 +134,10 @@ fn a_wall_presses_or_is_too_thin_for_the_mesh() {
     for wall_mm in [2.0, 1.0, 0.6] {
         let wall_n = force_n(&gel, ring(wall_mm), 1.0);
         println!("{wall_mm} mm: {wall_n:.3} N");
-        assert!(wall_n > 0.75 && wall_n < thicker_n, "{wall_mm} mm: {wall_n} N");
+        assert!(
+            wall_n > 0.75 && wall_n < 1.03 * thicker_n,
+            "{wall_mm} mm: {wall_n} N"
+        );
         thicker_n = wall_n;
     }
     for wall_mm in [0.3, 0.1] {

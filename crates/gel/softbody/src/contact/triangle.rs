@@ -20,10 +20,10 @@ const MARGIN: f64 = 1.25;
 
 /// Stiffness of the points inside as part of that of nodes. Stiffer ones widen a punch by a part of an edge, and let its force rise in steps, as one row of nodes after the
 /// other slides around its rim; softer ones narrow it.
-const SOFTNESS: f64 = 0.35;
+const SOFTNESS: f64 = 0.25;
 
 /// How much stiffer they are where the triangle lies across a wall that is thinner than itself: no node presses there.
-const ACROSS_WALL: f64 = 2.0;
+const ACROSS_WALL: f64 = 2.5;
 
 /// A triangle of the boundary.
 pub(crate) struct BoundaryTriangle {
