@@ -433,7 +433,7 @@ struct BodyOf {
 impl Lowered {
     fn new(surface: &Arc<TriangleSurface>) -> Self {
         let surface = match surface.has_cavities() {
-            true => &Arc::new(surface.filled()),
+            true => &Arc::new(surface.with_distances_of_filled()),
             false => surface,
         };
         let several = (0..surface.n_bodies()).filter(|_| surface.n_bodies() > 1);

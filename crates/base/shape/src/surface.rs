@@ -34,7 +34,7 @@ pub struct TriangleSurface {
     edge_normals: Vec<[DVec3; 3]>,
     vertex_normals: Vec<DVec3>,
     /// The triangles of each body, those of its cavities among them.
-    bodies: Vec<Bvh>,
+    pub(crate) bodies: Vec<Bvh>,
     /// Whether each triangle is one of a cavity's.
     pub(crate) is_cavity: Vec<bool>,
     bounds_mm: (DVec3, DVec3),
@@ -349,7 +349,7 @@ fn bounds<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<(DVec3, DVe
     boxes.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
 }
 
-fn bounds_of([a, b, c]: [DVec3; 3]) -> (DVec3, DVec3) {
+pub(crate) fn bounds_of([a, b, c]: [DVec3; 3]) -> (DVec3, DVec3) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 

@@ -5,10 +5,11 @@
 mod common;
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use common::{ball_triangles, box_triangles, moved, turned};
 use glam::{DVec2, DVec3};
-use twintac_shape::{SignedDistance, SurfaceError, TriangleSurface};
+use twintac_shape::{Shape, SignedDistance, SurfaceError, SurfaceFile, Surfaces, TriangleSurface};
 
 type Triangles = Vec<[DVec3; 3]>;
 
@@ -103,15 +104,22 @@ fn a_body_within_another_is_a_cavity_if_it_faces_against_it() {
 }
 
 #[test]
-fn cavities_can_be_filled() {
-    let (outer, inner) = (cube(5.0, [0.0; 3]), cube(4.0, [0.0; 3]));
-    let hollow = surface(&[outer.clone(), turned(&inner), cube(1.0, [0.0; 3])]);
-    let solid = hollow.filled();
-    assert!(hollow.has_cavities() && !solid.has_cavities());
+fn cavities_of_what_presses_are_filled() {
+    let hollow = surface(&[
+        cube(5.0, [0.0; 3]),
+        turned(&cube(4.0, [0.0; 3])),
+        cube(1.0, [0.0; 3]),
+    ]);
     assert!((distance_mm(&hollow, 4.8, 0.0, 0.0) + 0.2).abs() < 1e-12);
-    assert!((distance_mm(&solid, 3.0, 0.0, 0.0) + 2.0).abs() < 1e-12);
-    let same = surface(&[outer]).filled();
-    assert!((same.volume_mm3() - 1000.0).abs() < 1e-9);
+    assert!(distance_mm(&hollow, 3.0, 0.0, 0.0) > 0.0);
+    let surfaces = Surfaces::from([("hollow.stl".to_owned(), Arc::new(hollow))]);
+    let shape = Shape::Stl(SurfaceFile::new("hollow.stl"));
+    let presses = shape.signed_distance_field(&surfaces).unwrap();
+    // Its lowest point is at z = 0.
+    let distance_mm = |x_mm: f64| presses.signed_distance(DVec3::new(x_mm, 0.0, 5.0)).distance_mm;
+    assert!((distance_mm(3.0) + 2.0).abs() < 1e-12);
+    assert!((distance_mm(4.8) + 0.2).abs() < 1e-12);
+    assert!((distance_mm(6.0) - 1.0).abs() < 1e-12);
 }
 
 #[test]

@@ -116,6 +116,11 @@ impl SoftBody {
         &self.material
     }
 
+    /// How many of so many shapes, the parts of the indenter and the obstacles, are the indenter's.
+    pub(crate) fn n_indenter_parts(&self, n_shapes: usize) -> usize {
+        n_shapes - self.obstacles.len()
+    }
+
     /// The nodes of the boundary, and where they are, mm.
     pub(crate) fn boundary_mm(
         &self,

@@ -87,7 +87,7 @@ pub enum SolveError {
     /// The indenter and the body would pass through each other: the indenter is too thin for the mesh, or for the step.
     #[error(
         "the indenter passes {reach_mm:.2} mm through the surface at {at_mm:.3} mm, beyond {:.1} % of the step: it is {thickness_mm:.2} mm thick there, and the edges of the mesh are \
-         {edge_mm:.2} mm long. Take shorter edges (settings `contact_edge_mm` and `max_nodes`), or shorter steps", fraction * 100.0
+         {edge_mm:.2} mm long. Take shorter edges, or shorter steps", fraction * 100.0
     )]
     PassedThrough {
         /// Part of the step that was taken before.

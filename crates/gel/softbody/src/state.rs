@@ -48,7 +48,7 @@ impl Motion {
 impl State {
     /// How many of its contacts are those of the indenter.
     pub(crate) fn n_indenter_parts(&self, body: &SoftBody) -> usize {
-        self.contacts.len() - body.obstacles.len()
+        body.n_indenter_parts(self.contacts.len())
     }
 
     /// Prepares for an indenter of so many parts. One of another number is another indenter, which nothing touches yet.

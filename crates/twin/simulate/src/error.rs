@@ -1,5 +1,15 @@
 //! What can go wrong in a simulated press.
 
+use twintac_softbody::SolveError;
+
+/// Why the solver did not take a step, and which setting may help.
+pub(crate) fn reason(error: &SolveError) -> String {
+    match error {
+        SolveError::PassedThrough { .. } => format!("{error}: settings `contact_edge_mm` and `max_nodes`"),
+        _ => error.to_string(),
+    }
+}
+
 /// A press that could not be set up. A press that starts and then does not converge is not an error: its table ends at the last converged
 /// depth, with the reason.
 #[derive(Debug, thiserror::Error)]
@@ -14,12 +24,12 @@ pub enum SimulateError {
     #[error("the indenter can't be built: {0}")]
     Shape(#[from] twintac_shape::ShapeError),
     /// A frame of a press that must be had in full could not be reached.
-    #[error("the gel can't be pressed {depth_mm:.3} mm deep: {error}")]
+    #[error("the gel can't be pressed {depth_mm:.3} mm deep: {}", reason(error))]
     Press {
         /// Depth below first touch, mm.
         depth_mm: f64,
         /// Why.
-        error: twintac_softbody::SolveError,
+        error: SolveError,
     },
     /// The indenter would come down beside the gel.
     #[error("the indenter at x = {x_mm:.2} mm, y = {y_mm:.2} mm does not touch the gel")]

@@ -10,6 +10,7 @@ use twintac_protocol::{PathFrame, PressPath, Zero};
 use twintac_shape::{Pose, Shape};
 use twintac_softbody::Cost;
 
+use crate::error::reason;
 use crate::walk::Walk;
 use crate::{Gel, GelMesh, SimulateError};
 
@@ -139,7 +140,7 @@ impl Gel {
             match state.walk_to(to) {
                 Ok(frame) => followed.frames.push(frame),
                 Err(error) => {
-                    followed.failure = Some(format!("at {} s: {error}", to.time_s));
+                    followed.failure = Some(format!("at {} s: {}", to.time_s, reason(&error)));
                     break;
                 }
             }

@@ -10,6 +10,7 @@ use twintac_sensor::Sensor;
 use twintac_shape::{Pose, Shape, SignedDistance};
 use twintac_softbody::{Frame, Material, SoftBody, SolveError, State};
 
+use crate::error::reason;
 use crate::history::solve_quality;
 use crate::readout::{PortReadout, PortSlopes, StressCluster};
 use crate::rounding::Roundings;
@@ -457,7 +458,7 @@ impl GelMesh {
                 Ok(force_n) if place.enough_force_n.is_some_and(|enough_n| force_n >= enough_n) => break,
                 Ok(_) => {}
                 Err(error) => {
-                    failure = Some(format!("at {:.3} mm: {error}", keyframe.depth_mm));
+                    failure = Some(format!("at {:.3} mm: {}", keyframe.depth_mm, reason(&error)));
                     let share = error.converged_fraction();
                     if share > 0.0 {
                         // As deep as it goes.

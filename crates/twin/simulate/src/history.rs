@@ -4,8 +4,8 @@ use twintac_depth_table::{PressFrame, SolveQuality};
 use twintac_shape::Pose;
 use twintac_softbody::Frame;
 
-/// Part of the largest force so far below which no force may be while the depth rises.
-const MAY_FALL_TO: f64 = 0.9;
+/// Part of the largest force so far below which a table has no force: it ends before.
+pub const FORCE_MAY_FALL_TO: f64 = 0.9;
 
 /// Forces that are smaller may come and go, N.
 const LEAST_N: f64 = 0.02;
@@ -27,7 +27,7 @@ impl PressHistory {
         let mut most_n = 0.0;
         let falls = |frame: &PressFrame| {
             most_n = f64::max(most_n, frame.force_n);
-            most_n > LEAST_N && frame.force_n < MAY_FALL_TO * most_n
+            most_n > LEAST_N && frame.force_n < FORCE_MAY_FALL_TO * most_n
         };
         if let Some(first) = self.frames.iter().position(falls) {
             let PressFrame {

@@ -24,7 +24,7 @@ mod walk;
 pub use error::SimulateError;
 pub use follow::{Followed, FollowedFrame};
 pub use gel::{Fields, Gel, GelMesh, Keyframe, PressPlace};
-pub use history::PressHistory;
+pub use history::{FORCE_MAY_FALL_TO, PressHistory};
 pub use rates::RatedFrame;
 pub use readout::PortReadout;
 pub use settings::SimulateSettings;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use twintac_plot::Series;
 use twintac_sensor::Sensor;
 use twintac_shape::{Pose, SignedDistance};
-use twintac_simulate::{Gel, SimulateSettings};
+use twintac_simulate::{FORCE_MAY_FALL_TO, Gel, SimulateSettings};
 use twintac_softbody::{Frame, SoftBody, SolveError, State};
 
 use super::random_press::{ENOUGH_N, RandomPress, draw, draw_thin};
@@ -23,9 +23,6 @@ const STEP_MM: f64 = 0.4;
 
 /// Part of the indenter's force that may be missing in the balance of a frame: what the solver's tolerance leaves, many times over.
 const UNBALANCED: f64 = 0.01;
-
-/// Part of the largest force so far by which force may fall as the depth rises: gel slides off an edge, or around a rim.
-const MAY_FALL: f64 = 0.1;
 
 /// A force below which presses are not compared, N.
 const LEAST_N: f64 = 0.1;
@@ -144,7 +141,7 @@ pub(super) fn run(effort: Effort) -> Result<Outcome> {
          rises, as a table does. Thin bodies are plates, rings, blades and pins of 0.2 to 3 mm, wedges, cups, brackets and crosses of several bodies, pressed to a third \
          of the thickness at most; those that are too thin for the mesh have to end in an error that says so. Seed {SEED}.\n",
         100.0 * UNBALANCED,
-        100.0 * MAY_FALL
+        100.0 * (1.0 - FORCE_MAY_FALL_TO)
     );
     for (color, set) in sets.iter().enumerate() {
         let gels_of = |settings: &SimulateSettings| {
@@ -346,7 +343,7 @@ fn press(gel: &Gel, press: &RandomPress, index: u64) -> Result<Pressed> {
                 let most_n = pressed.forces_n.iter().copied().fold(0.0, f64::max);
                 (pressed.depth_mm, pressed.force_n) = (depth_mm, -frame.indenter_force_n.z);
                 pressed.forces_n.push(pressed.force_n);
-                if pressed.force_n < (1.0 - MAY_FALL) * most_n {
+                if pressed.force_n < FORCE_MAY_FALL_TO * most_n {
                     pressed.end = End::Failed("the force fell as the depth rose");
                     return Ok(pressed);
                 }

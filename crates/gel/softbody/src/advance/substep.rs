@@ -26,7 +26,7 @@ impl SoftBody {
     ) -> Result<Equilibrium, Failure> {
         let [from, to] = part.map(|fraction| drive.pose(fraction));
         let [before, shapes] = [from, to].map(|pose| self.shapes(drive, pose));
-        state.take_parts(self, shapes.len() - self.obstacles.len());
+        state.take_parts(self, self.n_indenter_parts(shapes.len()));
         let sensitivities_before = state.sensitivities.clone();
         self.begin(state, [&before, &shapes]);
         drive.hold(self, part[1], &mut state.displacements_mm);
@@ -155,7 +155,7 @@ impl SoftBody {
         };
         let now_mm = |node: u32| place_mm(node, x.displacements_mm);
         let before_mm = |node: u32| place_mm(node, old_mm);
-        let n_parts = now.len() - self.obstacles.len();
+        let n_parts = self.n_indenter_parts(now.len());
         for ((before, now), contact) in before.iter().zip(now).zip(x.contacts.iter()).take(n_parts) {
             let changed = || contact.changed_sides([before, now], &self.boundary, [&before_mm, &now_mm]);
             if let Some(passed) = contact.pierced(now, &now_mm).or_else(changed) {

@@ -20,8 +20,8 @@ const STUCK: f64 = 0.5;
 /// Difference of the normals at two corners, as unit vectors, above which a shape turns sharply.
 const SHARP: f64 = 0.5;
 
-/// The same above which they are those of opposite sides.
-const OPPOSITE: f64 = 1.6;
+/// The same above which the corners are on sides that face away from each other.
+const TURNED_AWAY: f64 = 1.6;
 
 /// Contact of the boundary with one shape.
 #[derive(Debug)]
@@ -222,7 +222,7 @@ impl Contact {
                     SIDES.map(|[a, b]| shape.bend_mm([at_mm[a], at_mm[b]], [normals[a], normals[b]]));
                 let is_across_wall = SIDES
                     .iter()
-                    .any(|[a, b]| normals[*a].distance(normals[*b]) > OPPOSITE);
+                    .any(|[a, b]| normals[*a].distance(normals[*b]) > TURNED_AWAY);
                 let points = triangle.points(bends_mm, is_across_wall);
                 self.inside.extend(points.map(|point| Inside {
                     point,

@@ -198,7 +198,7 @@ impl Sensitivity {
             self.direction.rate(Material::volume_modulus_kpa) / body.material().volume_modulus_kpa();
         self.pressures_mpa = moved(&rates_mpa, x.pressures_mpa, stiffening);
         // As in a frame, what is left unbalanced at a node in touch is the contact's own error.
-        let n_parts = x.contacts.len() - body.obstacles.len();
+        let n_parts = body.n_indenter_parts(x.contacts.len());
         let pushes = (0..n_parts).flat_map(|part| self.contact_forces_n(body, step, x, part, &rates_mm));
         let pushes: DVec3 = pushes.sum();
         let parts = x.contacts[..n_parts].iter();
@@ -261,7 +261,7 @@ impl Sensitivity {
     ) -> Vec<DVec3> {
         let shear_kpa = |material: &Material| material.model.shear_modulus_kpa();
         let stiffening = self.direction.rate(shear_kpa) / shear_kpa(body.material());
-        let shape_mm = if shape < step.shapes.len() - body.obstacles.len() {
+        let shape_mm = if shape < body.n_indenter_parts(step.shapes.len()) {
             self.direction.indenter_mm
         } else {
             DVec3::ZERO
