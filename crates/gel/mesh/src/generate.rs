@@ -4,12 +4,9 @@ use twintac_shape::{SignedDistance, Solid, Surfaces, TriangleSurface};
 
 use crate::footprint::Footprint;
 use crate::lattice::Lattice;
-use crate::quality::{check_volumes, least_dihedral_deg};
+use crate::quality::least_dihedral_deg;
 use crate::region::Region;
 use crate::{Cuboid, MeshError, MeshSettings, TetMesh, grid, stuffing};
-
-/// Least volume of a tetrahedron, as part of that of a regular one with the same longest edge.
-const LEAST_VOLUME_SHARE: f64 = 1e-3;
 
 /// Smallest dihedral angle of a stuffed mesh that needs no second try, degrees.
 const GOOD_DIHEDRAL_DEG: f64 = 9.0;
@@ -31,30 +28,40 @@ pub fn generate(
     inclusions: &[Cuboid],
     settings: &MeshSettings,
 ) -> Result<TetMesh, MeshError> {
+    let mesh = generate_unchecked(solid, surfaces, inclusions, settings)?;
+    mesh.check_volumes()?;
+    Ok(mesh)
+}
+
+/// Meshes as [`generate`] does, for those who count nodes before they take a mesh: tetrahedra may be flat, which [`TetMesh::check_volumes`] tells.
+///
+/// # Errors
+/// Those of [`generate`], but for flat tetrahedra.
+pub fn generate_unchecked(
+    solid: &Solid,
+    surfaces: &Surfaces,
+    inclusions: &[Cuboid],
+    settings: &MeshSettings,
+) -> Result<TetMesh, MeshError> {
     settings.check()?;
     solid.validate()?;
-    let mesh = match (solid, Footprint::of(solid)) {
-        (_, Some(footprint)) => grid::mesh(&footprint, &grid::lattice(&footprint, inclusions, settings)?),
+    match (solid, Footprint::of(solid)) {
+        (_, Some(footprint)) => Ok(grid::mesh(
+            &footprint,
+            &grid::lattice(&footprint, inclusions, settings)?,
+        )),
         (Solid::Stl(file), None) => {
             let name = file.name();
             let missing = || MeshError::SurfaceMissing {
                 path: name.clone().into_owned(),
             };
-            stuff(
-                &name,
-                surfaces.get(&*name).ok_or_else(missing)?,
-                inclusions,
-                settings,
-            )?
+            let surface = surfaces.get(&*name).ok_or_else(missing)?;
+            stuff(&name, surface, inclusions, settings)
         }
-        (_, None) => {
-            return Err(MeshError::Empty {
-                reason: "this kind of solid has no surface".to_owned(),
-            });
-        }
-    };
-    check_volumes(&mesh, LEAST_VOLUME_SHARE)?;
-    Ok(mesh)
+        (_, None) => Err(MeshError::Empty {
+            reason: "this kind of solid has no surface".to_owned(),
+        }),
+    }
 }
 
 /// Meshes a triangle surface that stands on the board.

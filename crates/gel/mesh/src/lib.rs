@@ -74,7 +74,7 @@ mod volume;
 pub mod vtk;
 
 pub use error::MeshError;
-pub use generate::{generate, generate_with_node_count};
+pub use generate::{generate, generate_unchecked, generate_with_node_count};
 pub use locate::Neighbourhood;
 pub use quality::{Quality, Spread};
 pub use refine::Refinement;

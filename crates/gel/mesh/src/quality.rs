@@ -45,6 +45,9 @@ pub struct Spread {
     pub max: f64,
 }
 
+/// Least volume of a tetrahedron, as part of that of a regular one with the same longest edge.
+const LEAST_VOLUME_SHARE: f64 = 1e-3;
+
 /// Corners of the edges of a tetrahedron, the opposite edge of each in the same row.
 const EDGES: [[usize; 4]; 6] = [
     [0, 1, 2, 3],
@@ -87,6 +90,16 @@ impl Spread {
             percentile_95: at(0.95),
             max: at(1.0),
         }
+    }
+}
+
+impl TetMesh {
+    /// Fails for a tetrahedron that is inverted or flat: its volume is less than a thousandth of that of a regular one with the same longest edge.
+    ///
+    /// # Errors
+    /// [`MeshError::Degenerate`] for the first such tetrahedron.
+    pub fn check_volumes(&self) -> Result<(), MeshError> {
+        check_volumes(self, LEAST_VOLUME_SHARE)
     }
 }
 

@@ -24,6 +24,9 @@ const CONTACT_DEPTH: f64 = 0.5;
 /// By how much edges grow at least when a mesh has too many nodes.
 const MIN_COARSENING: f64 = 1.01;
 
+/// Largest ratio of edges away from the indenter to those under it. Cells below a pin would be slivers beyond that: as wide as the ones, as high as the others.
+const LARGEST_EDGE_RATIO: f64 = 20.0;
+
 /// Power of the excess of nodes by which edges grow: less than a third, as the number of nodes falls in steps.
 const COARSENING_POWER: f64 = 0.2;
 
@@ -240,7 +243,7 @@ impl Gel {
         let coarse_mm = self.height_mm() / self.settings.edges_per_height;
         let contact_edge_mm = self.settings.contact_edge_mm;
         let fine_mm = contact_edge_mm.unwrap_or(radius_mm / self.settings.edges_per_contact_radius);
-        let fine_mm = fine_mm.min(coarse_mm);
+        let fine_mm = fine_mm.clamp(coarse_mm / LARGEST_EDGE_RATIO, coarse_mm);
         let inclusions: Vec<Cuboid> = sensor
             .inclusions
             .iter()
@@ -250,24 +253,27 @@ impl Gel {
             })
             .collect();
         let generate = |scale: f64, stretches: &[Vec<Stretch>; 2]| {
+            // However few nodes are allowed, there is an edge over the gel's height.
+            let [coarse_mm, fine_mm] =
+                [coarse_mm, fine_mm].map(|edge_mm| self.height_mm().min(scale * edge_mm));
             let settings = MeshSettings {
-                edge_mm: scale * coarse_mm,
+                edge_mm: coarse_mm,
                 focuses: std::iter::once(&DVec2::ZERO)
                     .chain(ways_mm.unwrap_or_default())
                     .map(|way_mm| Focus {
                         center_mm: touched + way_mm.extend(0.0),
                         radius_mm,
-                        edge_mm: scale * fine_mm,
+                        edge_mm: fine_mm,
                         stretches: stretches.clone(),
                     })
                     .collect(),
                 ..MeshSettings::default()
             };
             // Each of its tetrahedra will be cut into eight, with edges half as long.
-            twintac_mesh::generate(solid, &sensor.surfaces, &inclusions, &settings.scaled(2.0))
+            twintac_mesh::generate_unchecked(solid, &sensor.surfaces, &inclusions, &settings.scaled(2.0))
         };
         let even = |scale: f64| generate(scale, &Default::default());
-        let scales = [1.0, (radius_mm / fine_mm).min(self.height_mm() / coarse_mm)];
+        let scales = [1.0, self.height_mm() / fine_mm];
         let mesh = if ways_mm.is_none() {
             coarsen(even, scales, self.settings.max_nodes)?.1
         } else {
@@ -292,6 +298,7 @@ impl Gel {
                 .1
             }
         };
+        mesh.check_volumes()?;
         GelMesh::new(
             sensor,
             &mesh,

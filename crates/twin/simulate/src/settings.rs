@@ -10,9 +10,9 @@ use twintac_softbody::SolverSettings;
 pub struct SimulateSettings {
     /// Edges over the gel's height, away from the indenter; the pressure has half as many.
     pub edges_per_height: f64,
-    /// Edges across the radius of the contact at full depth; never longer than away from the indenter. The pressure has half as many.
+    /// Edges across the radius of the contact at full depth; never longer than away from the indenter, nor shorter than a 20th of those. The pressure has half as many.
     pub edges_per_contact_radius: f64,
-    /// Length of the edges under the indenter, mm, instead of `edges_per_contact_radius`; never longer than away from it.
+    /// Length of the edges under the indenter, mm, instead of `edges_per_contact_radius`; within the same limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_edge_mm: Option<f64>,
     /// Largest number of nodes of the mesh for a table. If the requested edges give more, all edges are made longer.

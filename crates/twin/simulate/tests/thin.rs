@@ -289,3 +289,34 @@ fn force_rises_evenly_while_gel_slides_around_rims() {
         );
     }
 }
+
+/// Edges as short as a pin wants are too many, and some are too flat; both end before a mesh is taken.
+#[test]
+fn pins_and_blades_are_meshed_anywhere_with_as_many_nodes_as_are_allowed() {
+    let settings = SimulateSettings {
+        edges_per_contact_radius: 12.0,
+        max_nodes: 2000,
+        ..SimulateSettings::fine()
+    };
+    let gel = gel(settings);
+    for (radius_mm, x_mm, y_mm) in [
+        (0.05, 0.0, 0.0),
+        (0.1, -16.3, -4.4),
+        (0.05, 7.3, 2.1),
+        (0.1, 11.9, 8.5),
+        (0.2, -4.4, 10.0),
+    ] {
+        let place = PressPlace {
+            indenter: "pin".into(),
+            shape: Shape::Sphere { radius_mm },
+            x_mm,
+            y_mm,
+            rotation: DQuat::IDENTITY,
+            depth_mm: 0.5,
+            enough_force_n: None,
+        };
+        let mesh = gel.mesh(&place).unwrap();
+        let n_nodes = mesh.body().mesh().nodes_mm.len();
+        assert!(n_nodes <= 2000, "{radius_mm} at {x_mm}, {y_mm}: {n_nodes}");
+    }
+}
