@@ -304,7 +304,7 @@ fn pins_and_blades_are_meshed_anywhere_with_as_many_nodes_as_are_allowed() {
         (0.1, -16.3, -4.4),
         (0.05, 7.3, 2.1),
         (0.1, 11.9, 8.5),
-        (0.2, -4.4, 10.0),
+        (0.2, -4.4, 7.0),
     ] {
         let place = PressPlace {
             indenter: "pin".into(),
