@@ -30,17 +30,30 @@ const LARGEST_EDGE_RATIO: f64 = 20.0;
 /// Power of the excess of nodes by which edges grow: less than a third, as the number of nodes falls in steps.
 const COARSENING_POWER: f64 = 0.2;
 
-/// Edges along a path as part of those asked for, if there are nodes for it.
-const PATH_SCALE: f64 = 0.7;
-
-/// Nodes along a path with fine rims, as part of those that it may have without.
-const RIM_SHARE: f64 = 1.6;
-
 /// Nodes of a coarse mesh that is only used to estimate how deep a force presses.
 const COARSE_NODES: usize = 1500;
 
-/// Shortest edge at a rim as part of the edge under the rest of the indenter.
-const SHARPEST: f64 = 0.3;
+/// How finely a kind of press is meshed.
+struct Fineness {
+    /// Edges as part of those asked for, if there are nodes for it.
+    scale: f64,
+    /// Shortest edge at a rim as part of the edge under the rest of the indenter.
+    sharpest: f64,
+    /// Nodes of a mesh with fine rims as part of those that it may have without.
+    rim_share: f64,
+}
+
+const TABLE: Fineness = Fineness {
+    scale: 1.0,
+    sharpest: 0.5,
+    rim_share: 1.0,
+};
+
+const PATH: Fineness = Fineness {
+    scale: 0.7,
+    sharpest: 0.3,
+    rim_share: 1.6,
+};
 
 /// A gel and how finely it is to be simulated. Shared by many presses.
 #[derive(Clone, Debug)]
@@ -273,31 +286,25 @@ impl Gel {
             twintac_mesh::generate_unchecked(solid, &sensor.surfaces, &inclusions, &settings.scaled(2.0))
         };
         let even = |scale: f64| generate(scale, &Default::default());
-        let scales = [1.0, self.height_mm() / fine_mm];
-        let mesh = if ways_mm.is_none() {
-            coarsen(even, scales, self.settings.max_nodes)?.1
-        } else {
-            let most = self.settings.max_path_nodes;
-            let (scale, mesh) = coarsen(even, [PATH_SCALE, scales[1]], most)?;
-            let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
-            let edge_mm = scale * fine_mm;
-            let shortest_mm = SHARPEST * edge_mm;
-            let rims = |scale: f64| {
-                let per_radius = self.settings.edges_per_rounding / scale;
-                roundings.stretches(per_radius, [scale * shortest_mm, edge_mm])
-            };
-            if rims(1.0).iter().all(Vec::is_empty) {
-                mesh
-            } else {
-                let most = (RIM_SHARE * most as f64) as usize;
-                coarsen(
-                    |rim_scale| generate(scale, &rims(rim_scale)),
-                    [1.0, 1.0 / SHARPEST],
-                    most,
-                )?
-                .1
-            }
+        let (fineness, most) = match ways_mm {
+            None => (&TABLE, self.settings.max_nodes),
+            Some(_) => (&PATH, self.settings.max_path_nodes),
         };
+        let (scale, mut mesh) = coarsen(even, [fineness.scale, self.height_mm() / fine_mm], most)?;
+        let roundings = Roundings::of(indenter.as_ref(), &touch, touched, radius_mm, depth_mm);
+        let edge_mm = scale * fine_mm;
+        let rims = |scale: f64| {
+            let per_radius = self.settings.edges_per_rounding / scale;
+            roundings.stretches(per_radius, [scale * fineness.sharpest * edge_mm, edge_mm])
+        };
+        if rims(1.0).iter().any(|axis| !axis.is_empty()) {
+            let most = (fineness.rim_share * most as f64) as usize;
+            let rimmed = |rim_scale: f64| generate(scale, &rims(rim_scale));
+            let (_, with_rims) = coarsen(rimmed, [1.0, 1.0 / fineness.sharpest], most)?;
+            if with_rims.n_nodes_refined() <= most {
+                mesh = with_rims;
+            }
+        }
         mesh.check_volumes()?;
         GelMesh::new(
             sensor,

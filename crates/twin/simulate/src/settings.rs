@@ -20,8 +20,8 @@ pub struct SimulateSettings {
     /// Number of nodes of the mesh for a path, which bounds its computing time: edges are made shorter or longer than requested to come close
     /// to it. Meshes that are refined at the indenter's rim get two thirds more.
     pub max_path_nodes: usize,
-    /// Edges along a path over the radius to which an indenter is rounded, where that makes them shorter than elsewhere: the force of a punch comes
-    /// from its rim. The pressure has half as many. Not used for tables.
+    /// Edges over the radius to which an indenter is rounded, where that makes them shorter than elsewhere, but not shorter than half of those under the
+    /// rest of it, for a path three tenths: the force of a punch comes from its rim. The pressure has half as many.
     pub edges_per_rounding: f64,
     /// Mean distance of a table's frames over depth, mm. Shallow tables have five.
     pub depth_step_mm: f64,

@@ -13,8 +13,6 @@ pub(crate) struct ContactPoint {
     pub(crate) stiffness: f64,
     /// Depth inside a shape that causes no force, mm.
     pub(crate) slack_mm: f64,
-    /// Whether it sees the shape as the plane at which it touches it.
-    pub(super) sees_a_plane: bool,
 }
 
 impl ContactPoint {
@@ -25,7 +23,6 @@ impl ContactPoint {
             weights: [1.0, 0.0, 0.0],
             stiffness,
             slack_mm: 0.0,
-            sees_a_plane: false,
         }
     }
 
@@ -36,7 +33,6 @@ impl ContactPoint {
             weights,
             stiffness,
             slack_mm,
-            sees_a_plane: false,
         }
     }
 

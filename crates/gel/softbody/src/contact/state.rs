@@ -138,18 +138,6 @@ impl Contact {
         true
     }
 
-    /// The same contact, whose points inside triangles see the plane at which each touches the shape, and not how the shape turns. Forces are the same here.
-    ///
-    /// Where a coarse triangle cuts off a rim, such a point can be as deep as the rim is round, and the way out turns without bound about the middle of
-    /// the rounding: a stiffness below zero that has nothing to do with the gel. Newton's tangent leaves it out for the same reason ([`RigidBody::stiffness`]).
-    pub(crate) fn with_planes_inside(&self) -> Self {
-        let mut contact = self.clone();
-        for Inside { point, touch, .. } in &mut contact.inside {
-            point.sees_a_plane = touch.force_n > 0.0;
-        }
-        contact
-    }
-
     /// The quadrature points inside triangles, the longest edge of each one's triangle at rest, mm, and their contact.
     pub(super) fn points_inside(&self) -> impl Iterator<Item = (&ContactPoint, f64, &Touch)> {
         let inside = self.inside.iter();

@@ -1,7 +1,6 @@
 //! Contact of one point with one shape: gap, force and stiffness.
 
 use glam::{DMat3, DVec3};
-use twintac_shape::Pose;
 
 use super::point::ContactPoint;
 use super::rigid_body::{RigidBody, outer};
@@ -74,7 +73,7 @@ impl RigidBody<'_> {
             touch.force_n = 0.0;
             return 0.0;
         }
-        let (distance_mm, normal) = self.nearest(touch, point, local_mm);
+        let (distance_mm, normal) = self.nearest(local_mm);
         touch.measured_at_mm = local_mm;
         touch.measured_mm = distance_mm;
         touch.gap_mm = distance_mm + point.slack_mm;
@@ -85,16 +84,14 @@ impl RigidBody<'_> {
         energy
     }
 
-    /// Distance of a contact point that is here in the shape's frame, mm, and the way out in the gel's: of the shape, or of the plane that it sees instead.
+    /// Distance of a point from the shape, mm, and the way out in the gel's frame.
     #[inline]
-    fn nearest(&self, touch: &Touch, point: &ContactPoint, local_mm: DVec3) -> (f64, DVec3) {
-        let Pose { rotation, .. } = self.gel_from_shape;
-        if point.sees_a_plane {
-            let way_mm = rotation * (local_mm - touch.measured_at_mm);
-            return (touch.measured_mm + touch.normal.dot(way_mm), touch.normal);
-        }
+    fn nearest(&self, local_mm: DVec3) -> (f64, DVec3) {
         let distance = self.shape.signed_distance(local_mm);
-        (distance.distance_mm, rotation * distance.gradient)
+        (
+            distance.distance_mm,
+            self.gel_from_shape.rotation * distance.gradient,
+        )
     }
 
     /// Whether a point is nearer than this to the shape.
@@ -123,7 +120,7 @@ impl RigidBody<'_> {
         multiplier_mm: f64,
     ) -> DVec3 {
         let local_mm = self.gel_from_shape.inverse_transform_point(at_mm);
-        let (distance_mm, normal) = self.nearest(touch, point, local_mm);
+        let (distance_mm, normal) = self.nearest(local_mm);
         let gap_mm = distance_mm + point.slack_mm;
         let (_, force_n, _) = penalty(gap_mm - multiplier_mm, point.stiffness * touch.stiffening);
         normal * force_n

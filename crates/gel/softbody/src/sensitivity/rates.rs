@@ -60,10 +60,6 @@ pub(crate) fn follow(
 }
 
 /// Finds the rates of one equilibrium.
-///
-/// Where a coarse triangle cuts off a rim, a point inside it can be as deep as the rim is round. There the way out turns without bound, and the tangent may have a
-/// stiffness below zero that is not the gel's. Then, and only then, such points keep the direction in which the shape pushes them, as they do in Newton's method: rates
-/// without that turn are less exact, which draws a fit away along what its measurements hardly tell apart.
 fn differentiate(
     body: &SoftBody,
     buffers: &mut Buffers,
@@ -75,28 +71,6 @@ fn differentiate(
     for sensitivity in &mut *sensitivities {
         sensitivity.follow_multipliers(before, x.contacts);
     }
-    match solve(body, buffers, step, x, sensitivities) {
-        Err(Failure::Singular | Failure::NotConverged { .. }) => {
-            let mut contacts: Vec<Contact> = x.contacts.iter().map(Contact::with_planes_inside).collect();
-            let mut x = Unknowns {
-                displacements_mm: x.displacements_mm,
-                pressures_mpa: x.pressures_mpa,
-                contacts: &mut contacts,
-            };
-            solve(body, buffers, step, &mut x, sensitivities)
-        }
-        solved => solved,
-    }
-}
-
-/// Finds the rates of one equilibrium, with the contacts as they are.
-fn solve(
-    body: &SoftBody,
-    buffers: &mut Buffers,
-    step: &Step,
-    x: &mut Unknowns,
-    sensitivities: &mut [Sensitivity],
-) -> Result<(), Failure> {
     buffers.evaluate(body, step, x).ok_or(Failure::Inverted)?;
     buffers.stand_at(x);
     let mut tangent = Tangent::new(body, buffers, step, x);

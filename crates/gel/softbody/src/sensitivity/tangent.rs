@@ -98,6 +98,9 @@ impl<'a, 'b> Tangent<'a, 'b> {
 
     /// Solves `K rates = forces` by conjugate gradients that the single-precision solver preconditions; the preconditioner varies, so that
     /// each direction is made conjugate to the last one explicitly.
+    ///
+    /// Where a coarse triangle cuts off a rim, a point inside it can be as deep as the rim is round: the way out turns about the middle of the rounding, a stiffness
+    /// below zero. Conjugate gradients go on through directions of such a stiffness; what is left unbalanced says whether the rates are right.
     pub(super) fn solve(
         &mut self,
         buffers: &mut Buffers,
@@ -131,7 +134,7 @@ impl<'a, 'b> Tangent<'a, 'b> {
                 add(&mut product.pressures_mpa, &last_product.pressures_mpa, -ratio);
             }
             let curvature = dot(&direction, &product.forces_n);
-            if curvature.is_nan() || curvature <= 0.0 {
+            if !curvature.is_normal() {
                 return Err(Failure::Singular);
             }
             let length = dot(&direction, &forces_n) / curvature;
