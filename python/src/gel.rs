@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Duration;
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -71,12 +72,29 @@ impl Gel {
     /// The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go, at least one: the mesh
     /// is fine along the straight ways between them, and for the deepest of them. Takes about a second; Ctrl-C ends the wait.
     ///
-    /// Raises `Error` for an indenter that the sensor does not have, and a first pose beside the gel.
-    fn state(&self, py: Python<'_>, indenter: String, poses: Vec<Pose>) -> PyResult<GelState> {
+    /// With `deadline_ms`, 1 to 60000, each frame is answered within so many milliseconds of wall time with what is found by then: `GelState.converged` says whether its forces
+    /// are balanced, `GelState.residual` how nearly. Frames with a `force_n` take the time that they need. Such readings are not reproducible.
+    ///
+    /// Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a deadline out of its range.
+    #[pyo3(signature = (indenter, poses, *, deadline_ms=None))]
+    fn state(
+        &self,
+        py: Python<'_>,
+        indenter: String,
+        poses: Vec<Pose>,
+        deadline_ms: Option<f64>,
+    ) -> PyResult<GelState> {
         if poses.is_empty() {
             return Err(unusable(py, "poses", "has none, expected at least one"));
         }
-        let gel = Arc::clone(&self.gel);
+        let mut gel = twintac::Gel::clone(&self.gel);
+        if let Some(deadline_ms) = deadline_ms {
+            if !(1.0..=60_000.0).contains(&deadline_ms) {
+                let problem = format!("is {deadline_ms}, expected 1 to 60000 (milliseconds)");
+                return Err(unusable(py, "deadline_ms", &problem));
+            }
+            gel = gel.with_deadline(Duration::from_secs_f64(1e-3 * deadline_ms));
+        }
         let poses: Vec<twintac::Pose> = poses.into_iter().map(|pose| pose.pose).collect();
         let state = long_call(py, move || gel.state(&indenter, &poses))?.or_raise(py)?;
         Ok(GelState::new(state, self.taxels.clone()))

@@ -112,6 +112,18 @@ impl GelState {
         self.look(py, |held| held.last.as_ref().map(|frame| frame.depth_mm))
     }
 
+    /// Whether the forces at the last frame are balanced: they are, unless `Gel.state` was given a `deadline_ms` that came first. `None` before the first frame.
+    #[getter]
+    fn converged(&self, py: Python<'_>) -> PyResult<Option<bool>> {
+        self.look(py, |held| held.last.as_ref().map(|frame| frame.converged))
+    }
+
+    /// What part of the load is unbalanced at the last frame; `None` before the first.
+    #[getter]
+    fn residual(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        self.look(py, |held| held.last.as_ref().map(|frame| frame.quality.residual))
+    }
+
     /// Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. A press straight down has a negative z. Zero before the first frame.
     #[getter]
     fn force_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {

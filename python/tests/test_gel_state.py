@@ -218,3 +218,21 @@ def test_a_twin_along_a_path_reads_as_the_command_says(trained: Path, tmp_path: 
     assert predicted.failure is None and predicted.provenance == "simulated"
     assert steps[-1][:3] == ("simulating", 11, 11)
     assert twin.predict(Press("sphere-25", depth_mm=0.5)).failure is None
+
+
+def test_a_frame_with_a_deadline_says_whether_it_has_settled(gel: Gel) -> None:
+    touch = gel.touch("sphere-25", Pose((-4.0, 4.0, 0.0)))
+    poses = [moved(touch, 0.0, 1.0), moved(touch, 2.0, 1.0)]
+    state = gel.state("sphere-25", poses, deadline_ms=60_000)
+    assert state.converged is None and state.residual is None
+    waited = gel.state("sphere-25", poses)
+    assert np.array_equal(state.step(0.02, poses[0]), waited.step(0.02, poses[0]))
+    assert state.converged is True
+    assert state.residual is not None and 0.0 <= state.residual < 1e-3
+    hurried = gel.state("sphere-25", poses, deadline_ms=1)
+    hurried.step(0.02, poses[0])
+    hurried.step(0.02, poses[1])
+    assert hurried.converged is False
+    for wrong in (0.0, -1.0, float("nan"), 1e9):
+        with pytest.raises(Error, match="deadline_ms"):
+            gel.state("sphere-25", poses, deadline_ms=wrong)

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use twintac_protocol::PressPath;
@@ -32,6 +33,14 @@ impl Gel {
         Self {
             gel: twintac_simulate::Gel::new(sensor, settings),
         }
+    }
+
+    /// The same gel, whose frames along paths and of [`Gel::state`] are answered within a wall time, settled or not: `converged` of a frame says which, `quality.residual` how
+    /// nearly. Frames with a prescribed force take the time that they need. Such results are not reproducible.
+    #[must_use]
+    pub fn with_deadline(mut self, deadline: Duration) -> Self {
+        self.gel = self.gel.with_deadline(deadline);
+        self
     }
 
     /// Presses the gel down to the depth of the press: takes about a second. A gel whose material relaxes does so while it is pressed, at the

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
+use std::time::Duration;
 
 use anyhow::Result;
 use serde::Serialize;
@@ -22,6 +23,9 @@ const SMALLEST_PRESSURE: f64 = 0.05;
 
 /// A frame's time at 55 Hz, ms.
 const BUDGET_MS: f64 = 1000.0 / 55.0;
+
+/// Wall time within which frames are answered where they have a deadline: what is left of a frame's time is for reading the ports.
+const DEADLINE: Duration = Duration::from_millis(15);
 
 /// Part of the way down over which other ways to solve are compared.
 const COMPARED: f64 = 0.25;
@@ -47,6 +51,22 @@ struct Timed {
     /// Largest error against the tight solution of the same mesh, %.
     force_error_percent: f64,
     pressure_error_percent: f64,
+    /// The same with a deadline for each frame.
+    within_deadline: Within,
+}
+
+/// A case whose frames have a deadline.
+#[derive(Serialize)]
+struct Within {
+    deadline_ms: f64,
+    worst_ms: f64,
+    in_time: f64,
+    /// Part of the frames that settled before the deadline.
+    settled: f64,
+    force_error_percent: f64,
+    pressure_error_percent: f64,
+    /// Largest part of the load that is unbalanced, %.
+    residual_percent: f64,
 }
 
 /// Times all cases and prints what came of them.
@@ -78,6 +98,21 @@ pub(crate) fn run(as_json: bool) -> Result<()> {
                 timed.pressure_error_percent,
                 timed.times_of_direct
             )?;
+            let within = &timed.within_deadline;
+            writeln!(
+                out,
+                "{:>82} {:>8.2} {:>6.1} % {:>6.2} % {:>6.2} %",
+                format!(
+                    "within {} ms ({:.1} % settled, others to {:.1} % of the load):",
+                    within.deadline_ms,
+                    100.0 * within.settled,
+                    within.residual_percent
+                ),
+                within.worst_ms,
+                100.0 * within.in_time,
+                within.force_error_percent,
+                within.pressure_error_percent
+            )?;
         }
     }
     Ok(())
@@ -96,15 +131,11 @@ fn time(case: &Case) -> Result<Timed> {
         )
     });
     let times_of_direct = direct_s? / ours_s?;
-    let times_ms: Vec<f64> = fast.frames.iter().map(|frame| 1e3 * frame.wall_time_s).collect();
+    let times_ms = times_ms(&fast);
     let total_s = times_ms.iter().sum::<f64>() / 1e3;
     let last = fast.frames.len() - 1;
     let simulated_s = fast.frames[last].time_s - fast.frames[0].time_s;
-    let in_time = times_ms.iter().filter(|time| **time <= BUDGET_MS).count();
-    let force = |followed: &Followed, frame: usize| followed.frames[frame].force_n.length();
-    let pressures = |followed: &Followed, frame: usize| -> Vec<f64> {
-        followed.frames[frame].pressure_kpa.values().copied().collect()
-    };
+    let [force_error_percent, pressure_error_percent] = errors_percent(&fast, &tight);
     Ok(Timed {
         case: case.name,
         nodes: fast.n_nodes,
@@ -113,15 +144,67 @@ fn time(case: &Case) -> Result<Timed> {
         rtf: simulated_s / total_s,
         force_n: forces(&fast),
         mean_ms: 1e3 * total_s / times_ms.len() as f64,
-        worst_ms: times_ms.iter().copied().fold(0.0, f64::max),
+        worst_ms: worst(&times_ms),
         times_of_direct,
-        in_time: in_time as f64 / times_ms.len() as f64,
-        force_error_percent: 100.0
-            * largest_error(&fast, &tight, SMALLEST_FORCE, |followed, frame| {
-                vec![force(followed, frame)]
-            }),
-        pressure_error_percent: 100.0 * largest_error(&fast, &tight, SMALLEST_PRESSURE, pressures),
+        in_time: part_in_time(&times_ms),
+        force_error_percent,
+        pressure_error_percent,
+        within_deadline: within_deadline(case, &tight)?,
     })
+}
+
+fn within_deadline(case: &Case, tight: &Followed) -> Result<Within> {
+    let followed = case.follow_within(DEADLINE, FAST)?;
+    let times_ms = times_ms(&followed);
+    let [force_error_percent, pressure_error_percent] = errors_percent(&followed, tight);
+    let settled = followed.frames.iter().filter(|frame| frame.converged).count();
+    Ok(Within {
+        deadline_ms: 1e3 * DEADLINE.as_secs_f64(),
+        worst_ms: worst(&times_ms),
+        in_time: part_in_time(&times_ms),
+        settled: settled as f64 / times_ms.len() as f64,
+        force_error_percent,
+        pressure_error_percent,
+        residual_percent: 100.0
+            * worst(
+                &followed
+                    .frames
+                    .iter()
+                    .map(|frame| frame.quality.residual)
+                    .collect::<Vec<_>>(),
+            ),
+    })
+}
+
+/// Wall times of all frames, ms.
+fn times_ms(followed: &Followed) -> Vec<f64> {
+    followed
+        .frames
+        .iter()
+        .map(|frame| 1e3 * frame.wall_time_s)
+        .collect()
+}
+
+fn worst(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+/// Part of the frames within the time that a frame lasts.
+fn part_in_time(times_ms: &[f64]) -> f64 {
+    let in_time = times_ms.iter().filter(|time| **time <= BUDGET_MS).count();
+    in_time as f64 / times_ms.len() as f64
+}
+
+/// Largest errors of force and pressure against the tight solution, %.
+fn errors_percent(fast: &Followed, tight: &Followed) -> [f64; 2] {
+    let force = |followed: &Followed, frame: usize| vec![followed.frames[frame].force_n.length()];
+    let pressures = |followed: &Followed, frame: usize| -> Vec<f64> {
+        followed.frames[frame].pressure_kpa.values().copied().collect()
+    };
+    [
+        100.0 * largest_error(fast, tight, SMALLEST_FORCE, force),
+        100.0 * largest_error(fast, tight, SMALLEST_PRESSURE, pressures),
+    ]
 }
 
 /// Largest relative error of values in all frames, of small ones relative to a part of the largest.

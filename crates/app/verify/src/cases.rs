@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Duration;
 
 use anyhow::{Context, Result, ensure};
 use glam::DVec3;
@@ -177,6 +178,14 @@ impl Case {
         self.follow_by(LinearSolver::TwoLevel, tolerance, advanced)
     }
 
+    /// The same, each frame answered within a wall time.
+    pub(crate) fn follow_within(&self, deadline: Duration, tolerance: f64) -> Result<Followed> {
+        let gel = self
+            .gel(tolerance, LinearSolver::TwoLevel)
+            .with_deadline(deadline);
+        self.follow_on(&gel, &mut || ())
+    }
+
     /// The same, with a choice of how linear systems are solved.
     pub(crate) fn follow_by(
         &self,
@@ -184,7 +193,11 @@ impl Case {
         tolerance: f64,
         advanced: &mut dyn FnMut(),
     ) -> Result<Followed> {
-        let followed = self.gel(tolerance, linear).follow(&BALL, &self.path, &mut || {
+        self.follow_on(&self.gel(tolerance, linear), advanced)
+    }
+
+    fn follow_on(&self, gel: &Gel, advanced: &mut dyn FnMut()) -> Result<Followed> {
+        let followed = gel.follow(&BALL, &self.path, &mut || {
             advanced();
             ControlFlow::Continue(())
         })?;

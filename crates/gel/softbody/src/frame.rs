@@ -14,7 +14,8 @@ pub struct Frame {
     pub board_reaction_n: DVec3,
     /// Force of all obstacles, N.
     pub obstacle_reaction_n: DVec3,
-    /// Always true: a step that does not converge is an error. Kept for records of frames.
+    /// Whether the forces are balanced. A step that does not converge is an error, unless its time was up ([`crate::State::answer_within`]): then `residual` says how
+    /// much is left unbalanced.
     pub converged: bool,
     /// Newton iterations, including those of failed sub-steps.
     pub iterations: u32,

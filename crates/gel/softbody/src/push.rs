@@ -80,6 +80,7 @@ impl SoftBody {
             last: None,
         };
         let mut spare = std::mem::take(&mut state.workspace);
+        let deadline = state.deadline.take();
         // The state from which the next try starts, and its time step.
         let (mut base, mut left_s) = (state.clone(), time_step_s);
         let mut motion = state.last.clone();
@@ -105,6 +106,7 @@ impl SoftBody {
                         .or(slope);
                     if missing_n.abs() <= goal_n {
                         trial.stiffness_n_per_mm = slope;
+                        trial.deadline = deadline;
                         *state = trial;
                         return Ok(Frame { iterations, ..frame });
                     }
@@ -134,6 +136,7 @@ impl SoftBody {
             }
         }
         state.workspace = spare;
+        state.deadline = deadline;
         Err(failure.unwrap_or(SolveError::ForceNotReached {
             wanted_n: push.force_n,
             reached_n,

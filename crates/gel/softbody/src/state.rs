@@ -1,5 +1,7 @@
 //! The state of a soft body.
 
+use std::time::Duration;
+
 use glam::DVec3;
 use twintac_shape::Pose;
 
@@ -9,6 +11,9 @@ use crate::newton::Workspace;
 use crate::relaxation::History;
 use crate::sensitivity::{Direction, Sensitivity};
 use crate::{SoftBodyError, SolverSettings};
+
+/// Largest ratio of a motion to the last one for an extrapolation.
+const MAX_EXTRAPOLATION: f64 = 2.0;
 
 /// The state of a soft body: what one press changes. Made by [`SoftBody::rest`].
 #[derive(Clone)]
@@ -25,6 +30,10 @@ pub struct State {
     pub(crate) stiffness_n_per_mm: Option<f64>,
     /// Derivatives of all of the above along each direction asked for.
     pub(crate) sensitivities: Vec<Sensitivity>,
+    /// Time after which a step ends, settled or not.
+    pub(crate) deadline: Option<Duration>,
+    /// Whether the last step ended because its time was up.
+    pub(crate) was_late: bool,
     pub(crate) workspace: Workspace,
 }
 
@@ -42,6 +51,25 @@ impl Motion {
         let ends = new_mm.iter().zip(old_mm);
         self.displacements_mm.clear();
         self.displacements_mm.extend(ends.map(|(new, old)| *new - *old));
+    }
+
+    /// Moves displacements on to where this motion would lead after a travel that follows; false where that is nowhere else.
+    pub(crate) fn go_on(&self, travel_mm: DVec3, displacements_mm: &mut [DVec3]) -> bool {
+        let ratio = self.ratio(travel_mm);
+        for (u, change) in displacements_mm.iter_mut().zip(&self.displacements_mm) {
+            *u += *change * ratio;
+        }
+        ratio != 0.0
+    }
+
+    /// Ratio of the next motion to this one, negative if it goes back: presses are extrapolated in depth, not in time.
+    fn ratio(&self, travel_mm: DVec3) -> f64 {
+        let size = self.travel_mm.length_squared();
+        if size > 0.0 {
+            (self.travel_mm.dot(travel_mm) / size).clamp(-1.0, MAX_EXTRAPOLATION)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -70,6 +98,13 @@ impl State {
     #[must_use]
     pub fn gel_from_indenter(&self) -> Option<Pose> {
         self.gel_from_indenter
+    }
+
+    /// From now on a step of [`SoftBody::advance`] ends within this wall time with what it has found, and the next one goes on from there:
+    /// [`crate::Frame::converged`] says whether the forces are balanced, [`crate::Frame::residual`] how nearly. A step takes one iteration at least, each of its parts one, and
+    /// no other that would be late if it took as long as the last. Such results are not reproducible. Presses to a force and presses with rates take the time that they need.
+    pub fn answer_within(&mut self, deadline: Option<Duration>) {
+        self.deadline = deadline;
     }
 
     /// Displacement of a node from its position at rest, mm.
@@ -108,6 +143,8 @@ impl SoftBody {
             last: None,
             stiffness_n_per_mm: None,
             sensitivities: Vec::new(),
+            deadline: None,
+            was_late: false,
             workspace: Workspace::default(),
         }
     }

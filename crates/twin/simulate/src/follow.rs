@@ -39,12 +39,20 @@ pub struct FollowedFrame {
     /// [`Gel::with_stress_along_paths`].
     #[serde(skip)]
     pub stress_feature_kpa_per_mm: Vec<f64>,
-    /// Quality of the solve.
+    /// Whether the forces are balanced: they are, unless the gel had a deadline ([`Gel::with_deadline`]) that came first.
+    #[serde(default = "yes")]
+    pub converged: bool,
+    /// Quality of the solve; its residual says how far from balanced the forces are.
     pub quality: SolveQuality,
     /// Wall time of the frame, s. It is not reproducible, and no result depends on it.
     pub wall_time_s: f64,
     /// The wall time by part of the solver.
     pub cost: Cost,
+}
+
+/// Frames of before there were deadlines had converged.
+fn yes() -> bool {
+    true
 }
 
 /// The result of a path.

@@ -1,6 +1,7 @@
 //! A sensor's gel as a soft body, ready to be pressed.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use glam::{DQuat, DVec2, DVec3};
 use serde::{Serialize, Serializer};
@@ -63,6 +64,8 @@ pub struct Gel {
     material: Material,
     /// Whether paths read the stress feature.
     pub(crate) stress_along_paths: bool,
+    /// Wall time that a frame of a path may take.
+    pub(crate) deadline: Option<Duration>,
     upwards: DVec3,
 }
 
@@ -74,9 +77,18 @@ impl Serialize for Gel {
             settings,
             material,
             stress_along_paths,
+            deadline,
             upwards,
         } = self;
-        (&**sensor, settings, material, stress_along_paths, upwards).serialize(serializer)
+        (
+            &**sensor,
+            settings,
+            material,
+            stress_along_paths,
+            deadline,
+            upwards,
+        )
+            .serialize(serializer)
     }
 }
 
@@ -129,6 +141,7 @@ impl Gel {
             settings,
             material,
             stress_along_paths: false,
+            deadline: None,
             upwards: DVec3::Z,
         }
     }
@@ -137,6 +150,14 @@ impl Gel {
     #[must_use]
     pub fn with_stress_along_paths(mut self) -> Self {
         self.stress_along_paths = true;
+        self
+    }
+
+    /// The same gel, whose frames along paths, and of [`crate::GelState`], are answered within a wall time, settled or not: [`crate::FollowedFrame::converged`] says which. Frames
+    /// with a prescribed force take the time that they need. Such results are not reproducible.
+    #[must_use]
+    pub fn with_deadline(mut self, deadline: Duration) -> Self {
+        self.deadline = Some(deadline);
         self
     }
 

@@ -50,7 +50,7 @@ impl Gel {
             ports.push((point.name.clone(), port));
         }
         Ok(GelState {
-            walk: Walk::new(gel, path, self.height_mm()),
+            walk: Walk::new(gel, path, self.height_mm()).within(self.deadline),
             ports,
             touch_mm,
             reads_stress: self.stress_along_paths,
@@ -150,6 +150,7 @@ impl GelState {
             } else {
                 Vec::new()
             },
+            converged: frame.converged,
             quality: solve_quality(&frame),
             wall_time_s: frame.wall_time_s,
             cost: frame.cost,

@@ -1,5 +1,7 @@
 //! An indenter in a gel, taken from one moment to the next.
 
+use std::time::Duration;
+
 use glam::DVec3;
 use twintac_protocol::{PathFrame, PressPath};
 use twintac_shape::Pose;
@@ -13,6 +15,7 @@ pub(crate) struct Walk {
     pub(crate) state: State,
     direction: DVec3,
     travel_mm: f64,
+    deadline: Option<Duration>,
     /// Time of the last frame, s.
     time_s: Option<f64>,
     /// How far beyond its pose the indenter was at the last frame of prescribed force, mm.
@@ -28,15 +31,24 @@ impl Walk {
             gel,
             direction: path.force_direction.normalize_or(DVec3::NEG_Z),
             travel_mm: path.force_travel_mm.unwrap_or(height_mm),
+            deadline: None,
             time_s: None,
             beyond_mm: 0.0,
             force_n: 0.0,
         }
     }
 
+    /// The same walk, whose frames are answered within a wall time.
+    pub(crate) fn within(mut self, deadline: Option<Duration>) -> Self {
+        self.deadline = deadline;
+        self.state.answer_within(deadline);
+        self
+    }
+
     /// Lets go of the gel: nothing presses it, and it remembers nothing.
     pub(crate) fn rest(&mut self) {
         self.state = self.gel.body.rest();
+        self.state.answer_within(self.deadline);
         (self.time_s, self.beyond_mm, self.force_n) = (None, 0.0, 0.0);
     }
 

@@ -10,7 +10,7 @@ use crate::SolveError;
 use crate::body::SoftBody;
 use crate::contact::{Contact, PassedThrough};
 use crate::frame::Frame;
-use crate::newton::Failure;
+use crate::newton::{Equilibrium, Failure};
 use crate::parallel::on_two_threads;
 use crate::state::State;
 
@@ -83,9 +83,11 @@ impl SoftBody {
                 found: format!("{time_step_s} s"),
             });
         }
+        let ends_at = state.deadline.map(|deadline| started + deadline);
+        state.workspace.buffers(self).ends_at = ends_at.filter(|_| state.sensitivities.is_empty());
         // Only a step in several parts can fail after one of them.
         let mut before = None;
-        let mut iterations = 0;
+        let (mut iterations, mut is_settled) = (0, true);
         let largest = drive.largest_part(self.settings.max_travel_mm);
         let (mut done, mut size) = (0.0, largest);
         loop {
@@ -106,10 +108,17 @@ impl SoftBody {
                 &mut iterations,
             ) {
                 Ok(equilibrium) if next >= 1.0 => {
+                    let equilibrium = Equilibrium {
+                        is_settled: is_settled && equilibrium.is_settled,
+                        ..equilibrium
+                    };
                     let wall_time_s = started.elapsed().as_secs_f64();
                     return Ok(self.frame(state, &equilibrium, iterations, wall_time_s));
                 }
-                Ok(_) => (done, size) = (next, (2.0 * size).min(largest)),
+                Ok(equilibrium) => {
+                    is_settled &= equilibrium.is_settled;
+                    (done, size) = (next, (2.0 * size).min(largest));
+                }
                 Err(_) if 0.5 * size >= self.settings.min_substep * largest => {
                     size *= 0.5;
                     state.contacts.iter_mut().for_each(Contact::drop_multipliers);

@@ -54,7 +54,7 @@ impl SoftBody {
             indenter_torque_n_mm: torque,
             board_reaction_n: held,
             obstacle_reaction_n,
-            converged: true,
+            converged: equilibrium.is_settled,
             iterations,
             residual: equilibrium.residual,
             penetration_mm: state

@@ -7,12 +7,9 @@ use super::drive::Drive;
 use crate::body::SoftBody;
 use crate::contact::{Contact, RigidBody};
 use crate::element::{self, Response};
-use crate::newton::{Buffers, Equilibrium, Failure, Step, Unknowns};
+use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::sensitivity;
-use crate::state::{Motion, State};
-
-/// Largest ratio of a motion to the last one for an extrapolation.
-const MAX_EXTRAPOLATION: f64 = 2.0;
+use crate::state::State;
 
 impl SoftBody {
     /// Solves for a part of a motion, from one fraction of it to another; on failure the state is as before.
@@ -38,6 +35,7 @@ impl SoftBody {
             workspace,
             last,
             sensitivities,
+            was_late,
             ..
         } = &mut *state;
         let buffers = workspace.buffers(self);
@@ -52,18 +50,27 @@ impl SoftBody {
             contacts,
         };
         let travel_mm = to.position_mm - from.position_mm;
-        if let Some(last) = last {
-            self.extrapolate(buffers, &mut x, last, travel_mm);
+        let is_ahead = last
+            .as_ref()
+            .is_some_and(|last| last.go_on(travel_mm, x.displacements_mm));
+        if is_ahead {
             drive.hold(self, part[1], x.displacements_mm);
         }
-        let solved = buffers
-            .solve(self, &step, &mut x, iterations)
-            .and_then(|equilibrium| {
-                self.check_sides([&before, &shapes], &x, &buffers.old.displacements_mm)?;
-                sensitivity::follow(self, buffers, &step, &mut x, sensitivities)?;
-                Ok(equilibrium)
-            });
-        if solved.is_ok() {
+        let iterations_before = *iterations;
+        let mut solved = buffers.solve(self, &step, &mut x, iterations);
+        if is_ahead && *iterations == iterations_before && matches!(solved, Err(Failure::Inverted)) {
+            // Where the last motion would lead, a tetrahedron is inside out.
+            x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
+            drive.hold(self, part[1], x.displacements_mm);
+            solved = buffers.solve(self, &step, &mut x, iterations);
+        }
+        let solved = solved.and_then(|equilibrium| {
+            self.check_sides([&before, &shapes], &x, &buffers.old.displacements_mm)?;
+            sensitivity::follow(self, buffers, &step, &mut x, sensitivities)?;
+            Ok(equilibrium)
+        });
+        if let Ok(equilibrium) = &solved {
+            *was_late = !equilibrium.is_settled;
             self.settle_friction(&shapes, &mut x);
             let relaxation = step.response.relaxation;
             element::update_history(
@@ -110,36 +117,30 @@ impl SoftBody {
             pressures_mpa,
             contacts,
             workspace,
+            was_late,
             ..
         } = state;
         contacts[..n_parts].iter_mut().for_each(Contact::forget_distances);
         let at_mm = |node: u32| self.mesh().nodes_mm[node as usize] + displacements_mm[node as usize];
-        for (shape, contact) in shapes.iter().zip(contacts.iter_mut()) {
+        for (index, (shape, contact)) in shapes.iter().zip(contacts.iter_mut()).enumerate() {
+            // The indenter moves.
+            if index >= n_parts {
+                contact.look_for_room(shape, &self.boundary, &at_mm);
+            }
             contact.look_inside(shape, &self.boundary, &at_mm);
         }
         let old = &mut workspace.buffers(self).old;
         old.displacements_mm.clone_from(displacements_mm);
         old.pressures_mpa.clone_from(pressures_mpa);
         old.contacts.clone_from(contacts);
-        contacts.iter_mut().for_each(Contact::update_multipliers);
+        // What was late is still on its way: how deep its nodes are says nothing yet.
+        if !*was_late {
+            contacts.iter_mut().for_each(Contact::update_multipliers);
+        }
         for (shape, contact) in before.iter().zip(contacts.iter_mut()) {
-            if let Some(friction) = &mut contact.friction {
-                friction.begin(shape, &contact.touches, self.boundary_mm(displacements_mm));
+            if let Some((friction, touches)) = contact.friction_mut() {
+                friction.begin(shape, touches, self.boundary_mm(displacements_mm));
             }
-        }
-    }
-
-    /// Starts where the last motion would lead, unless that turns a tetrahedron inside out.
-    fn extrapolate(&self, buffers: &mut Buffers, x: &mut Unknowns, last: &Motion, travel_mm: DVec3) {
-        let ratio = extrapolation(last.travel_mm, travel_mm);
-        if ratio == 0.0 {
-            return;
-        }
-        for (u, change) in x.displacements_mm.iter_mut().zip(&last.displacements_mm) {
-            *u += *change * ratio;
-        }
-        if !buffers.is_valid(self, x) {
-            x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
         }
     }
 
@@ -167,20 +168,10 @@ impl SoftBody {
 
     fn settle_friction(&self, shapes: &[RigidBody], x: &mut Unknowns) {
         for (shape, contact) in shapes.iter().zip(x.contacts.iter_mut()) {
-            if let Some(friction) = &mut contact.friction {
+            if let Some((friction, touches)) = contact.friction_mut() {
                 let nodes = self.boundary_mm(x.displacements_mm);
-                friction.settle(shape, &contact.touches, nodes);
+                friction.settle(shape, touches, nodes);
             }
         }
-    }
-}
-
-/// Ratio of the next motion to the last one, negative if it goes back: presses are extrapolated in depth, not in time.
-fn extrapolation(last_mm: DVec3, next_mm: DVec3) -> f64 {
-    let size = last_mm.length_squared();
-    if size > 0.0 {
-        (last_mm.dot(next_mm) / size).clamp(-1.0, MAX_EXTRAPOLATION)
-    } else {
-        0.0
     }
 }

@@ -1,5 +1,7 @@
 //! The boundary of a body.
 
+use glam::DVec3;
+
 use super::point::ContactPoint;
 use super::triangle::BoundaryTriangle;
 
@@ -25,5 +27,10 @@ impl Boundary {
             triangles,
             reach_mm,
         }
+    }
+
+    /// Where its nodes are, mm, by where all nodes are.
+    pub(super) fn nodes_mm(&self, node_mm: &dyn Fn(u32) -> DVec3) -> impl Iterator<Item = DVec3> {
+        self.nodes.iter().map(move |point| node_mm(point.corners()[0]))
     }
 }

@@ -61,6 +61,13 @@ impl Friction {
         }
     }
 
+    /// Whether no node is held.
+    pub(crate) fn holds_nothing(&self) -> bool {
+        self.grips
+            .iter()
+            .all(|grip| grip.anchor_mm.is_none() && grip.most_n <= 0.0)
+    }
+
     /// Takes over normals and normal forces; returns by how much the springs' limits change altogether, N.
     pub(crate) fn follow(&mut self, touches: &[Touch]) -> f64 {
         let mut change_n = 0.0;

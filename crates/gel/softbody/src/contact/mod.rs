@@ -6,6 +6,7 @@
 //! alone. In a concave corner of a shape the direction of the nearest side jumps, and no equilibrium can be found. Walls that meet should be
 //! given as separate shapes: a node in the corner then touches two.
 
+mod away;
 mod bend;
 mod boundary;
 mod clash;
@@ -13,6 +14,7 @@ mod friction;
 mod pierce;
 mod point;
 mod rigid_body;
+mod room;
 mod state;
 mod touch;
 mod triangle;

@@ -8,6 +8,7 @@ use super::boundary::Boundary;
 use super::friction::Friction;
 use super::point::ContactPoint;
 use super::rigid_body::RigidBody;
+use super::room::Room;
 use super::touch::Touch;
 use super::triangle::{BoundaryTriangle, SIDES};
 
@@ -28,12 +29,16 @@ const TURNED_AWAY: f64 = 1.6;
 pub(crate) struct Contact {
     /// Of its nodes. `[n_boundary_nodes]`
     pub(crate) touches: Vec<Touch>,
+    /// Room up to the shape: while there is some, nothing of the contact is computed.
+    pub(super) room: Option<Room>,
+    /// Steps before room is looked for again.
+    pub(super) steps_until_look: u32,
     /// The quadrature points inside its triangles that are in use.
     inside: Vec<Inside>,
     /// Depth of the deepest node when nodes were last pushed out in this step, mm.
     pushed_mm: f64,
     /// None for a coefficient of zero.
-    pub(crate) friction: Option<Friction>,
+    pub(super) friction: Option<Friction>,
 }
 
 /// A quadrature point inside a triangle, and its contact.
@@ -49,6 +54,8 @@ impl Clone for Contact {
     fn clone(&self) -> Self {
         Self {
             touches: self.touches.clone(),
+            room: self.room.clone(),
+            steps_until_look: self.steps_until_look,
             inside: self.inside.clone(),
             pushed_mm: self.pushed_mm,
             friction: self.friction.clone(),
@@ -57,6 +64,14 @@ impl Clone for Contact {
 
     /// Reuses the memory: every step begins with this.
     fn clone_from(&mut self, source: &Self) {
+        // Nothing of a contact changes while it has the same room.
+        if let (Some(room), Some(other)) = (&self.room, &source.room)
+            && room.is_same(other)
+        {
+            return;
+        }
+        self.room.clone_from(&source.room);
+        self.steps_until_look = source.steps_until_look;
         self.touches.clone_from(&source.touches);
         self.inside.clone_from(&source.inside);
         self.pushed_mm = source.pushed_mm;
@@ -69,19 +84,21 @@ impl Contact {
     pub(crate) fn new(n_boundary_nodes: usize, friction: f64) -> Self {
         Self {
             touches: vec![Touch::OFF; n_boundary_nodes],
+            room: None,
+            steps_until_look: 0,
             inside: Vec::new(),
             pushed_mm: f64::INFINITY,
             friction: (friction > 0.0).then(|| Friction::new(friction, n_boundary_nodes)),
         }
     }
 
-    /// All points, and their contact.
+    /// All points that the shape may touch, and their contact: first all nodes, or no points at all.
     pub(crate) fn each<'a>(
         &'a self,
         boundary: &'a Boundary,
     ) -> impl Iterator<Item = (&'a ContactPoint, &'a Touch)> {
         let inside = self.inside.iter().map(|inside| (&inside.point, &inside.touch));
-        boundary.nodes.iter().zip(&self.touches).chain(inside)
+        self.nodes(boundary).iter().zip(&self.touches).chain(inside)
     }
 
     /// The same, to be changed.
@@ -89,9 +106,26 @@ impl Contact {
         &'a mut self,
         boundary: &'a Boundary,
     ) -> impl Iterator<Item = (&'a ContactPoint, &'a mut Touch)> {
+        let nodes = self.nodes(boundary);
         let inside = self.inside.iter_mut();
         let inside = inside.map(|inside| (&inside.point, &mut inside.touch));
-        boundary.nodes.iter().zip(&mut self.touches).chain(inside)
+        nodes.iter().zip(&mut self.touches).chain(inside)
+    }
+
+    /// The boundary's nodes, if the shape may touch any.
+    fn nodes<'a>(&self, boundary: &'a Boundary) -> &'a [ContactPoint] {
+        if self.room.is_some() { &[] } else { &boundary.nodes }
+    }
+
+    /// Friction on the nodes, if there is any and the shape may touch them.
+    pub(crate) fn friction(&self) -> Option<&Friction> {
+        self.friction.as_ref().filter(|_| self.room.is_none())
+    }
+
+    /// The same, to be changed, and the nodes' contact.
+    pub(crate) fn friction_mut(&mut self) -> Option<(&mut Friction, &[Touch])> {
+        let friction = self.friction.as_mut().filter(|_| self.room.is_none())?;
+        Some((friction, &self.touches))
     }
 
     /// All points, and the force of the shape on each, N.
@@ -116,6 +150,9 @@ impl Contact {
 
     /// Makes the present forces the multipliers of the next step.
     pub(crate) fn update_multipliers(&mut self) {
+        if self.room.is_some() {
+            return;
+        }
         self.touches
             .iter_mut()
             .for_each(|touch| touch.update_multiplier(1.0));
@@ -144,6 +181,12 @@ impl Contact {
         inside.map(|inside| (&inside.point, inside.edge_mm, &inside.touch))
     }
 
+    /// Whether nothing is left of a touch, to be pushed or held.
+    pub(super) fn is_untouched(&self) -> bool {
+        let is_off = |touch: &Touch| touch.force_n <= 0.0 && touch.multiplier_mm <= 0.0;
+        self.touches.iter().all(is_off) && self.friction.as_ref().is_none_or(Friction::holds_nothing)
+    }
+
     /// Sets all multipliers to zero.
     pub(crate) fn drop_multipliers(&mut self) {
         self.touches
@@ -153,9 +196,11 @@ impl Contact {
 
     /// Depth of the deepest node, mm.
     pub(crate) fn penetration_mm(&self) -> f64 {
-        self.touches
+        let touches = self
+            .touches
             .iter()
-            .fold(0.0, |deepest, touch| f64::max(deepest, -touch.gap_mm))
+            .take(if self.room.is_some() { 0 } else { usize::MAX });
+        touches.fold(0.0, |deepest, touch| f64::max(deepest, -touch.gap_mm))
     }
 
     /// Forgets the distances: the shape may be another one now.
@@ -171,6 +216,9 @@ impl Contact {
         node_mm: &dyn Fn(u32) -> DVec3,
     ) {
         self.inside.clear();
+        if self.room.is_some() {
+            return;
+        }
         let nodes = boundary.nodes.iter().zip(&mut self.touches);
         let is_near: Vec<bool> = nodes
             .zip(&boundary.reach_mm)

@@ -76,7 +76,7 @@ impl BoundaryTriangle {
 }
 
 /// Middles of equal parts of a triangle, as weights of its corners.
-fn middles() -> impl Iterator<Item = [f64; 3]> {
+pub(super) fn middles() -> impl Iterator<Item = [f64; 3]> {
     let part = |value: u32| f64::from(value) / f64::from(3 * CUTS);
     (0..CUTS).flat_map(move |row| {
         // Counted from the first corner, a row has upright parts and between them inverted ones.

@@ -123,7 +123,7 @@ fn for_each_touch(body: &SoftBody, step: &Step, x: &Unknowns, add: &mut dyn FnMu
                 add(point, &shape.stiffness(touch, point, at_mm));
             }
         }
-        let Some(friction) = &contact.friction else {
+        let Some(friction) = contact.friction() else {
             continue;
         };
         for (index, (point, at_mm)) in body.boundary_mm(x.displacements_mm).enumerate() {

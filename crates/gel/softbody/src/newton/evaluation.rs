@@ -10,11 +10,6 @@ use crate::body::SoftBody;
 use crate::parallel::join_halves;
 
 impl Buffers {
-    /// Whether no tetrahedron is inside out, or the material is defined for that.
-    pub(crate) fn is_valid(&mut self, body: &SoftBody, x: &mut Unknowns) -> bool {
-        is_admissible(body, body.elements.volumes(x.displacements_mm, &mut self.volumes))
-    }
-
     /// Pressures, contact, energy and its gradient; none if a tetrahedron is inside out and the material is not defined for that.
     pub(crate) fn evaluate(&mut self, body: &SoftBody, step: &Step, x: &mut Unknowns) -> Option<Evaluation> {
         let started = Instant::now();
@@ -53,7 +48,11 @@ impl Buffers {
         self.cost.forces_s += started.elapsed().as_secs_f64();
 
         let started = Instant::now();
+        let nodes_mm = &body.mesh.nodes_mm;
+        let before_mm = |node: u32| nodes_mm[node as usize] + self.old.displacements_mm[node as usize];
+        let now_mm = |node: u32| nodes_mm[node as usize] + x.displacements_mm[node as usize];
         for (shape, contact) in step.shapes.iter().zip(x.contacts.iter_mut()) {
+            contact.check_room(shape, &body.boundary, [&before_mm, &now_mm]);
             for (point, touch) in contact.each_mut(&body.boundary) {
                 let at_mm = body.point_mm(point, x.displacements_mm);
                 evaluation.energy += shape.touch(touch, point, at_mm);
@@ -64,7 +63,7 @@ impl Buffers {
                     evaluation.load_n += touch.force_n;
                 }
             }
-            if let Some(friction) = &mut contact.friction {
+            if let Some((friction, _)) = contact.friction_mut() {
                 let nodes = body.boundary_mm(x.displacements_mm);
                 evaluation.energy += friction.pull(shape, nodes, |point, force_n| {
                     for (node, part) in point.parts() {

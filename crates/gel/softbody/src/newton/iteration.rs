@@ -1,5 +1,7 @@
 //! The iteration: directions and steps along them, until the forces are balanced and no node is too deep inside a shape.
 
+use std::time::Instant;
+
 use super::step::{Equilibrium, Failure, Passed, Step, Unknowns};
 use super::workspace::Buffers;
 use crate::body::SoftBody;
@@ -21,7 +23,8 @@ const SHORT: f64 = 0.2;
 const LEAST_DAMPING: f64 = 0.01;
 
 impl Buffers {
-    /// Finds the equilibrium of a step, starting from the unknowns given. `iterations` counts up.
+    /// Finds the equilibrium of a step, starting from the unknowns given. `iterations` counts up. Where the step has to end at a time, it ends after the first
+    /// iteration at which another one as long as the last would be late.
     pub(crate) fn solve(
         &mut self,
         body: &SoftBody,
@@ -34,6 +37,7 @@ impl Buffers {
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut has_failed = false;
+        let mut began = Instant::now();
         for iteration in 0..=settings.max_iterations {
             let residual = now.unbalanced_n / now.load_n.max(body.least_load_n());
             // The start is accepted as the solution only if it is much better than the tolerance: errors must not accumulate over steps.
@@ -55,11 +59,21 @@ impl Buffers {
                     return Ok(Equilibrium {
                         residual,
                         smallest_volume_ratio: now.smallest_volume_ratio,
+                        is_settled: true,
                     });
                 }
                 self.passed.extend(passed);
                 now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
                 continue;
+            }
+            let last = std::mem::replace(&mut began, Instant::now());
+            let is_late = |ends_at| began + (began - last) > ends_at;
+            if iteration > 0 && self.ends_at.is_some_and(is_late) && now.smallest_volume_ratio > 0.0 {
+                return Ok(Equilibrium {
+                    residual,
+                    smallest_volume_ratio: now.smallest_volume_ratio,
+                    is_settled: false,
+                });
             }
             *iterations += 1;
             self.find_direction(body, step, x, FORCING)?;
@@ -110,9 +124,7 @@ impl Buffers {
 
 /// Lets friction follow the normal forces; returns by how much its limits change altogether, N.
 fn follow_friction(contacts: &mut [Contact]) -> f64 {
-    let frictions = contacts
-        .iter_mut()
-        .filter_map(|contact| Some((contact.friction.as_mut()?, &contact.touches)));
+    let frictions = contacts.iter_mut().filter_map(Contact::friction_mut);
     frictions
         .map(|(friction, touches)| friction.follow(touches))
         .sum()

@@ -47,6 +47,8 @@ pub(crate) enum Failure {
 pub(crate) struct Equilibrium {
     pub(crate) residual: f64,
     pub(crate) smallest_volume_ratio: f64,
+    /// Whether the forces are balanced; else the time was up.
+    pub(crate) is_settled: bool,
 }
 
 /// Energy and its slope at a set of displacements.

@@ -1,5 +1,7 @@
 //! The scratch memory of Newton's method.
 
+use std::time::Instant;
+
 use glam::DVec3;
 
 use super::step::{Beginning, Passed, Unknowns};
@@ -53,6 +55,8 @@ pub(crate) struct Buffers {
     /// Whether equilibria before an update of the multipliers are kept, and those of the last step.
     pub(crate) keeps_passed: bool,
     pub(crate) passed: Vec<Passed>,
+    /// When a step has to end, settled or not.
+    pub(crate) ends_at: Option<Instant>,
     /// Time spent since this was last taken.
     pub(crate) cost: Cost,
 }
@@ -82,6 +86,7 @@ impl Workspace {
                 old: Beginning::default(),
                 keeps_passed: false,
                 passed: Vec::new(),
+                ends_at: None,
                 cost: Cost::default(),
             })
         })
