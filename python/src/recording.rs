@@ -6,7 +6,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList};
 use serde::{Deserialize, Serialize};
-use twintac::{Column, Recorded, import_files};
+use twintac::{Column, ImportSummary, Recorded, guess_import, import_files};
 
 use crate::arrow::{STREAM, stream};
 use crate::error::{OrRaise, unusable};
@@ -44,6 +44,15 @@ impl<'py> FromPyObject<'_, 'py> for Provenance {
 #[pyclass(frozen, module = "twintac")]
 pub(crate) struct Recording {
     pub(crate) recording: twintac::Recording,
+    /// What was found in CSV files and left out of them; nothing where it comes from elsewhere.
+    imported: ImportSummary,
+}
+
+impl From<twintac::Recording> for Recording {
+    fn from(recording: twintac::Recording) -> Self {
+        let imported = ImportSummary::default();
+        Self { recording, imported }
+    }
 }
 
 #[pymethods]
@@ -54,7 +63,7 @@ impl Recording {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let recording = long_call(py, move || twintac::Recording::read_parquet(&path))?.or_raise(py)?;
-        Ok(Self { recording })
+        Ok(recording.into())
     }
 
     /// Reads CSV files of any laboratory. The description (TOML, see the folder `imports`) says which column is what, in which unit. Ctrl-C ends the wait.
@@ -63,8 +72,24 @@ impl Recording {
     #[staticmethod]
     #[pyo3(signature = (description, *paths))]
     fn import_csv(py: Python<'_>, description: PathBuf, paths: Vec<PathBuf>) -> PyResult<Self> {
-        let (recording, _) = long_call(py, move || import_files(&description, &paths))?.or_raise(py)?;
-        Ok(Self { recording })
+        let (recording, imported) =
+            long_call(py, move || import_files(&description, &paths))?.or_raise(py)?;
+        Ok(Self { recording, imported })
+    }
+
+    /// A first description of a CSV file's columns, for `import_csv`: the text of a TOML file with a comment on each guess.
+    ///
+    /// Raises `Error` with the file if it cannot be read or has no rows of numbers.
+    #[staticmethod]
+    fn guess_import(path: PathBuf, py: Python<'_>) -> PyResult<String> {
+        guess_import(&path).or_raise(py)
+    }
+
+    /// What `import_csv` found in each file and left out of it, a dict for each: `file`, `rows_read`, `rows_dropped`, `rows_incomplete`, `missing_readings`,
+    /// `clipped_readings`, `outliers`, `presses`, `presses_dropped`, `shared_frames`, `unread_columns`, `warnings`. Empty for recordings from elsewhere.
+    #[getter]
+    fn imported<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.imported.files)
     }
 
     /// Name of the sensor, as its description has it.
@@ -197,14 +222,14 @@ impl Recording {
 }
 
 impl Kept for Recording {
-    type State = twintac::Recording;
+    type State = (twintac::Recording, ImportSummary);
 
-    fn state(&self, _: Python<'_>) -> PyResult<twintac::Recording> {
-        Ok(self.recording.clone())
+    fn state(&self, _: Python<'_>) -> PyResult<Self::State> {
+        Ok((self.recording.clone(), self.imported.clone()))
     }
 
-    fn restored(_: Python<'_>, recording: twintac::Recording) -> PyResult<Self> {
-        Ok(Self { recording })
+    fn restored(_: Python<'_>, (recording, imported): Self::State) -> PyResult<Self> {
+        Ok(Self { recording, imported })
     }
 }
 

@@ -117,7 +117,7 @@ impl Run {
     /// Raises `Error` for a run that has none yet.
     fn recording(&self, py: Python<'_>) -> PyResult<Recording> {
         let recording = py.detach(|| self.run.recording()).or_raise(py)?;
-        Ok(Recording { recording })
+        Ok(recording.into())
     }
 
     /// The run's folder.

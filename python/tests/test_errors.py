@@ -46,13 +46,13 @@ def test_a_wrong_field_has_its_file_and_line_and_the_text_of_the_command(tmp_pat
 def test_a_wrong_cell_has_its_column(tmp_path: Path) -> None:
     lines = (DATA / "presses.csv").read_text().splitlines()
     cells = lines[3].split(",")
-    lines[3] = ",".join(["x", *cells[1:]])
+    lines[3] = ",".join([cells[0], "x", *cells[2:]])
     (tmp_path / "presses.csv").write_text("\n".join(lines))
     with pytest.raises(Error) as caught:
         Recording.import_csv(DATA / "import.toml", tmp_path / "presses.csv")
     assert caught.value.file == str(tmp_path / "presses.csv")
     assert caught.value.line == 4
-    assert caught.value.field == lines[0].split(",")[0]
+    assert caught.value.field == lines[0].split(",")[1]
 
 
 MISSING = "no/such/file"

@@ -120,6 +120,28 @@ def test_a_recording_is_its_parquet_file(tmp_path: Path) -> None:
     assert len(recording) == len(recording.presses) == frames["press"].nunique()
 
 
+def test_an_import_says_what_it_left_out_and_guesses_a_description(tmp_path: Path) -> None:
+    lines = (DATA / "presses.csv").read_text().splitlines()
+    cells = lines[100].split(",")
+    taxel = lines[0].split(",").index("t4_kpa")
+    cells[taxel] = "NaN"
+    lines[100] = ",".join(cells)
+    (tmp_path / "presses.csv").write_text("\n".join(lines))
+    recording = Recording.import_csv(DATA / "import.toml", tmp_path / "presses.csv")
+    (file,) = recording.imported
+    assert (file["file"], file["presses"], file["missing_readings"]) == ("presses.csv", len(recording), 1)
+    columns = recording.columns()
+    assert np.isnan(columns["t4_kpa"]).sum() == np.isnan(columns["t4_raw"]).sum() == 1
+    assert (~columns["t4_valid"]).sum() == 1
+    recording.save(tmp_path / "presses.parquet")
+    assert Recording.load(tmp_path / "presses.parquet").imported == []
+    guessed = Recording.guess_import(DATA / "presses.csv")
+    (tmp_path / "guessed.toml").write_text(guessed)
+    assert len(Recording.import_csv(tmp_path / "guessed.toml", DATA / "presses.csv")) == len(recording)
+    with pytest.raises(Error, match="no rows of numbers"):
+        Recording.guess_import(DATA / "import.toml")
+
+
 def test_characterization_is_that_of_the_command(trained: Path, tmp_path: Path) -> None:
     recording = Run.open(trained).recording()
     found = recording.characterize(Sensor.phystac(), tmp_path)

@@ -164,11 +164,14 @@ class Gel:
 
         Raises `Error` for an indenter that the sensor does not have, and a place beside the gel.
         """
-    def state(self, indenter: str, poses: Sequence[Pose]) -> GelState:
+    def state(self, indenter: str, poses: Sequence[Pose], *, deadline_ms: float | None = None) -> GelState:
         """The gel before an indenter presses it, to be taken from pose to pose as they come. `poses`, in the gel's frame, are those between which it will go, at least one: the mesh
         is fine along the straight ways between them, and for the deepest of them. Takes about a second; Ctrl-C ends the wait.
 
-        Raises `Error` for an indenter that the sensor does not have, and a first pose beside the gel.
+        With `deadline_ms`, 1 to 60000, each frame is answered within so many milliseconds of wall time with what is found by then: `GelState.converged` says whether its forces
+        are balanced, `GelState.residual` how nearly. Frames with a `force_n` take the time that they need. Such readings are not reproducible.
+
+        Raises `Error` for an indenter that the sensor does not have, a first pose beside the gel, and a deadline out of its range.
         """
     def follow(self, path: PressPath, *, progress: Progress = None) -> Followed:
         """Takes an indenter along a path, frame by frame; each takes from some milliseconds to seconds. Ctrl-C ends it before its next frame. A path that cannot be followed
@@ -203,6 +206,12 @@ class GelState:
         """How far the indenter is below where, at the place and turn of the first of the poses that `Gel.state` was given, it first touches the gel, mm; `None` before the
         first frame.
         """
+    @property
+    def converged(self) -> bool | None:
+        """Whether the forces at the last frame are balanced: they are, unless `Gel.state` was given a `deadline_ms` that came first. `None` before the first frame."""
+    @property
+    def residual(self) -> float | None:
+        """What part of the load is unbalanced at the last frame; `None` before the first."""
     @property
     def force_n(self) -> _Float:
         """Force of the indenter on the gel at the last frame, in the gel's frame, N; `[3]`. A press straight down has a negative z. Zero before the first frame."""
@@ -409,6 +418,17 @@ class Recording:
         """Reads CSV files of any laboratory. The description (TOML, see the folder `imports`) says which column is what, in which unit. Ctrl-C ends the wait.
 
         Raises `Error` with file, line and field: of the description, or of the cell that cannot be read.
+        """
+    @staticmethod
+    def guess_import(path: _Path) -> str:
+        """A first description of a CSV file's columns, for `import_csv`: the text of a TOML file with a comment on each guess.
+
+        Raises `Error` with the file if it cannot be read or has no rows of numbers.
+        """
+    @property
+    def imported(self) -> list[dict[str, Any]]:
+        """What `import_csv` found in each file and left out of it, a dict for each: `file`, `rows_read`, `rows_dropped`, `rows_incomplete`, `missing_readings`,
+        `clipped_readings`, `outliers`, `presses`, `presses_dropped`, `shared_frames`, `unread_columns`, `warnings`. Empty for recordings from elsewhere.
         """
     @property
     def sensor(self) -> str:

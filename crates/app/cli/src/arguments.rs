@@ -164,19 +164,6 @@ pub(crate) struct Start {
 
 /// Recordings and how to read them.
 #[derive(Args, Debug)]
-pub(crate) struct Recorded {
-    /// Sensor description (TOML).
-    #[arg(long, value_name = "FILE")]
-    pub(crate) sensor: PathBuf,
-    /// Recordings: CSV files or patterns like 'data/*.csv'.
-    #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
-    pub(crate) recordings: Vec<String>,
-    /// How to read the recordings (TOML) [default: the file that the sensor description names].
-    #[arg(long, value_name = "FILE")]
-    pub(crate) import: Option<PathBuf>,
-}
-
-#[derive(Args, Debug)]
 pub(crate) struct Reproduce {
     /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: about an hour.
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
@@ -268,6 +255,9 @@ pub(crate) struct Simulate {
     /// Print the results of a path as JSON.
     #[arg(long, requires = "path", conflicts_with_all = ["run", "protocol"])]
     pub(crate) json: bool,
+    /// Answer each frame of a path within so many milliseconds of wall time, settled or not; two more columns say how far from balanced the forces are.
+    #[arg(long, value_name = "MS", requires = "path", conflicts_with_all = ["run", "protocol"], value_parser = clap::value_parser!(u32).range(1..=60_000))]
+    pub(crate) deadline_ms: Option<u32>,
     /// Settings (TOML) that differ from the defaults, in a table [simulate].
     #[arg(long, value_name = "FILE", requires = "sensor")]
     pub(crate) settings: Option<PathBuf>,
@@ -394,11 +384,21 @@ pub(crate) struct Export {
 
 #[derive(Args, Debug)]
 pub(crate) struct Import {
-    #[command(flatten)]
-    pub(crate) recorded: Recorded,
+    /// Print a first description of a CSV file's columns instead, with a comment on each guess.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["sensor", "recordings", "import", "out", "settings"])]
+    pub(crate) guess: Option<PathBuf>,
+    /// Sensor description (TOML).
+    #[arg(long, value_name = "FILE", required_unless_present = "guess")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Recordings: CSV files or patterns like 'data/*.csv'.
+    #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "guess")]
+    pub(crate) recordings: Vec<String>,
+    /// How to read the recordings (TOML) [default: the file that the sensor description names].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
     /// Folder of the run.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "guess")]
+    pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) start: Start,
 }

@@ -1,47 +1,73 @@
-//! Progress on standard error: a bar with an estimate on a terminal, and elsewhere only what must be known.
+//! Progress on standard error: a bar with an estimate on a terminal, and elsewhere a line a minute, and what must be known.
 
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use twintac_store::Outcome;
 use twintac_text::visible;
 use twintac_work::Progress;
 
-/// One bar at a time, and lines above it.
+/// Between two lines where standard error is no terminal.
+const QUIET: Duration = Duration::from_secs(60);
+
+/// One piece of work at a time, and lines above its bar.
 #[derive(Debug, Default)]
-pub(crate) struct Bars(Mutex<Option<ProgressBar>>);
+pub(crate) struct Bars(Mutex<Option<Shown>>);
+
+/// A piece of work that is shown.
+#[derive(Debug)]
+struct Shown {
+    bar: ProgressBar,
+    /// When it was last told in a line; none on a terminal.
+    told: Option<Instant>,
+}
 
 impl Bars {
-    fn with(&self, act: impl FnMut(&ProgressBar)) {
-        let bar = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        bar.iter().for_each(act);
+    fn with(&self, act: impl FnOnce(&mut Shown)) {
+        let mut shown = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        shown.as_mut().map(act);
+    }
+}
+
+impl Shown {
+    /// Tells in a line how far the work is, if that is a while ago.
+    fn tell(&mut self) {
+        if self.told.is_none_or(|told| told.elapsed() < QUIET) {
+            return;
+        }
+        self.told = Some(Instant::now());
+        say(&line(&self.bar));
     }
 }
 
 impl Progress for Bars {
     fn started(&self, work: &str, n_steps: usize) {
-        let bar = bar(work, n_steps);
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar);
+        let shown = Shown {
+            bar: bar(work, n_steps),
+            told: (!std::io::stderr().is_terminal()).then(Instant::now),
+        };
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(shown);
     }
 
     fn more_steps(&self, n_steps: usize) {
-        self.with(|bar| bar.inc_length(n_steps as u64));
+        self.with(|shown| shown.bar.inc_length(n_steps as u64));
     }
 
     fn step(&self, state: &str) {
-        self.with(|bar| {
+        self.with(|shown| {
             if !state.is_empty() {
-                bar.set_message(visible(state).into_owned());
+                shown.bar.set_message(visible(state).into_owned());
             }
-            bar.inc(1);
+            shown.bar.inc(1);
+            shown.tell();
         });
     }
 
     fn finished(&self) {
-        let bar = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
-        bar.iter().for_each(ProgressBar::finish_and_clear);
+        let shown = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        shown.iter().for_each(|shown| shown.bar.finish_and_clear());
     }
 
     /// Only on a terminal.
@@ -56,9 +82,9 @@ impl Progress for Bars {
     }
 
     fn note(&self, text: &str) {
-        let bar = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*bar {
-            Some(bar) => bar.suspend(|| say(text)),
+        let shown = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*shown {
+            Some(shown) => shown.bar.suspend(|| say(text)),
             None => say(text),
         }
     }
@@ -74,7 +100,40 @@ fn bar(work: &str, n_steps: usize) -> ProgressBar {
     bar
 }
 
+/// How far a piece of work is.
+fn line(bar: &ProgressBar) -> String {
+    let minutes = |time: Duration| time.as_secs().div_ceil(60);
+    let (done, all) = (bar.position(), bar.length().unwrap_or(0));
+    let (work, after, left) = (bar.prefix(), minutes(bar.elapsed()), minutes(bar.eta()));
+    format!("{work}: {done} of {all} after {after} min, about {left} min left")
+}
+
 /// A line on standard error, wherever that goes.
 pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(line));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_says_how_far_the_work_is_once_a_minute() {
+        let mut shown = Shown {
+            bar: bar("recording", 280).with_elapsed(Duration::from_secs(150)),
+            told: Instant::now().checked_sub(QUIET),
+        };
+        shown.bar.inc(70);
+        let line = line(&shown.bar);
+        assert!(
+            line.starts_with("recording: 70 of 280 after 3 min, about "),
+            "{line}"
+        );
+        let before = shown.told;
+        shown.tell();
+        assert_ne!(shown.told, before);
+        let told = shown.told;
+        shown.tell();
+        assert_eq!(shown.told, told);
+    }
 }

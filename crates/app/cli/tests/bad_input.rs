@@ -146,11 +146,68 @@ fn a_reading_that_is_no_number() {
     let folder = tempfile::tempdir().unwrap();
     let output = recording(folder.path(), |row, cells| {
         if row == 500 {
+            cells[1] = "ERR".into();
+        }
+    });
+    refused(&output, &["gelD_invented.csv", "502", "Sensor_1", "`missing`"]);
+    assert!(!folder.path().join("run/recordings").exists());
+}
+
+#[test]
+fn what_an_import_leaves_out_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = recording(folder.path(), |row, cells| {
+        if row == 500 {
             cells[1] = "NaN".into();
         }
     });
-    refused(&output, &["gelD_invented.csv", "502", "Sensor_1"]);
-    assert!(!folder.path().join("run/recordings").exists());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("gelD_invented.csv: "), "{said}");
+    assert!(said.contains("1 readings missing"), "{said}");
+}
+
+#[test]
+fn a_description_is_guessed_and_can_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = root().join("crates/app/twintac/examples/data/presses.csv");
+    let output = twintac(&["import", "--guess", text(&log)]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let guess = String::from_utf8(output.stdout).unwrap();
+    let guess = guess
+        .replace("\"my-sensor\"", "\"phystac\"")
+        .replace("\"tip\"", "\"cylinder\"");
+    let description = folder.path().join("import.toml");
+    fs::write(&description, &guess).unwrap();
+    let sensor = root().join("sensors/phystac.toml");
+    let out = folder.path().join("run");
+    let output = twintac(&[
+        "import",
+        "--sensor",
+        text(&sensor),
+        "--import",
+        text(&description),
+        "--recordings",
+        text(&log),
+        "--out",
+        text(&out),
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}\n{guess}");
+    let summary = fs::read_to_string(out.join("recordings/summary.json")).unwrap();
+    assert!(summary.contains("\"presses\": 15,"), "{summary}\n{guess}");
+    let letter = folder.path().join("letter.txt");
+    fs::write(&letter, "Dear Sir,\n").unwrap();
+    refused(
+        &twintac(&["import", "--guess", text(&letter)]),
+        &["letter.txt", "no rows of numbers"],
+    );
+    let both = ["import", "--guess", text(&log), "--sensor", text(&sensor)];
+    refused(&twintac(&both), &["--guess", "--sensor"]);
 }
 
 #[test]

@@ -118,3 +118,36 @@ fn a_point_outside_the_gel_is_one_clear_error() {
         "{text}"
     );
 }
+
+#[test]
+fn frames_with_a_deadline_say_whether_they_have_settled() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("sensor.toml"), SENSOR).unwrap();
+    fs::write(folder.path().join("path.toml"), PATH).unwrap();
+    let rows = |deadline: &[&str]| -> Vec<Vec<String>> {
+        let output = Command::new(env!("CARGO_BIN_EXE_twintac"))
+            .args(["simulate", "--sensor", "sensor.toml", "--path", "path.toml"])
+            .args(deadline)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        let cells = |line: &str| line.split(',').map(str::to_owned).collect();
+        text.lines().map(cells).collect()
+    };
+    let (usual, in_time, late) = (
+        rows(&[]),
+        rows(&["--deadline-ms", "60000"]),
+        rows(&["--deadline-ms", "1"]),
+    );
+    for (row, (usual, in_time)) in usual.iter().zip(&in_time).enumerate() {
+        let (same, more) = in_time.split_at(usual.len());
+        assert_eq!(usual, same);
+        assert_eq!(more[0], if row == 0 { "converged" } else { "true" });
+    }
+    let converged = late[0].iter().position(|name| name == "converged").unwrap();
+    assert!(late[1..].iter().any(|row| row[converged] == "false"), "{late:?}");
+    let residual = |row: &Vec<String>| row[converged + 1].parse::<f64>().unwrap();
+    assert!(late[1..].iter().all(|row| residual(row) < 1.0), "{late:?}");
+}

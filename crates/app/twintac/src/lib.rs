@@ -211,7 +211,9 @@ pub use twintac_protocol::{PathError, Point, PressPath, Waypoint, Zero};
 #[cfg(feature = "run")]
 pub use twintac_recorded::Recorded;
 #[cfg(feature = "recording")]
-pub use twintac_recording::{Column, Import, Provenance, Recording};
+pub use twintac_recording::{
+    Column, FileSummary, Import, ImportSummary, Provenance, Recording, guess_import,
+};
 #[cfg(feature = "run")]
 pub use twintac_run::{Metrics, Run, RunSettings, import_files, read_recordings};
 pub use twintac_sensor::SensorFile;

@@ -1,5 +1,6 @@
 //! What `cargo xtask bench` and `cargo xtask verify` run.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -8,6 +9,7 @@ mod bench;
 mod calculix;
 mod cases;
 mod files;
+mod import;
 mod ladder;
 mod peers;
 mod recording;
@@ -42,6 +44,17 @@ enum Task {
     Peers(peers::Options),
     /// Recording on the emulated bench, with faults and kills: writes docs/benchmarks/recording.*
     Recording(recording::Options),
+    /// How long a CSV log of two million rows takes to import, and how much memory
+    Import {
+        /// Print one JSON line
+        #[arg(long)]
+        json: bool,
+    },
+    /// Such a log: one JSON line
+    ReadLog {
+        /// The log
+        log: PathBuf,
+    },
     /// The block press on our engine alone: one JSON line with rate, forces and memory
     Press {
         /// Poisson's ratio of the block
@@ -58,6 +71,8 @@ fn main() -> ExitCode {
         Task::Ladder(options) => ladder::run(&options),
         Task::Peers(options) => peers::run(&options).map(|()| true),
         Task::Recording(options) => recording::run(&options).map(|()| true),
+        Task::Import { json } => import::run(json).map(|()| true),
+        Task::ReadLog { log } => import::print_imported(&log).map(|()| true),
         Task::Press { poissons_ratio } => peers::print_row(poissons_ratio).map(|()| true),
     };
     match result {

@@ -28,10 +28,12 @@ pub enum RecordingError {
     #[error(transparent)]
     Description(#[from] ConfigError),
     /// A column that the import description names is not in the file.
-    #[error("{file}:1: no column `{column}`; the file has: {found}")]
+    #[error("{file}:{line}: no column `{column}`; the file has: {found}")]
     MissingColumn {
         /// The file as the user named it.
         file: String,
+        /// Line of the header, from 1.
+        line: u64,
         /// The column that was looked for.
         column: String,
         /// The columns that are there.
@@ -57,6 +59,14 @@ pub enum RecordingError {
         /// Name of the column.
         column: String,
         /// What is wrong, read after the column's name.
+        problem: String,
+    },
+    /// What the file says cannot be, in the sense of the import description.
+    #[error("{file}: {problem}")]
+    Implausible {
+        /// The file as the user named it.
+        file: String,
+        /// What is wrong with it, and what to do.
         problem: String,
     },
     /// Nothing in the file is a press, in the sense of the import description if there is one.

@@ -13,7 +13,7 @@ mod provenance;
 mod store;
 
 pub use error::RecordingError;
-pub use import::{FileSummary, Import, ImportSummary};
+pub use import::{FileSummary, Import, ImportSummary, guess_import};
 pub use lerobot::LeRobotSummary;
 pub use missing::null_as_nan;
 pub use press::{Control, Press, Recording};

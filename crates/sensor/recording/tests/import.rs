@@ -186,7 +186,7 @@ fn presses_that_the_file_cuts_are_dropped_and_named() {
 
 #[test]
 fn every_wrong_cell_is_named() {
-    let good = "ms,a,b,x,steps\n0,1,2,0,0\n100,1,2,0,20\n200,1,2,0,0\n300,1,2,0,0\n";
+    let good = "ms,a,b,x,steps\n0,1,2,0,0\n100,1,2,0,220\n200,1,2,0,0\n300,1,2,0,0\n";
     assert!(read(BENCH, good).is_ok());
     let wrong = |old: &str, new: &str| error(BENCH, &good.replacen(old, new, 1));
     assert_eq!(
@@ -194,26 +194,22 @@ fn every_wrong_cell_is_named() {
         "run.csv:1: no column `steps`; the file has: ms, a, b, x, z"
     );
     assert_eq!(
-        wrong("100,1", "100,NaN"),
-        "run.csv:3: column `a` is `NaN`, expected a finite number"
-    );
-    assert_eq!(
         wrong("100,1", "100,much"),
-        "run.csv:3: column `a` is `much`, expected a finite number"
+        "run.csv:3: column `a` is `much`, expected a number; if that stands for a missing reading, name it in `missing`"
     );
     assert_eq!(
-        wrong("100,1", "100,"),
-        "run.csv:3: column `a` is empty, expected a number"
+        wrong("100,1", "NaN,1"),
+        "run.csv:3: column `ms` is missing, and only readings may be; `drop_incomplete_rows = true` leaves such rows out"
     );
     assert_eq!(
         wrong("200,1", "50,1"),
-        "run.csv:4: column `ms` is 0.05 s after 0.1 s, expected times to increase"
+        "run.csv:4: column `ms` is 0.05 s after 0.1 s, expected times to increase; if the log was started again, make it two files"
     );
     assert_eq!(
         wrong("200,1", "100,1"),
-        "run.csv:4: column `ms` is 0.1 s after 0.1 s, expected times to increase"
+        "run.csv:4: column `ms` is 0.1 s after 0.1 s, expected times to increase; rows that were written in bursts are read with `repeated = \"spread\"`, or `repeated = { rate_hz = … }`"
     );
-    assert_eq!(wrong(",2,0,20", ",2,0"), "run.csv:3: expected 5 cells, found 4");
+    assert_eq!(wrong(",2,0,220", ",2,0"), "run.csv:3: expected 5 cells, found 4");
     assert!(error(BENCH, "").ends_with("run.csv:1: no column `a`; the file has: nothing"));
     let none = error(BENCH, "ms,a,b,x,steps\n");
     assert!(none.starts_with("run.csv: found no presses in 0 rows"), "{none}");
@@ -270,7 +266,9 @@ fn a_column_can_number_the_presses_and_hold_the_force() {
         .replace(
             "zero =",
             "force = { column = \"steps\", unit = \"mN\" }\n# zero =",
-        );
+        )
+        .replace("column = \"a\"", "column = \"a\", offset_kpa = -100.0")
+        .replace("column = \"b\"", "column = \"b\", offset_kpa = -100.0");
     let (recording, _) = read(&description, &bench_csv(&[0.0, 500.0])).unwrap();
     assert_eq!(
         recording
@@ -283,8 +281,8 @@ fn a_column_can_number_the_presses_and_hold_the_force() {
     let force_n = recording.presses[0].force_n.clone().unwrap();
     assert!((force_n[15] - 0.3).abs() < 1e-12);
     assert_eq!(recording.presses[0].control, Control::Pose);
-    // Without a zero, readings stay absolute.
-    assert!((recording.presses[0].taxels_kpa[0][0] - 100.0).abs() < 1e-9);
+    // Without a zero, readings are as the file has them.
+    assert!(recording.presses[0].taxels_kpa[0][0].abs() < 1e-9);
 }
 
 #[test]

@@ -21,6 +21,9 @@ fn no_argument_is_ignored_beside_another() {
         "simulate --run r --json",
         "simulate --sensor s --protocol p --out o --json",
         "simulate --sensor s --protocol p --out o --profile",
+        "simulate --run r --deadline-ms 15",
+        "simulate --sensor s --protocol p --out o --deadline-ms 15",
+        "simulate --sensor s --path p --deadline-ms 0",
         "simulate --sensor s --path p --vtk",
         "simulate --sensor s --path p --out o",
         "simulate --sensor s --path p --seed 3",
@@ -47,7 +50,7 @@ fn what_goes_together_is_taken() {
     for line in [
         "simulate --run r",
         "simulate --sensor s --protocol p --out o --seed 3 --vtk --settings t",
-        "simulate --sensor s --path p --json --profile --settings t",
+        "simulate --sensor s --path p --json --profile --settings t --deadline-ms 15",
         "reproduce --paper --quick --json --seed 3",
         "reproduce --sensor s --recordings r.csv --settings t --seed 3",
         "mesh --sensor s --out o",

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use anyhow::Result;
 use twintac_model::{AdaptationPlan, AdaptedModel, adapt_model, sensor_of_model};
-use twintac_run::{AdaptationCurve, CurvePlan, Run, adaptation_curve, import_files, read_recordings};
+use twintac_run::{AdaptationCurve, CurvePlan, Run, adaptation_curve, read_recordings};
 use twintac_sensor::SensorFile;
 
-use super::files::{expand, rename};
+use super::files::{expand, import_aloud, rename};
 use crate::Program;
 use crate::arguments::Adapt;
 use crate::output::{percent, print};
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Adapt, program: &Program) -> Result<()> {
     let files = expand(&arguments.recordings)?;
     let is_csv = |file: &Path| file.extension().is_some_and(|ending| ending == "csv");
     let mut recording = match import {
-        Some(import) if files.iter().all(|file| is_csv(file)) => import_files(&import, &files)?.0,
+        Some(import) if files.iter().all(|file| is_csv(file)) => import_aloud(&import, &files)?,
         _ => read_recordings(&files)?,
     };
     let recorded = match &sensor {

@@ -4,7 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use twintac_recording::Recording;
+use twintac_run::import_files;
 use twintac_sensor::SensorFile;
+use twintac_work::Progress;
+
+use crate::progress::Bars;
 
 /// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters.
 pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
@@ -49,6 +53,16 @@ fn of_names(pattern: &str) -> String {
         escaped.push(std::path::MAIN_SEPARATOR);
     }
     escaped + &rest.as_path().to_string_lossy()
+}
+
+/// Reads CSV files as a description says, and says what was found in them and left out.
+pub(crate) fn import_aloud(import: &Path, files: &[PathBuf]) -> Result<Recording> {
+    let (recording, summary) = import_files(import, files)?;
+    let bars = Bars::default();
+    for file in summary.files.iter().filter(|file| file.is_notable()) {
+        file.to_string().lines().for_each(|line| bars.note(line));
+    }
+    Ok(recording)
 }
 
 /// Gives recordings the name of the sensor that they are of, where `recorded_as` says that they

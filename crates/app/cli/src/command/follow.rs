@@ -8,19 +8,20 @@ use twintac_gel::simulated::SimulatedPath;
 use twintac_recording::Provenance;
 use twintac_simulate::{Followed, FollowedFrame, Gel};
 
+use crate::arguments::Simulate;
 use crate::output::{print, print_csv};
 use crate::progress::Bars;
 
 /// Follows a path and prints what came of it.
-pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> Result<()> {
+pub(super) fn run(gel: &Gel, path: &Path, arguments: &Simulate) -> Result<()> {
     let simulated = SimulatedPath::follow(gel, path, &Bars::default())?;
     let followed = &simulated.followed;
-    if as_json {
+    if arguments.json {
         print(&serde_json::to_string_pretty(&simulated)?)?;
     } else {
-        print_csv(table(followed))?;
+        print_csv(table(followed, arguments.deadline_ms.is_some()))?;
     }
-    if with_profile {
+    if arguments.profile {
         write_profile(&mut std::io::stderr().lock(), followed)?;
     }
     match &followed.failure {
@@ -33,8 +34,8 @@ pub(super) fn run(gel: &Gel, path: &Path, as_json: bool, with_profile: bool) -> 
     }
 }
 
-/// Columns with their units, and rows.
-fn table(followed: &Followed) -> impl Iterator<Item = Vec<String>> {
+/// Columns with their units, and rows; with a deadline also whether each has settled, and what part of the load is unbalanced.
+fn table(followed: &Followed, with_deadline: bool) -> impl Iterator<Item = Vec<String>> {
     const HEAD: [&str; 8] = [
         "provenance",
         "time_s",
@@ -48,7 +49,20 @@ fn table(followed: &Followed) -> impl Iterator<Item = Vec<String>> {
     let names = followed.frames.first().map(|frame| frame.pressure_kpa.keys());
     let mut head = HEAD.map(str::to_owned).to_vec();
     head.extend(names.into_iter().flatten().map(|name| format!("{name}_kpa")));
-    std::iter::once(head).chain(followed.frames.iter().map(row))
+    if with_deadline {
+        head.extend(["converged", "residual"].map(str::to_owned));
+    }
+    let with_quality = move |frame: &FollowedFrame| {
+        let mut row = row(frame);
+        if with_deadline {
+            row.extend([
+                frame.converged.to_string(),
+                format!("{:.2e}", frame.quality.residual),
+            ]);
+        }
+        row
+    };
+    std::iter::once(head).chain(followed.frames.iter().map(with_quality))
 }
 
 fn row(frame: &FollowedFrame) -> Vec<String> {

@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use twintac_model::{ImperfectionSources, find_imperfection, sensor_of_model};
 use twintac_recorded::Recorded;
-use twintac_run::import_files;
 use twintac_sensor::SensorFile;
 
-use super::files::{expand, rename};
+use super::files::{expand, import_aloud, rename};
 use crate::arguments::FastImperfection;
 use crate::output::print;
 use crate::progress::Bars;
@@ -64,7 +63,7 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
         );
     };
     Ok(Recorded {
-        recording: import_files(&import, &files)?.0,
+        recording: import_aloud(&import, &files)?,
         unloaded: Vec::new(),
     })
 }

@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use twintac_model::{Located, LocatedFrame, LocatedPress, LocationErrors, Locator, sensor_of_model};
-use twintac_run::{import_files, read_recordings};
+use twintac_run::read_recordings;
 use twintac_work::Progress;
 
-use super::files::{expand, rename};
+use super::files::{expand, import_aloud, rename};
 use crate::arguments::Locate;
 use crate::output::{print, print_csv};
 use crate::progress::Bars;
@@ -14,7 +14,7 @@ use crate::progress::Bars;
 pub(crate) fn run(arguments: &Locate) -> Result<()> {
     let files = expand(&arguments.recordings)?;
     let mut recording = match &arguments.import {
-        Some(import) => import_files(import, &files)?.0,
+        Some(import) => import_aloud(import, &files)?,
         None => read_recordings(&files)?,
     };
     let recorded_as = arguments.recorded_as.as_deref();

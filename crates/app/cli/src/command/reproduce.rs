@@ -3,12 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use twintac_recording::guess_import;
 use twintac_run::{Run, RunSettings};
 use twintac_sensor::SensorFile;
 
 use super::files::expand;
 use crate::Program;
-use crate::arguments::{Import, Recorded, Reproduce, Start};
+use crate::arguments::{Import, Reproduce, Start};
+use crate::output::print;
+
+/// CSV files of a sensor, and how to read them.
+struct Recorded<'a> {
+    sensor: &'a Path,
+    recordings: &'a [String],
+    import: Option<&'a Path>,
+}
 
 /// Runs every stage on recordings.
 pub(crate) fn run(arguments: &Reproduce, program: &Program) -> Result<()> {
@@ -16,32 +25,37 @@ pub(crate) fn run(arguments: &Reproduce, program: &Program) -> Result<()> {
         return super::paper::run(arguments, program);
     };
     let recorded = Recorded {
-        sensor: sensor.clone(),
-        recordings: arguments.recordings.clone(),
-        import: arguments.import.clone(),
+        sensor,
+        recordings: &arguments.recordings,
+        import: arguments.import.as_deref(),
     };
     let run = start(&recorded, &arguments.start, arguments.out.as_deref(), program)?;
     super::stages::finish(&run)
 }
 
-/// `twintac import`: starts a run with a lab's files.
+/// `twintac import`: starts a run with a lab's files, or guesses how to read one.
 pub(crate) fn import(arguments: &Import, program: &Program) -> Result<()> {
-    start(
-        &arguments.recorded,
-        &arguments.start,
-        Some(&arguments.out),
-        program,
-    )
-    .map(drop)
+    if let Some(file) = &arguments.guess {
+        return print(guess_import(file)?.trim_end());
+    }
+    let recorded = Recorded {
+        sensor: arguments
+            .sensor
+            .as_deref()
+            .context("give a sensor with --sensor")?,
+        recordings: &arguments.recordings,
+        import: arguments.import.as_deref(),
+    };
+    start(&recorded, &arguments.start, arguments.out.as_deref(), program).map(drop)
 }
 
 fn start(recorded: &Recorded, start: &Start, out: Option<&Path>, program: &Program) -> Result<Run> {
-    let sensor = SensorFile::read(&recorded.sensor)?;
+    let sensor = SensorFile::read(recorded.sensor)?;
     let settings = RunSettings::read(start.settings.as_deref())?;
-    let files = expand(&recorded.recordings)?;
+    let files = expand(recorded.recordings)?;
     let import = recorded
         .import
-        .clone()
+        .map(Path::to_owned)
         .or_else(|| sensor.import())
         .with_context(|| {
             format!(

@@ -1,6 +1,7 @@
 //! `twintac simulate`: a protocol or a path on the simulated gel, or the places of a run.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use anyhow::Result;
 use twintac_gel::simulate_settings;
@@ -27,8 +28,11 @@ pub(crate) fn run(arguments: &Simulate, program: &Program) -> Result<()> {
     let sensor = SensorFile::read(sensor)?.sensor;
     let settings = simulate_settings(SimulateSettings::fine(), arguments.settings.as_deref())?;
     if let Some(path) = &arguments.path {
-        let gel = Gel::new(Arc::clone(&sensor), settings);
-        return super::follow::run(&gel, path, arguments.json, arguments.profile);
+        let mut gel = Gel::new(Arc::clone(&sensor), settings);
+        if let Some(deadline_ms) = arguments.deadline_ms {
+            gel = gel.with_deadline(Duration::from_millis(deadline_ms.into()));
+        }
+        return super::follow::run(&gel, path, arguments);
     }
     let (Some(protocol), Some(out)) = (&arguments.protocol, &arguments.out) else {
         anyhow::bail!("give --protocol and --out, or --path");

@@ -2,9 +2,9 @@
 
 use anyhow::{Context, Result};
 use twintac_model::{UnseenEvaluation, evaluate_elsewhere, sensor_of_model};
-use twintac_run::{Metrics, Run, import_files, read_recordings};
+use twintac_run::{Metrics, Run, read_recordings};
 
-use super::files::{expand, rename};
+use super::files::{expand, import_aloud, rename};
 use crate::Program;
 use crate::arguments::{Align, Evaluate, Report, Train};
 use crate::output::{percent, print};
@@ -42,7 +42,7 @@ pub(crate) fn evaluate(arguments: &Evaluate, program: &Program) -> Result<()> {
     let model = model.context("give a model with --model, or a run with --run")?;
     let files = expand(&arguments.recordings)?;
     let mut recording = match &arguments.import {
-        Some(import) => import_files(import, &files)?.0,
+        Some(import) => import_aloud(import, &files)?,
         None => read_recordings(&files)?,
     };
     let recorded_as = arguments.recorded_as.as_deref();

@@ -52,12 +52,20 @@ impl Stage for Importing<'_> {
     type Follower = dyn Progress;
     type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let files: Vec<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
         let (recording, summary) = self.import.read_all(&files)?;
+        tell(&summary, progress);
         check_sensor(&self.sensor.sensor, &recording)?;
         recording.write_parquet(&folder.join(PRESSES))?;
         Ok(write_json(&folder.join("summary.json"), &summary)?)
+    }
+}
+
+/// Says what was found in files of which something was left out.
+fn tell(summary: &ImportSummary, progress: &dyn Progress) {
+    for file in summary.files.iter().filter(|file| file.is_notable()) {
+        file.to_string().lines().for_each(|line| progress.note(line));
     }
 }
 

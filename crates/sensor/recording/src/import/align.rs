@@ -19,10 +19,10 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
             .all(|lag_s| (first_s..=last_s).contains(&(track.time_s[row] + lag_s)))
     };
     let rows: Vec<usize> = (0..track.time_s.len()).filter(covered).collect();
-    let mut raw = vec![Vec::with_capacity(lags_s.len()); rows.len()];
-    let mut usable = vec![Vec::with_capacity(lags_s.len()); rows.len()];
+    let mut raw = vec![Vec::with_capacity(rows.len()); lags_s.len()];
+    let mut usable = vec![Vec::with_capacity(rows.len()); lags_s.len()];
     for (taxel, lag_s) in lags_s.iter().enumerate() {
-        for (to, &row) in rows.iter().enumerate() {
+        for &row in &rows {
             let at_s = track.time_s[row] + lag_s;
             let after = track.time_s.partition_point(|&time_s| time_s < at_s);
             let before = if track.time_s[after] > at_s {
@@ -36,9 +36,9 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
             } else {
                 0.0
             };
-            let (low, high) = (track.raw[before][taxel], track.raw[after][taxel]);
-            raw[to].push(low + share * (high - low));
-            usable[to].push(track.usable[before][taxel] && track.usable[after][taxel]);
+            let (low, high) = (track.raw[taxel][before], track.raw[taxel][after]);
+            raw[taxel].push(low + share * (high - low));
+            usable[taxel].push(track.usable[taxel][before] && track.usable[taxel][after]);
         }
     }
     let pick = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
@@ -50,6 +50,11 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
         z_mm: pick(&track.z_mm),
         height_mm: pick(&track.height_mm),
         force_n: pick(&track.force_n),
+        rotation: if track.rotation.is_empty() {
+            Vec::new()
+        } else {
+            rows.iter().map(|&row| track.rotation[row]).collect()
+        },
         press: if track.press.is_empty() {
             Vec::new()
         } else {

@@ -12,13 +12,17 @@ const SETTLED_STEPS: usize = 20;
 /// A recorder that connects late first reads what its serial port has buffered, and stamps those rows with the time of reading:
 /// they follow each other much faster than the sensor measures. They last until 20 steps in a row are no shorter than half
 /// the median step; the row at the start of those steps still came out of the buffer.
-pub(crate) fn leading_rows(table: &Table, description: &Description) -> Result<usize, RecordingError> {
+pub(crate) fn leading_rows(
+    table: &Table,
+    times_s: &[f64],
+    description: &Description,
+) -> Result<usize, RecordingError> {
     let dropped = description.drop_rows.min(table.rows());
     let column = description.time.as_ref().and_then(|time| time.column.as_deref());
     let (Some(column), true) = (column, description.drop_buffered) else {
         return Ok(dropped);
     };
-    let times = &table.column(column)[dropped..];
+    let times = &times_s[dropped..];
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = steps.clone();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -45,6 +49,7 @@ pub(crate) fn leading_rows(table: &Table, description: &Description) -> Result<u
 mod tests {
     use super::*;
     use crate::import::Import;
+    use crate::import::clock::times_s;
 
     fn dropped(times: &[f64]) -> Result<usize, RecordingError> {
         let text = r#"
@@ -65,10 +70,8 @@ mod tests {
         let rows: String = times.iter().map(|time| format!("{time}\n")).collect();
         std::fs::write(&path, format!("t\n{rows}")).unwrap();
         let description = import.descriptions.for_file(&path).unwrap();
-        leading_rows(
-            &Table::read(&path, &description, &description.column_names()).unwrap(),
-            &description,
-        )
+        let table = Table::read(&path, &description).unwrap();
+        leading_rows(&table, &times_s(&table, &description), &description)
     }
 
     fn times(steps: impl IntoIterator<Item = f64>) -> Vec<f64> {

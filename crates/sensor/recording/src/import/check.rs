@@ -2,10 +2,14 @@
 
 use std::collections::BTreeSet;
 
+use glam::DQuat;
 use twintac_config::{ConfigError, Document};
 
-use super::description::{Column, Description, Split};
-use super::unit::Unit;
+use super::description::{Column, Description, Repeated, Split};
+use super::unit::{Pressure, Unit};
+
+/// Farthest that a quaternion's length may be from 1.
+pub(super) const UNIT_TOLERANCE: f64 = 1e-2;
 
 const FINITE: &str = "give a finite number";
 
@@ -41,7 +45,9 @@ fn require(
 
 /// The first field that makes no sense.
 pub(super) fn check(d: &Description) -> Result<(), Problem> {
+    check_text(d)?;
     check_numbers(d)?;
+    check_readings(d)?;
     check_taxels(d)?;
     check_columns(d)?;
     let is_static = matches!(d.presses, Split::Row);
@@ -52,13 +58,34 @@ pub(super) fn check(d: &Description) -> Result<(), Problem> {
     check_outliers(d, is_static)
 }
 
-fn check_numbers(d: &Description) -> Result<(), Problem> {
+fn check_text(d: &Description) -> Result<(), Problem> {
     require(
         d.delimiter.is_ascii(),
         "delimiter",
         "is not ASCII",
-        "use a comma, a semicolon or a tab",
+        "use a comma, a semicolon, a tab or a blank",
     )?;
+    require(
+        d.comment.is_none_or(|comment| comment.is_ascii()),
+        "comment",
+        "is not ASCII",
+        "use a character such as #",
+    )?;
+    require(
+        matches!(d.decimal, '.' | ','),
+        "decimal",
+        format!("is `{}`", d.decimal),
+        "give a point or a comma",
+    )?;
+    require(
+        d.decimal != d.delimiter,
+        "decimal",
+        "is what separates columns, too",
+        "such files have another delimiter, as in delimiter = \";\"",
+    )
+}
+
+fn check_numbers(d: &Description) -> Result<(), Problem> {
     require(d.gel_top_mm.is_finite(), "gel_top_mm", "is not finite", FINITE)?;
     require(
         d.contact.z_mm.is_finite(),
@@ -71,6 +98,26 @@ fn check_numbers(d: &Description) -> Result<(), Problem> {
         "taxels",
         "is empty",
         "name at least one taxel",
+    )
+}
+
+fn check_readings(d: &Description) -> Result<(), Problem> {
+    let are_counts = matches!(d.readings.unit, Pressure::Counts);
+    require(
+        are_counts == d.readings.kpa_per_count.is_some(),
+        "readings.kpa_per_count",
+        if are_counts {
+            "is missing"
+        } else {
+            "stands beside a unit of pressure"
+        },
+        "counts need it, and nothing else has it",
+    )?;
+    require(
+        d.readings.kpa_per_count.is_none_or(f64::is_normal),
+        "readings.kpa_per_count",
+        "is impossible",
+        "give a finite number that is not 0",
     )?;
     require(
         d.readings.usable[0] < d.readings.usable[1],
@@ -82,7 +129,7 @@ fn check_numbers(d: &Description) -> Result<(), Problem> {
 }
 
 fn check_taxels(d: &Description) -> Result<(), Problem> {
-    let mut names = BTreeSet::new();
+    let (mut names, mut columns) = (BTreeSet::new(), BTreeSet::new());
     for (index, taxel) in d.taxels.iter().enumerate() {
         let field = |field: &str| format!("taxels[{index}].{field}");
         require(
@@ -90,6 +137,12 @@ fn check_taxels(d: &Description) -> Result<(), Problem> {
             field("name"),
             "is there twice",
             "name each taxel once",
+        )?;
+        require(
+            columns.insert(&taxel.column),
+            field("column"),
+            format!("`{}` is another taxel's, too", taxel.column),
+            "give each taxel a column of its own",
         )?;
         require(
             !taxel.name.is_empty(),
@@ -118,16 +171,39 @@ fn check_columns(d: &Description) -> Result<(), Problem> {
     check_column("x", &d.x)?;
     check_column("y", &d.y)?;
     d.z.as_ref().map_or(Ok(()), |column| check_column("z", column))?;
-    d.time
-        .as_ref()
-        .map_or(Ok(()), |column| check_column("time", column))?;
     d.force
         .as_ref()
         .map_or(Ok(()), |column| check_column("force", column))?;
+    if let Some(rotation) = &d.rotation {
+        let length = DQuat::from_array(rotation.upright).length();
+        require(
+            (length - 1.0).abs() < UNIT_TOLERANCE,
+            "rotation.upright",
+            format!("has length {length}"),
+            "give a unit quaternion [x, y, z, w]",
+        )?;
+    }
     Ok(())
 }
 
 fn check_times(d: &Description, is_static: bool) -> Result<(), Problem> {
+    if let Some(time) = &d.time {
+        check_line("time", [time.scale, time.divide_by, time.offset])?;
+        let is_count = |count: f64| count.is_finite() && count > 0.0;
+        require(
+            time.wraps_at.is_none_or(is_count),
+            "time.wraps_at",
+            "is not above 0",
+            "give the number that would follow the largest, such as 4294967296",
+        )?;
+        let is_rate = !matches!(time.repeated, Repeated::RateHz(rate_hz) if !is_count(rate_hz));
+        require(
+            is_rate,
+            "time.repeated",
+            "has an impossible rate",
+            "give a rate above 0 Hz",
+        )?;
+    }
     let has_time = d.time.as_ref().is_some_and(|time| time.column.is_some());
     require(
         is_static || has_time,
@@ -239,10 +315,13 @@ fn check_outliers(d: &Description, is_static: bool) -> Result<(), Problem> {
 }
 
 fn check_column<U: Unit>(name: &str, column: &Column<U>) -> Result<(), Problem> {
-    let factor = column.scale / column.divide_by;
+    check_line(name, [column.scale, column.divide_by, column.offset])
+}
+
+fn check_line(name: &str, [scale, divide_by, offset]: [f64; 3]) -> Result<(), Problem> {
     let hint = "give finite numbers, scale and divide_by not 0";
     require(
-        factor.is_normal() && column.offset.is_finite(),
+        (scale / divide_by).is_normal() && offset.is_finite(),
         name,
         "has impossible numbers",
         hint,

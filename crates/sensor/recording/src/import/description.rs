@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::Deserialize;
 
+use super::cell::Kind;
 use super::unit::{Force, Length, Pressure, Time, Unit};
 use crate::Provenance;
 
@@ -22,6 +23,20 @@ pub(crate) struct Description {
     pub(crate) delimiter: char,
     /// Names of the columns of a file without a header line.
     pub(crate) columns: Option<Vec<String>>,
+    /// Lines to leave out before the header, or before the first row of a file without one.
+    #[serde(default)]
+    pub(crate) skip_lines: u64,
+    /// Lines that begin with this character are left out, such as `#`.
+    pub(crate) comment: Option<char>,
+    /// What stands before the fraction of a number: a point unless given, or a comma.
+    #[serde(default = "point")]
+    pub(crate) decimal: char,
+    /// What stands in a cell for a reading that is missing, beside an empty cell, `NaN`, `NA`, `null`, `None` and `--`, in capitals or not.
+    #[serde(default)]
+    pub(crate) missing: Vec<String>,
+    /// Whether to leave out rows in which anything else is missing: a time, a place or a force.
+    #[serde(default)]
+    pub(crate) drop_incomplete_rows: bool,
     /// Rows to leave out at the start of each file.
     #[serde(default)]
     pub(crate) drop_rows: usize,
@@ -30,8 +45,8 @@ pub(crate) struct Description {
     pub(crate) drop_buffered: bool,
     /// Height of the unloaded gel above the board, mm.
     pub(crate) gel_top_mm: f64,
-    /// Time, in `s` or `ms`; without it each row stands for itself.
-    pub(crate) time: Option<Column<Time>>,
+    /// Time; without it each row stands for itself.
+    pub(crate) time: Option<TimeColumn>,
     /// Place along the gel's x axis.
     #[serde(default)]
     pub(crate) x: Column<Length>,
@@ -40,6 +55,8 @@ pub(crate) struct Description {
     pub(crate) y: Column<Length>,
     /// Height of the tip, on a scale of its own.
     pub(crate) z: Option<Column<Length>>,
+    /// How the indenter is turned; upright unless given.
+    pub(crate) rotation: Option<Rotation>,
     /// Where that scale meets the gel.
     #[serde(default)]
     pub(crate) contact: Contact,
@@ -64,6 +81,10 @@ pub(crate) struct Description {
 
 fn comma() -> char {
     ','
+}
+
+fn point() -> char {
+    '.'
 }
 
 fn one() -> f64 {
@@ -108,6 +129,73 @@ impl<U: Unit> Column<U> {
     }
 }
 
+/// The column of the time.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TimeColumn {
+    /// Without a column the time is the offset, everywhere.
+    pub(crate) column: Option<String>,
+    /// Its unit: `s`, `ms`, `us`, `ns`; or `clock` for the time of day, such as 13:05:59.250, or a date and time, counted from the first row.
+    #[serde(default)]
+    pub(crate) unit: Time,
+    /// What its numbers are multiplied with.
+    #[serde(default = "one")]
+    pub(crate) scale: f64,
+    /// What they are divided by.
+    #[serde(default = "one")]
+    pub(crate) divide_by: f64,
+    /// What is added, s.
+    #[serde(default)]
+    pub(crate) offset: f64,
+    /// The number that would follow the largest one of a counter that then begins again at 0: 4294967296 for 32 bits. Clocks of a day need none.
+    pub(crate) wraps_at: Option<f64>,
+    /// What several rows with the same time are: an `error` unless given; written in one burst, so that they are to be `spread` over the time since the burst before;
+    /// or measured at a rate: `{ rate_hz = 100.0 }`.
+    #[serde(default)]
+    pub(crate) repeated: Repeated,
+}
+
+impl TimeColumn {
+    /// A count as a time, s.
+    pub(crate) fn convert(&self, count: f64) -> f64 {
+        self.convert_step(count) + self.offset
+    }
+
+    /// A difference of counts as a time, s.
+    pub(crate) fn convert_step(&self, count: f64) -> f64 {
+        count * self.scale / self.divide_by * self.unit.factor()
+    }
+}
+
+/// What several rows with the same time are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Repeated {
+    /// An error.
+    #[default]
+    Error,
+    /// Rows that arrived together, and were measured in the time since those before.
+    Spread,
+    /// Rows that arrived together, and were measured at a rate: with `rate_hz`.
+    #[serde(rename = "rate_hz")]
+    RateHz(f64),
+}
+
+/// The columns of the indenter's rotation, a quaternion in the gel's frame.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Rotation {
+    /// Columns of x, y, z and w.
+    pub(crate) columns: [String; 4],
+    /// What they say where the indenter is upright, as its description has it; [0, 0, 0, 1] unless given.
+    #[serde(default = "identity")]
+    pub(crate) upright: [f64; 4],
+}
+
+fn identity() -> [f64; 4] {
+    [0.0, 0.0, 0.0, 1.0]
+}
+
 /// Where the z column's scale meets the gel.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -131,8 +219,10 @@ pub(crate) enum Direction {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Readings {
-    /// Unit of the readings: `Pa`, `kPa` and the like.
+    /// Unit of the readings: `Pa`, `hPa`, `kPa`, `mbar`, `bar`, `psi`; or `counts` of a converter.
     pub(crate) unit: Pressure,
+    /// Pressure of one count, kPa.
+    pub(crate) kpa_per_count: Option<f64>,
     /// Readings outside, in the file's own numbers, cannot be used.
     #[serde(default = "everything")]
     pub(crate) usable: [f64; 2],
@@ -176,7 +266,7 @@ pub(crate) enum Split {
         #[serde(default = "one")]
         keep_rest_s: f64,
     },
-    /// A column has another number for each press.
+    /// A column has another number or text for each press. Rows without one belong to none.
     Column {
         /// The column.
         column: String,
@@ -210,18 +300,43 @@ pub(crate) struct Outliers {
     pub(crate) jump: f64,
 }
 
+impl Readings {
+    /// One of the file's numbers, kPa.
+    pub(crate) fn kpa(&self) -> f64 {
+        self.kpa_per_count.unwrap_or_else(|| self.unit.factor())
+    }
+}
+
 impl Description {
-    /// All columns that are read.
-    pub(crate) fn column_names(&self) -> BTreeSet<&str> {
-        let mut names: BTreeSet<&str> = self.taxels.iter().map(|taxel| taxel.column.as_str()).collect();
-        names.extend(self.time.as_ref().and_then(|time| time.column.as_deref()));
-        names.extend(self.x.column.as_deref());
-        names.extend(self.y.column.as_deref());
-        names.extend(self.z.as_ref().and_then(|z| z.column.as_deref()));
-        names.extend(self.force.as_ref().and_then(|force| force.column.as_deref()));
-        if let Split::Column { column } = &self.presses {
-            names.insert(column);
+    /// All columns that are read, and as what.
+    pub(crate) fn wanted(&self) -> BTreeSet<(&str, Kind)> {
+        let readings = self
+            .taxels
+            .iter()
+            .map(|taxel| (taxel.column.as_str(), Kind::Reading));
+        let mut wanted: BTreeSet<(&str, Kind)> = readings.collect();
+        if let Some(TimeColumn {
+            column: Some(name),
+            unit,
+            ..
+        }) = &self.time
+        {
+            let is_clock = matches!(unit, Time::Clock);
+            wanted.insert((name, if is_clock { Kind::Clock } else { Kind::Number }));
         }
-        names
+        let places = [self.x.column.as_deref(), self.y.column.as_deref()];
+        let height = self.z.as_ref().and_then(|z| z.column.as_deref());
+        let force = self.force.as_ref().and_then(|force| force.column.as_deref());
+        let turns = self
+            .rotation
+            .iter()
+            .flat_map(|rotation| &rotation.columns)
+            .map(String::as_str);
+        let numbers = places.into_iter().chain([height, force]).flatten().chain(turns);
+        wanted.extend(numbers.map(|name| (name, Kind::Number)));
+        if let Split::Column { column } = &self.presses {
+            wanted.insert((column, Kind::Label));
+        }
+        wanted
     }
 }

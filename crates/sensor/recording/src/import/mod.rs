@@ -2,13 +2,19 @@
 
 mod align;
 mod buffered;
+mod cell;
 mod check;
+mod clock;
 mod describe;
 mod description;
+mod guess;
+mod header;
 mod outliers;
+mod plausible;
 mod split;
 mod summary;
 mod table;
+mod text;
 mod track;
 mod unit;
 mod zero;
@@ -17,29 +23,38 @@ use std::path::Path;
 
 use describe::Descriptions;
 use description::Description;
+pub use guess::guess_import;
 pub use summary::{FileSummary, ImportSummary};
 
 use crate::{Control, Press, Recording, RecordingError};
+use table::Table;
 use track::Track;
 
 /// How to read the CSV files of one bench: which column means what, in which unit, and how presses are told apart.
 ///
 /// ```
-/// let text = r#"
+/// let text = r##"
 /// sensor = "my-sensor"            # name of the sensor description
 /// provenance = "real"
 /// indenter = "tip"                # name of the indenter in the sensor description
-/// delimiter = ","                 # the default
+/// delimiter = ","                 # the default; with " " any number of blanks separates
 /// ## columns = ["t", "z", "p"]     # names the columns of files without a header line
+/// ## skip_lines = 3                # lines before the header
+/// ## comment = "#"                 # lines that begin with it are left out
+/// ## decimal = ","
+/// ## missing = ["ERR", "-999"]     # a missing reading, beside an empty cell, NaN, NA, null, None and --
+/// ## drop_incomplete_rows = true   # leaves out rows without a time, a place or a force
 /// drop_rows = 0                   # rows to leave out at the start of each file, a number ...
 /// drop_buffered = true            # ... and those that come at less than half the usual time step, read from a buffer
 /// gel_top_mm = 6.0                # height of the unloaded gel in its own frame
 ///
 /// ## A column's number becomes mm, N or s as number * scale / divide_by * unit + offset; without `column`, the offset alone.
-/// time = { column = "t", unit = "ms" }
+/// time = { column = "t", unit = "ms" }             # or "clock": 13:05:59.250, or a date and time
+/// ## time = { column = "t", unit = "us", wraps_at = 4294967296, repeated = "spread" }    # a counter of 32 bits, rows in bursts
 /// x = { column = "x", unit = "um", offset = -14.25 }
 /// y = { offset = 0.0 }
 /// z = { column = "z", unit = "mm", divide_by = 480.0 }
+/// ## rotation = { columns = ["qx", "qy", "qz", "qw"], upright = [0.0, 0.0, 0.0, 1.0] }   # how the indenter is turned
 /// contact = { z_mm = 2.08, z_points = "down" }    # the tip touches the gel here, on the z column's scale
 /// ## force = { column = "f", unit = "N" }          # measured, or `weight_n = 0.98` for a dead weight
 ///
@@ -48,7 +63,7 @@ use track::Track;
 ///     { name = "S0", column = "p", lag_s = 0.112 },       # p(t + lag) belongs to z(t); also scale, offset_kpa
 /// ]
 ///
-/// ## "return-to-rest": the tip leaves and returns to rest; "column" (with `column = "..."`): a column's number changes;
+/// ## "return-to-rest": the tip leaves and returns to rest; "column" (with `column = "..."`): a column's number or text changes;
 /// ## "row": each row is a static press.
 /// presses = { split = "return-to-rest", rest_mm = 0.0, tolerance_mm = 0.005, keep_rest_s = 1.0 }
 /// zero = { above_contact_mm = 0.5, window_s = 1.0 }       # zeroes each taxel before each press
@@ -57,7 +72,7 @@ use track::Track;
 /// [[override]]                    # any of the above, for files whose names match
 /// files = "gelA_*"
 /// contact = { z_mm = 3.5 }
-/// "#;
+/// "##;
 /// twintac_recording::Import::parse("my-bench.toml", text)?;
 /// # Ok::<(), twintac_recording::RecordingError>(())
 /// ```
@@ -66,6 +81,9 @@ use track::Track;
 /// sides while the tip stands at the same place. A press that is in the gel when its file starts or ends is dropped, and the
 /// summary says so; one that has left the gel when the file ends is kept. A press without a frame to take the zero from is
 /// dropped likewise.
+///
+/// Files are UTF-8, UTF-16 or Latin-1. A last row that the logger did not finish is left out, as are zero bytes after it; the summary says so. A reading that is
+/// missing is not valid, and NaN; the rest of its row is there.
 ///
 /// A lagging taxel's readings are interpolated linearly onto the clock of the poses; a reading is valid if both neighbours
 /// are. Rows at the ends of a file that have no such neighbours are dropped.
@@ -89,8 +107,8 @@ impl Import {
     ///
     /// # Errors
     ///
-    /// The file cannot be read, a column is missing, a cell is no finite number, times do not increase, or no presses are found:
-    /// with file, line and column.
+    /// The file cannot be read, a column is missing or there twice, a cell is no finite number, times do not increase, or no presses are found:
+    /// with file, line and column. No press reaches the gel, or readings are of about the pressure of the air and there is no `zero`.
     pub fn read_csv(&self, path: &Path) -> Result<(Recording, ImportSummary), RecordingError> {
         self.read_all(std::slice::from_ref(&path))
     }
@@ -141,22 +159,29 @@ impl Import {
 }
 
 fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, FileSummary), RecordingError> {
-    let table = table::Table::read(path, description, &description.column_names())?;
-    let mut summary = FileSummary::new(file_name(path), table.rows());
-    let dropped = buffered::leading_rows(&table, description)?;
-    let track = Track::new(&table, description, dropped)?;
-    summary.rows_dropped = dropped;
-    summary.clipped_readings = track.usable.iter().flatten().filter(|&&usable| !usable).count();
+    let table = Table::read(path, description)?;
+    let (file, n_rows) = (table.file.clone(), table.rows());
+    let mut summary = FileSummary::new(file_name(path), n_rows + table.incomplete_rows);
+    summary.rows_incomplete = table.incomplete_rows;
+    summary.unread_columns.clone_from(&table.unread);
+    table.notes.iter().for_each(|note| summary.warn(note.clone()));
+    let times_s = clock::times_s(&table, description);
+    let dropped = buffered::leading_rows(&table, &times_s, description)?;
+    let track = Track::new(table, times_s, description, dropped)?;
+    summary.missing_readings = track.raw.iter().flatten().filter(|raw| raw.is_nan()).count();
+    let unusable = track.usable.iter().flatten().filter(|&&usable| !usable).count();
+    summary.clipped_readings = unusable - summary.missing_readings;
     let track = align::onto_pose_clock(track, description);
-    summary.rows_dropped = table.rows() - track.time_s.len();
+    summary.rows_dropped = n_rows - track.time_s.len();
     let stem = path
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let mut presses = Vec::new();
-    for (index, span) in split::presses(&track, &description.presses, &mut summary)
-        .into_iter()
-        .enumerate()
-    {
+    let spans = split::presses(&track, &description.presses, &mut summary);
+    let ends = spans.windows(2);
+    summary.shared_frames = ends.map(|pair| pair[0].end.saturating_sub(pair[1].start)).sum();
+    plausible::check(&file, &track, &spans, description)?;
+    for (index, span) in spans.into_iter().enumerate() {
         let number = index + 1;
         let Some(zero_kpa) = zero::before_press(&track, span.clone(), description) else {
             summary.drop_press(format!(
@@ -192,7 +217,7 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
     summary.presses = presses.len();
     if presses.is_empty() {
         return Err(RecordingError::NoPresses {
-            file: table.file,
+            file,
             rows: summary.rows_read,
             why: split::explain(&description.presses, &summary),
         });

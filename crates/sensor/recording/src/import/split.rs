@@ -14,7 +14,13 @@ pub(crate) fn presses(track: &Track, split: &Split, summary: &mut FileSummary) -
     let rows = track.time_s.len();
     match split {
         Split::Row => (0..rows).map(|row| row..row + 1).collect(),
-        Split::Column { .. } => runs(rows, |row| track.press[row] == track.press[row - 1], |_| true),
+        Split::Column { .. } => {
+            let is_same = |row: usize| {
+                let [before, now] = [track.press[row - 1], track.press[row]];
+                before == now || before.is_nan() && now.is_nan()
+            };
+            runs(rows, is_same, |row| !track.press[row].is_nan())
+        }
         Split::ReturnToRest {
             rest_mm,
             tolerance_mm,

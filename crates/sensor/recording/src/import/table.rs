@@ -1,131 +1,193 @@
 //! A CSV file as columns of numbers, with the line of each row.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::cell::{Cells, Kind, cells};
 use super::description::Description;
+use super::header;
+use super::text::Text;
 use crate::RecordingError;
 
-/// The columns that were asked for, in the order asked.
+/// The columns that were asked for, each read as what it was asked for as.
 pub(crate) struct Table {
     pub(crate) file: String,
     /// Line of each row, from 1; `[n_rows]`.
     pub(crate) lines: Vec<u64>,
-    names: Vec<String>,
-    columns: Vec<Vec<f64>>,
+    columns: BTreeMap<(String, Kind), Vec<f64>>,
+    /// Rows that were left out because a number is missing that is no reading.
+    pub(crate) incomplete_rows: usize,
+    /// Columns that nothing was read of.
+    pub(crate) unread: Vec<String>,
+    /// What a person should know of how the file was read.
+    pub(crate) notes: Vec<String>,
+}
+
+/// A column to be read.
+struct Wanted<'a> {
+    name: &'a str,
+    kind: Kind,
+    place: usize,
+    numbers: Vec<f64>,
+}
+
+/// The rows that were read so far.
+struct Rows<'a> {
+    file: &'a str,
+    lines: Vec<u64>,
+    columns: Vec<Wanted<'a>>,
+    cells: Cells<'a>,
+    drops_incomplete: bool,
+    n_incomplete: usize,
 }
 
 impl Table {
-    /// Reads the columns in `names` from a file; every cell must hold a finite number.
-    pub(crate) fn read(
-        path: &Path,
-        description: &Description,
-        names: &BTreeSet<&str>,
-    ) -> Result<Self, RecordingError> {
+    /// Reads the columns that a description names.
+    pub(crate) fn read(path: &Path, description: &Description) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|source| RecordingError::read(path, source))?;
+        let text = Text::read(path, description.skip_lines)?;
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(u8::try_from(description.delimiter).unwrap_or(b','))
+            .comment(description.comment.and_then(|comment| u8::try_from(comment).ok()))
             .has_headers(false)
-            .trim(csv::Trim::All)
-            .from_reader(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes));
-        let mut records = reader.records();
-        let header: Vec<String> = match &description.columns {
-            Some(columns) => columns.clone(),
-            None => match records.next() {
-                Some(record) => record
-                    .map_err(|e| line_error(&file, &e))?
-                    .iter()
-                    .map(str::to_owned)
-                    .collect(),
-                None => Vec::new(),
-            },
+            .flexible(true)
+            .from_reader(text.rest());
+        let line_at = |at: Option<&csv::Position>| text.skipped_lines + at.map_or(0, csv::Position::line);
+        let mut record = csv::ByteRecord::new();
+        let mut next = |record: &mut csv::ByteRecord| {
+            let found = reader.read_byte_record(record);
+            found.map_err(|error| line_error(&file, line_at(error.position()), error.to_string()))
         };
-        let mut places = Vec::new();
-        for &name in names {
-            let place =
-                header
-                    .iter()
-                    .position(|h| h == name)
-                    .ok_or_else(|| RecordingError::MissingColumn {
-                        file: file.clone(),
-                        column: name.to_owned(),
-                        found: if header.is_empty() {
-                            "nothing".to_owned()
-                        } else {
-                            header.join(", ")
-                        },
-                    })?;
-            places.push(place);
-        }
-        let mut table = Self {
-            names: names.iter().map(|&name| name.to_owned()).collect(),
-            columns: vec![Vec::new(); places.len()],
+        let blanks_separate = description.delimiter == ' ';
+        let (header, header_line) = match &description.columns {
+            Some(columns) => (columns.clone(), 1),
+            None if next(&mut record)? => {
+                let names = cells(&record, blanks_separate);
+                let names = names.map(|name| String::from_utf8_lossy(name).into_owned());
+                (names.collect(), line_at(record.position()))
+            }
+            None => (Vec::new(), 1),
+        };
+        let wanted = description.wanted();
+        let remedy = || header::remedy(text.rest(), text.skipped_lines, &header, description);
+        let columns = wanted.iter().map(|&(name, kind)| {
+            Ok(Wanted {
+                name,
+                kind,
+                place: header::place(&file, header_line, &header, name, remedy)?,
+                numbers: Vec::new(),
+            })
+        });
+        let mut rows = Rows {
+            file: &file,
             lines: Vec::new(),
-            file,
+            columns: columns.collect::<Result<_, RecordingError>>()?,
+            cells: Cells::new(description.decimal, &description.missing),
+            drops_incomplete: description.drop_incomplete_rows,
+            n_incomplete: 0,
         };
-        for record in records {
-            let record = record.map_err(|e| line_error(&table.file, &e))?;
-            let line = record.position().map_or(0, csv::Position::line);
-            if record.len() != header.len() {
-                let (expected, found) = (header.len(), record.len());
-                let problem = format!("expected {expected} cells, found {found}");
-                return Err(RecordingError::Line {
-                    file: table.file,
-                    line,
-                    problem,
-                });
+        // A line of another number of cells is an error, unless it turns out to be the last one and has no end.
+        let mut cut = None;
+        while next(&mut record)? {
+            if let Some(error) = cut.take() {
+                return Err(error);
             }
-            table.lines.push(line);
-            for (column, &place) in places.iter().enumerate() {
-                let text = record.get(place).unwrap_or_default();
-                match text.parse::<f64>() {
-                    Ok(number) if number.is_finite() => table.columns[column].push(number),
-                    _ => return Err(table.cell(line, column, text)),
-                }
+            let line = line_at(record.position());
+            let mut row: Vec<&[u8]> = cells(&record, blanks_separate).collect();
+            while row.len() > header.len() && row.last().is_some_and(|cell| cell.is_empty()) {
+                row.pop();
+            }
+            if row.len() == header.len() {
+                rows.push(line, &row)?;
+            } else if row.iter().any(|cell| !cell.is_empty()) {
+                let (expected, found) = (header.len(), row.len());
+                let problem = format!("expected {expected} cells, found {found}");
+                cut = Some(line_error(&file, line, problem));
             }
         }
-        Ok(table)
+        let mut notes = text.notes.clone();
+        match cut {
+            Some(error) if !text.is_cut => return Err(error),
+            Some(_) => {
+                notes.push("ends within a line, as after a crash; that row is left out".to_owned());
+            }
+            None => (),
+        }
+        let is_read = |name: &&String| wanted.iter().any(|(wanted, _)| wanted == name);
+        let unread = header.iter().filter(|name| !is_read(name) && !name.is_empty());
+        let columns = rows.columns.into_iter();
+        Ok(Self {
+            unread: unread.cloned().collect(),
+            lines: rows.lines,
+            columns: columns
+                .map(|column| ((column.name.to_owned(), column.kind), column.numbers))
+                .collect(),
+            incomplete_rows: rows.n_incomplete,
+            notes,
+            file,
+        })
     }
 
-    /// The column of that name, which must be one of those asked for; `[n_rows]`.
-    pub(crate) fn column(&self, name: &str) -> &[f64] {
-        self.names
-            .iter()
-            .position(|n| n == name)
-            .map_or(&[], |place| &self.columns[place])
+    /// The column of that name, which must be one of those asked for, read as that; `[n_rows]`.
+    pub(crate) fn column(&self, name: &str, kind: Kind) -> &[f64] {
+        self.columns
+            .get(&(name.to_owned(), kind))
+            .map_or(&[], Vec::as_slice)
+    }
+
+    /// Hands out a column of readings, which no other taxel has.
+    pub(crate) fn take_readings(&mut self, name: &str) -> Vec<f64> {
+        self.columns
+            .remove(&(name.to_owned(), Kind::Reading))
+            .unwrap_or_default()
     }
 
     pub(crate) fn rows(&self) -> usize {
         self.lines.len()
     }
+}
 
-    fn cell(&self, line: u64, column: usize, text: &str) -> RecordingError {
-        RecordingError::Cell {
-            file: self.file.clone(),
-            line,
-            column: self.names[column].clone(),
-            problem: if text.is_empty() {
-                "is empty, expected a number".to_owned()
-            } else {
-                format!(
-                    "is `{}`, expected a finite number",
-                    text.chars().take(40).collect::<String>()
-                )
-            },
+impl Rows<'_> {
+    /// Takes the cells of a row, unless a number is missing that is no reading and such rows are left out.
+    fn push(&mut self, line: u64, row: &[&[u8]]) -> Result<(), RecordingError> {
+        let n_before = self.lines.len();
+        let mut is_complete = true;
+        for column in &mut self.columns {
+            let error = |problem: String| RecordingError::Cell {
+                file: self.file.to_owned(),
+                line,
+                column: column.name.to_owned(),
+                problem,
+            };
+            let cell = row[column.place];
+            let number = self.cells.read(cell, column.kind).map_err(|problem| {
+                error(if cell == column.name.as_bytes() {
+                    "is there again: the log was started again in the same file; make it two files".to_owned()
+                } else {
+                    problem
+                })
+            })?;
+            if number.is_nan() && matches!(column.kind, Kind::Number | Kind::Clock) {
+                if !self.drops_incomplete {
+                    let problem = "is missing, and only readings may be; `drop_incomplete_rows = true` leaves such rows out";
+                    return Err(error(problem.to_owned()));
+                }
+                is_complete = false;
+            }
+            column.numbers.push(number);
         }
+        if is_complete {
+            self.lines.push(line);
+        } else {
+            self.n_incomplete += 1;
+            let columns = self.columns.iter_mut();
+            columns.for_each(|column| column.numbers.truncate(n_before));
+        }
+        Ok(())
     }
 }
 
-fn line_error(file: &str, error: &csv::Error) -> RecordingError {
-    let line = error.position().map_or(0, csv::Position::line);
-    let problem = match error.kind() {
-        csv::ErrorKind::Utf8 { .. } => "is not UTF-8 text".to_owned(),
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => format!("expected {expected_len} cells, found {len}"),
-        _ => error.to_string(),
-    };
+fn line_error(file: &str, line: u64, problem: String) -> RecordingError {
     RecordingError::Line {
         file: file.to_owned(),
         line,

@@ -1,8 +1,12 @@
 //! The rows of one file in the project's units.
 
+use glam::DQuat;
 use twintac_shape::Pose;
 
-use super::description::{Column, Description, Direction, Split};
+use super::cell::Kind;
+use super::check::UNIT_TOLERANCE;
+use super::clock;
+use super::description::{Column, Description, Direction, Rotation, Split};
 use super::table::Table;
 use super::unit::Unit;
 use crate::{Press, RecordingError};
@@ -18,27 +22,30 @@ pub(crate) struct Track {
     pub(crate) z_mm: Vec<f64>,
     /// Of the tip over the unloaded gel, negative inside.
     pub(crate) height_mm: Vec<f64>,
+    /// How the indenter is turned; empty where it is upright throughout.
+    pub(crate) rotation: Vec<DQuat>,
     pub(crate) force_n: Vec<f64>,
-    /// As the file gives them; `[n_rows][n_taxels]`.
+    /// As the file gives them, NaN where it gives none; `[n_taxels][n_rows]`.
     pub(crate) raw: Vec<Vec<f64>>,
-    /// Whether a reading lies in the usable range; `[n_rows][n_taxels]`.
+    /// Whether a reading is there and lies in the usable range; `[n_taxels][n_rows]`.
     pub(crate) usable: Vec<Vec<bool>>,
-    /// Number of the press, where a column gives it.
+    /// Number of the press, where a column gives it; NaN of a row that belongs to none.
     pub(crate) press: Vec<f64>,
 }
 
 impl Track {
-    /// Converts the rows after the first `dropped` ones; times must increase from there on.
+    /// Converts the rows after the first `dropped` ones, whose times are given; times must increase from there on.
     pub(crate) fn new(
-        table: &Table,
+        mut table: Table,
+        mut times_s: Vec<f64>,
         description: &Description,
         dropped: usize,
     ) -> Result<Self, RecordingError> {
-        let rows = dropped..table.rows();
+        let n_rows = table.rows() - dropped;
         let z_mm = description
             .z
             .as_ref()
-            .map_or_else(|| vec![0.0; rows.len()], |z| converted(table, z, dropped));
+            .map_or_else(|| vec![0.0; n_rows], |z| converted(&table, z, dropped));
         let contact = description.contact;
         let height_mm = match (&description.z, contact.z_points) {
             (None, _) => z_mm.clone(),
@@ -46,58 +53,54 @@ impl Track {
             (_, Direction::Down) => z_mm.iter().map(|z| contact.z_mm - z).collect(),
         };
         let force_n = match (&description.force, description.weight_n) {
-            (Some(force), _) => converted(table, force, dropped),
-            (None, weight_n) => vec![weight_n.unwrap_or(0.0); rows.len()],
+            (Some(force), _) => converted(&table, force, dropped),
+            (None, weight_n) => vec![weight_n.unwrap_or(0.0); n_rows],
         };
-        let taxels: Vec<&[f64]> = description
-            .taxels
-            .iter()
-            .map(|taxel| table.column(&taxel.column))
-            .collect();
-        let raw: Vec<Vec<f64>> = rows
-            .clone()
-            .map(|row| taxels.iter().map(|taxel| taxel[row]).collect())
-            .collect();
-        let [lowest, highest] = description.readings.usable;
-        let usable = raw
-            .iter()
-            .map(|row| row.iter().map(|&raw| (lowest..=highest).contains(&raw)).collect())
-            .collect();
         let press = match &description.presses {
-            Split::Column { column } => table.column(column)[rows.clone()].to_vec(),
+            Split::Column { column } => table.column(column, Kind::Label)[dropped..].to_vec(),
             _ => Vec::new(),
         };
-        let time = description.time.clone().unwrap_or_default();
-        let track = Self {
-            lines: table.lines[rows].to_vec(),
-            time_s: converted(table, &time, dropped),
-            x_mm: converted(table, &description.x, dropped),
-            y_mm: converted(table, &description.y, dropped),
+        let rotation = match &description.rotation {
+            Some(rotation) => rotations(&table, rotation, dropped)?,
+            None => Vec::new(),
+        };
+        times_s.drain(..dropped);
+        if let Some(time) = &description.time {
+            clock::spread(&mut times_s, time.repeated);
+        }
+        if !matches!(description.presses, Split::Row) {
+            check_times(&table, &times_s, dropped, description)?;
+        }
+        let (x_mm, y_mm) = (
+            converted(&table, &description.x, dropped),
+            converted(&table, &description.y, dropped),
+        );
+        let taxels = description.taxels.iter();
+        let raw: Vec<Vec<f64>> = taxels
+            .map(|taxel| {
+                let mut readings = table.take_readings(&taxel.column);
+                readings.drain(..dropped);
+                readings
+            })
+            .collect();
+        let [lowest, highest] = description.readings.usable;
+        let is_usable = |raw: &f64| (lowest..=highest).contains(raw);
+        Ok(Self {
+            lines: table.lines.split_off(dropped),
+            time_s: times_s,
+            x_mm,
+            y_mm,
             z_mm,
             height_mm,
+            rotation,
             force_n,
+            usable: raw
+                .iter()
+                .map(|raw| raw.iter().map(is_usable).collect())
+                .collect(),
             raw,
-            usable,
             press,
-        };
-        if !matches!(description.presses, Split::Row) {
-            track.check_times(table, time.column.as_deref().unwrap_or_default())?;
-        }
-        Ok(track)
-    }
-
-    fn check_times(&self, table: &Table, column: &str) -> Result<(), RecordingError> {
-        for (row, step) in self.time_s.windows(2).enumerate() {
-            if step[1] <= step[0] {
-                return Err(RecordingError::Cell {
-                    file: table.file.clone(),
-                    line: self.lines[row + 1],
-                    column: column.to_owned(),
-                    problem: format!("is {} s after {} s, expected times to increase", step[1], step[0]),
-                });
-            }
-        }
-        Ok(())
+        })
     }
 
     /// Puts one row at the end of a press.
@@ -110,9 +113,10 @@ impl Track {
     ) {
         let z_mm = description.gel_top_mm + self.height_mm[row];
         press.time_s.push(self.time_s[row]);
-        press
-            .gel_from_indenter
-            .push(Pose::from_position([self.x_mm[row], self.y_mm[row], z_mm].into()));
+        press.gel_from_indenter.push(Pose {
+            position_mm: [self.x_mm[row], self.y_mm[row], z_mm].into(),
+            rotation: self.rotation.get(row).copied().unwrap_or(DQuat::IDENTITY),
+        });
         if let Some(force_n) = &mut press.force_n {
             force_n.push(self.force_n[row]);
         }
@@ -121,10 +125,12 @@ impl Track {
             .clone()
             .map(|(k, zero)| zero.map_or(f64::NAN, |zero| self.kpa(row, k, description) - zero));
         press.taxels_kpa.push(kpa.collect());
-        press.taxels_raw.push(self.raw[row].clone());
+        press
+            .taxels_raw
+            .push(self.raw.iter().map(|taxel| taxel[row]).collect());
         press.valid.push(
             zeros
-                .map(|(k, zero)| zero.is_some() && self.usable[row][k])
+                .map(|(k, zero)| zero.is_some() && self.usable[k][row])
                 .collect(),
         );
     }
@@ -132,13 +138,63 @@ impl Track {
     /// The reading of one taxel before it is zeroed, kPa.
     pub(crate) fn kpa(&self, row: usize, taxel: usize, description: &Description) -> f64 {
         let line = &description.taxels[taxel];
-        self.raw[row][taxel] * line.scale * description.readings.unit.factor() + line.offset_kpa
+        self.raw[taxel][row] * line.scale * description.readings.kpa() + line.offset_kpa
     }
+}
+
+fn check_times(
+    table: &Table,
+    times_s: &[f64],
+    dropped: usize,
+    description: &Description,
+) -> Result<(), RecordingError> {
+    for (row, step) in times_s.windows(2).enumerate() {
+        if step[1] <= step[0] {
+            let time = description.time.clone().unwrap_or_default();
+            return Err(RecordingError::Cell {
+                file: table.file.clone(),
+                line: table.lines[dropped + row + 1],
+                column: time.column.unwrap_or_default(),
+                problem: format!(
+                    "is {} s after {} s, expected times to increase; {}",
+                    step[1],
+                    step[0],
+                    clock::remedy(step[0], step[1], description)
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn rotations(table: &Table, rotation: &Rotation, dropped: usize) -> Result<Vec<DQuat>, RecordingError> {
+    let upright = DQuat::from_array(rotation.upright).normalize();
+    let columns = rotation
+        .columns
+        .each_ref()
+        .map(|name| &table.column(name, Kind::Number)[dropped..]);
+    let rows = 0..columns[0].len();
+    rows.map(|row| {
+        let turn = DQuat::from_array(columns.map(|column| column[row]));
+        if (turn.length() - 1.0).abs() > UNIT_TOLERANCE {
+            return Err(RecordingError::Cell {
+                file: table.file.clone(),
+                line: table.lines[dropped + row],
+                column: rotation.columns[3].clone(),
+                problem: format!(
+                    "ends a quaternion of length {}, expected 1; are `columns` in the order x, y, z, w?",
+                    turn.length()
+                ),
+            });
+        }
+        Ok(turn.normalize() * upright.inverse())
+    })
+    .collect()
 }
 
 fn converted<U: Unit>(table: &Table, column: &Column<U>, dropped: usize) -> Vec<f64> {
     match &column.column {
-        Some(name) => table.column(name)[dropped..]
+        Some(name) => table.column(name, Kind::Number)[dropped..]
             .iter()
             .map(|&number| column.convert(number))
             .collect(),

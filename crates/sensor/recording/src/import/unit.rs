@@ -14,6 +14,7 @@ pub(crate) trait Unit: Copy + Default {
 pub(crate) enum Length {
     #[default]
     Mm,
+    Cm,
     Um,
     M,
 }
@@ -22,6 +23,7 @@ impl Unit for Length {
     fn factor(self) -> f64 {
         match self {
             Self::Mm => 1.0,
+            Self::Cm => 10.0,
             Self::Um => 1e-3,
             Self::M => 1e3,
         }
@@ -36,14 +38,18 @@ pub(crate) enum Time {
     S,
     Ms,
     Us,
+    Ns,
+    /// A time of day, or a date and time, as text.
+    Clock,
 }
 
 impl Unit for Time {
     fn factor(self) -> f64 {
         match self {
-            Self::S => 1.0,
+            Self::S | Self::Clock => 1.0,
             Self::Ms => 1e-3,
             Self::Us => 1e-6,
+            Self::Ns => 1e-9,
         }
     }
 }
@@ -76,18 +82,21 @@ pub(crate) enum Pressure {
     #[serde(rename = "kPa")]
     Kpa,
     Pa,
-    #[serde(rename = "hPa")]
+    #[serde(rename = "hPa", alias = "mbar")]
     Hpa,
     #[serde(rename = "bar")]
     Bar,
     #[serde(rename = "psi")]
     Psi,
+    /// Of a converter: how much one is has to be said.
+    #[serde(rename = "counts")]
+    Counts,
 }
 
 impl Unit for Pressure {
     fn factor(self) -> f64 {
         match self {
-            Self::Kpa => 1.0,
+            Self::Kpa | Self::Counts => 1.0,
             Self::Pa => 1e-3,
             Self::Hpa => 0.1,
             Self::Bar => 100.0,

@@ -26,7 +26,7 @@ pub(crate) fn before_press(
         .filter(|&row| track.time_s[row] >= from_s)
         .collect();
     let mean_kpa = |taxel: usize| {
-        let usable = window.iter().filter(|&&row| track.usable[row][taxel]);
+        let usable = window.iter().filter(|&&row| track.usable[taxel][row]);
         let (sum, count) = usable.fold((0.0, 0), |(sum, count), &row| {
             (sum + track.kpa(row, taxel, description), count + 1)
         });

@@ -1,0 +1,110 @@
+//! What columns may mean, told from their names and numbers.
+
+use super::column::Column;
+
+/// Names of a column of times.
+const TIME: [&str; 13] = [
+    "t",
+    "time",
+    "timestamp",
+    "stamp",
+    "ms",
+    "millis",
+    "micros",
+    "us",
+    "seconds",
+    "sec",
+    "clock",
+    "datetime",
+    "date",
+];
+
+/// What stands before the name of an axis.
+const AXIS: [&str; 7] = ["", "pos_", "position_", "tcp_", "ee_", "tip_", "p"];
+
+/// Names of a height that is no axis.
+const HEIGHT: [&str; 3] = ["depth", "indentation", "height"];
+
+/// Names of the force into the gel.
+const FORCE: [&str; 7] = ["fz", "f_z", "force", "force_z", "f", "load", "normal_force"];
+
+/// Names of what tells presses apart.
+const PRESS: [&str; 7] = ["press", "label", "trial", "press_id", "trial_id", "id", "shape"];
+
+/// Part of the largest rise of the readings at which the tip counts as touching.
+const TOUCHING: f64 = 0.03;
+
+/// What columns may mean.
+pub(super) struct Roles<'a> {
+    pub(super) time: Option<&'a Column>,
+    /// x, y and z.
+    pub(super) place: [Option<&'a Column>; 3],
+    pub(super) turn: Option<[&'a Column; 4]>,
+    pub(super) force: Option<&'a Column>,
+    pub(super) press: Option<&'a Column>,
+    pub(super) taxels: Vec<&'a Column>,
+}
+
+impl<'a> Roles<'a> {
+    pub(super) fn new(columns: &'a [Column]) -> Self {
+        let named = |names: &[&str]| columns.iter().find(|column| names.contains(&&*column.base));
+        let axis = |axis: &str| {
+            let names = AXIS.map(|start| format!("{start}{axis}"));
+            columns.iter().find(|column| names.contains(&column.base))
+        };
+        let time = named(&TIME).or_else(|| columns.iter().find(|column| column.is_clock));
+        let place = [axis("x"), axis("y"), axis("z").or_else(|| named(&HEIGHT))];
+        let turn = ["qx", "qy", "qz", "qw"].map(|name| named(&[name]));
+        let [force, press] = [named(&FORCE), named(&PRESS)];
+        let taken: Vec<&Column> = [time, force, press]
+            .into_iter()
+            .chain(place)
+            .chain(turn)
+            .flatten()
+            .collect();
+        let is_left = |column: &&Column| {
+            let is_number = !column.is_text && !column.is_clock;
+            is_number && !taken.iter().any(|taken| std::ptr::eq(*taken, *column))
+        };
+        let left: Vec<&Column> = columns.iter().filter(is_left).collect();
+        // The most columns that differ in a number alone; else all that change.
+        let of_stem = |stem: &str| {
+            left.iter()
+                .copied()
+                .filter(|column| column.stem() == Some(stem))
+                .collect::<Vec<_>>()
+        };
+        let groups = left.iter().filter_map(|column| column.stem()).map(of_stem);
+        let taxels = groups.reduce(|most, next| if next.len() > most.len() { next } else { most });
+        let changes = |column: &&&Column| column.range()[0] < column.range()[1];
+        Self {
+            time,
+            place,
+            turn: match turn {
+                [Some(x), Some(y), Some(z), Some(w)] => Some([x, y, z, w]),
+                _ => None,
+            },
+            force,
+            press,
+            taxels: taxels.unwrap_or_else(|| left.iter().filter(changes).copied().collect()),
+        }
+    }
+
+    /// Where on the scale of z the readings begin to rise, and whether that scale grows downwards.
+    pub(super) fn contact(&self, z: &Column) -> (f64, bool) {
+        let rise = |row: usize| -> f64 {
+            let change = |taxel: &&Column| Some((taxel.numbers.get(row)? - taxel.numbers.first()?).abs());
+            self.taxels
+                .iter()
+                .filter_map(change)
+                .filter(|change| change.is_finite())
+                .sum()
+        };
+        let rises: Vec<f64> = (0..z.numbers.len()).map(rise).collect();
+        let largest = rises.iter().copied().fold(0.0, f64::max);
+        let at = |row: Option<usize>| row.and_then(|row| z.numbers.get(row)).copied().unwrap_or(0.0);
+        let touches = at(rises.iter().position(|rise| *rise > TOUCHING * largest));
+        let deepest = at(rises.iter().position(|rise| *rise >= largest));
+        (touches, deepest > touches)
+    }
+}
