@@ -313,6 +313,10 @@ fn a_clock_as_text_counts_from_the_first_row() {
         assert_eq!(numbers(&read(&description, &log).0), plain, "{log}");
         assert!(refused(BENCH, &log).contains("`unit = \"clock\"`"));
     }
+    // A date that goes back is no midnight.
+    let back = timed(&|s| format!("2026-11-{:02} 13:05:00", if s < 3 { 26 + s } else { 20 + s }));
+    let error = refused(&description, &back);
+    assert!(error.contains("expected times to increase"), "{error}");
     let error = refused(&description, &LOG.replace("3,4", "soon,4"));
     assert!(error.contains("expected a time"), "{error}");
 }

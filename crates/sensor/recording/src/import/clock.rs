@@ -1,7 +1,7 @@
 //! The times of a file's rows: a counter that rolls over, a clock that passes midnight, and rows that were written in bursts.
 
 use super::cell::{DAY_S, Kind};
-use super::description::{Description, Repeated};
+use super::description::{Description, Repeated, TimeColumn};
 use super::table::Table;
 use super::unit::Time;
 
@@ -10,13 +10,17 @@ const ROLLED_OVER: f64 = 0.5;
 
 /// The time of each row, s: a counter that rolls over goes on, and a clock's first row is at 0.
 pub(crate) fn times_s(table: &Table, description: &Description) -> Vec<f64> {
-    let time = description.time.clone().unwrap_or_default();
+    let Some(time) = &description.time else {
+        return vec![0.0; table.rows()];
+    };
     let Some(name) = &time.column else {
         return vec![time.offset; table.rows()];
     };
     let is_clock = matches!(time.unit, Time::Clock);
     let counts = table.column(name, if is_clock { Kind::Clock } else { Kind::Number });
-    let wraps_at = time.wraps_at.or(is_clock.then_some(DAY_S));
+    // Dates do not begin again at midnight.
+    let is_of_day = is_clock && counts.iter().all(|&count| count < DAY_S);
+    let wraps_at = time.wraps_at.or(is_of_day.then_some(DAY_S));
     let mut times = unrolled(counts, wraps_at);
     if is_clock && let Some(&first) = times.first() {
         times.iter_mut().for_each(|time| *time -= first);
@@ -73,8 +77,7 @@ pub(crate) fn spread(times_s: &mut [f64], repeated: Repeated) {
 }
 
 /// What may help against a time that does not increase.
-pub(crate) fn remedy(before: f64, now: f64, description: &Description) -> String {
-    let time = description.time.clone().unwrap_or_default();
+pub(crate) fn remedy(before: f64, now: f64, time: &TimeColumn) -> String {
     if now == before {
         return "rows that were written in bursts are read with `repeated = \"spread\"`, or `repeated = { rate_hz = … }`".to_owned();
     }

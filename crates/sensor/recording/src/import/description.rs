@@ -130,7 +130,7 @@ impl<U: Unit> Column<U> {
 }
 
 /// The column of the time.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TimeColumn {
     /// Without a column the time is the offset, everywhere.

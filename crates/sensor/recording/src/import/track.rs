@@ -6,7 +6,7 @@ use twintac_shape::Pose;
 use super::cell::Kind;
 use super::check::UNIT_TOLERANCE;
 use super::clock;
-use super::description::{Column, Description, Direction, Rotation, Split};
+use super::description::{Column, Description, Direction, Rotation, Split, TimeColumn};
 use super::table::Table;
 use super::unit::Unit;
 use crate::{Press, RecordingError};
@@ -67,9 +67,9 @@ impl Track {
         times_s.drain(..dropped);
         if let Some(time) = &description.time {
             clock::spread(&mut times_s, time.repeated);
-        }
-        if !matches!(description.presses, Split::Row) {
-            check_times(&table, &times_s, dropped, description)?;
+            if !matches!(description.presses, Split::Row) {
+                check_times(&table, &times_s, dropped, time)?;
+            }
         }
         let (x_mm, y_mm) = (
             converted(&table, &description.x, dropped),
@@ -146,20 +146,19 @@ fn check_times(
     table: &Table,
     times_s: &[f64],
     dropped: usize,
-    description: &Description,
+    time: &TimeColumn,
 ) -> Result<(), RecordingError> {
     for (row, step) in times_s.windows(2).enumerate() {
         if step[1] <= step[0] {
-            let time = description.time.clone().unwrap_or_default();
             return Err(RecordingError::Cell {
                 file: table.file.clone(),
                 line: table.lines[dropped + row + 1],
-                column: time.column.unwrap_or_default(),
+                column: time.column.clone().unwrap_or_default(),
                 problem: format!(
                     "is {} s after {} s, expected times to increase; {}",
                     step[1],
                     step[0],
-                    clock::remedy(step[0], step[1], description)
+                    clock::remedy(step[0], step[1], time)
                 ),
             });
         }
