@@ -18,7 +18,8 @@ use crate::sensor::Sensor;
 /// How long Ctrl-C and `close` may wait to be heard.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Reads a sensor frame by frame: one on an I²C bus of Linux (`Reader.open`), or an emulated one (`Reader.emulated`).
+/// Reads a sensor frame by frame: on an I²C bus of Linux (`Reader.open`), over a serial port (`Reader.serial`), from datagrams (`Reader.udp`), out of a log
+/// (`Reader.replay`), or an emulated one (`Reader.emulated`).
 ///
 /// It reads on a thread of its own, from when it is made until `close` or the end of a `with` block. Iterating gives a `Reading` for each frame, as they come; up to 256
 /// frames wait for whom is late, more are missed. Other threads run meanwhile, and Ctrl-C ends the wait for a frame.
@@ -72,21 +73,44 @@ impl Reader {
         let range = 1..=u16::MAX as usize;
         let counts_per_pa = counts_per_pa.map(|counts| counts.count("counts_per_pa", range));
         let counts_per_pa = counts_per_pa.transpose()?.map(|counts| counts as u16);
-        #[cfg(target_os = "linux")]
-        return Self::start(py, sensor, move |sensor| {
+        Self::start(py, sensor, move |sensor| {
             twintac::Reader::open(bus, sensor, counts_per_pa)
-        });
-        #[cfg(not(target_os = "linux"))]
-        {
-            let _ = (sensor, counts_per_pa);
-            let problem = format!("is {}, but only Linux has such buses", bus.display());
-            Err(unusable(py, "bus", &problem))
-        }
+        })
+    }
+
+    /// Reads the frames that a microcontroller writes to a serial port such as `/dev/ttyACM0` or `COM3`. `line` is a file (TOML) that says how frames stand on the
+    /// line. Nothing may touch the sensor meanwhile: the first frames make the tare.
+    ///
+    /// Raises `Error` for a port that cannot be opened, a description that is wrong or of another number of taxels, and a line on which no frame comes for 3 s; the
+    /// message says what came instead.
+    #[staticmethod]
+    fn serial(py: Python<'_>, port: String, line: PathBuf, sensor: &Sensor) -> PyResult<Self> {
+        Self::start(py, sensor, move |sensor| {
+            twintac::Reader::serial(&port, line, sensor)
+        })
+    }
+
+    /// Reads frames that come as datagrams (UDP) to an address of this computer, such as `"0.0.0.0:9000"`. `line` is a file (TOML) that says how frames stand in them.
+    ///
+    /// Raises `Error` as `serial` does.
+    #[staticmethod]
+    fn udp(py: Python<'_>, address: String, line: PathBuf, sensor: &Sensor) -> PyResult<Self> {
+        Self::start(py, sensor, move |sensor| {
+            twintac::Reader::udp(&address, line, sensor)
+        })
+    }
+
+    /// Plays the frames of a log (MCAP) at their own pace; they are what the log says: `"real"` or `"emulated"`. After the last one `read` raises `Error`.
+    ///
+    /// Raises `Error` for a log that cannot be read, has no frames, or is of other taxels than the sensor's.
+    #[staticmethod]
+    fn replay(py: Python<'_>, log: PathBuf, sensor: &Sensor) -> PyResult<Self> {
+        Self::start(py, sensor, move |sensor| twintac::Reader::replay(log, sensor))
     }
 
     /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about. Takes half a second; Ctrl-C ends the wait.
     ///
-    /// Raises `Error` for a sensor that is not read this way: one of another number of taxels than eight.
+    /// Raises `Error` for a sensor whose description does not say how its taxels are wired.
     #[staticmethod]
     fn emulated(py: Python<'_>, sensor: &Sensor) -> PyResult<Self> {
         Self::start(py, sensor, twintac::Reader::emulated)
@@ -110,11 +134,20 @@ impl Reader {
         self.notes.clone()
     }
 
+    /// What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing. Empty if all was well, and of a reader that is closed.
+    fn remarks(&self, py: Python<'_>) -> Vec<String> {
+        py.detach(|| {
+            let reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
+            reader.as_ref().map(twintac::Reader::remarks).unwrap_or_default()
+        })
+    }
+
     /// The next frame.
     ///
     /// Raises `Error` for a sensor that has failed for 2 s on end or was silent for 3 s, and for a reader that is closed.
     fn read(&self, py: Python<'_>) -> PyResult<Reading> {
-        self.next(py)?.ok_or_else(|| unusable(py, "reader", "is closed"))
+        self.next(py)?
+            .ok_or_else(|| unusable(py, "reader", "is closed, or has played its last frame"))
     }
 
     /// Ends the reading, within a second also where the bus hangs. What is closed is not read again; closing it once more does nothing.
@@ -172,6 +205,7 @@ impl Reader {
             });
             match heard {
                 None => return Ok(None),
+                Some(Err(error)) if error.is_over() => return Ok(None),
                 Some(frame) => {
                     if let Some(reading) = frame.or_raise(py)? {
                         let provenance = self.provenance.clone();

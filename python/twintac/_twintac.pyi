@@ -338,7 +338,8 @@ class PressureMap:
 
 @final
 class Reader:
-    """Reads a sensor frame by frame: one on an I²C bus of Linux (`Reader.open`), or an emulated one (`Reader.emulated`).
+    """Reads a sensor frame by frame: on an I²C bus of Linux (`Reader.open`), over a serial port (`Reader.serial`), from datagrams (`Reader.udp`), out of a log
+    (`Reader.replay`), or an emulated one (`Reader.emulated`).
 
     It reads on a thread of its own, from when it is made until `close` or the end of a `with` block. Iterating gives a `Reading` for each frame, as they come; up to 256
     frames wait for whom is late, more are missed. Other threads run meanwhile, and Ctrl-C ends the wait for a frame.
@@ -351,10 +352,30 @@ class Reader:
         Raises `Error` for a bus that cannot be opened, and a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
         """
     @staticmethod
+    def serial(port: str, line: _Path, sensor: Sensor) -> Reader:
+        """Reads the frames that a microcontroller writes to a serial port such as `/dev/ttyACM0` or `COM3`. `line` is a file (TOML) that says how frames stand on the
+        line. Nothing may touch the sensor meanwhile: the first frames make the tare.
+
+        Raises `Error` for a port that cannot be opened, a description that is wrong or of another number of taxels, and a line on which no frame comes for 3 s; the
+        message says what came instead.
+        """
+    @staticmethod
+    def udp(address: str, line: _Path, sensor: Sensor) -> Reader:
+        """Reads frames that come as datagrams (UDP) to an address of this computer, such as `"0.0.0.0:9000"`. `line` is a file (TOML) that says how frames stand in them.
+
+        Raises `Error` as `serial` does.
+        """
+    @staticmethod
+    def replay(log: _Path, sensor: Sensor) -> Reader:
+        """Plays the frames of a log (MCAP) at their own pace; they are what the log says: `"real"` or `"emulated"`. After the last one `read` raises `Error`.
+
+        Raises `Error` for a log that cannot be read, has no frames, or is of other taxels than the sensor's.
+        """
+    @staticmethod
     def emulated(sensor: Sensor) -> Reader:
         """Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about. Takes half a second; Ctrl-C ends the wait.
 
-        Raises `Error` for a sensor that is not read this way: one of another number of taxels than eight.
+        Raises `Error` for a sensor whose description does not say how its taxels are wired.
         """
     @property
     def provenance(self) -> Literal["real", "emulated"]:
@@ -365,6 +386,8 @@ class Reader:
     @property
     def notes(self) -> list[str]:
         """What was odd when the sensor was switched on, a sentence each."""
+    def remarks(self) -> list[str]:
+        """What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing. Empty if all was well, and of a reader that is closed."""
     def read(self) -> Reading:
         """The next frame.
 

@@ -9,7 +9,7 @@ use anyhow::Result;
 use xtask::cargo::{cargo, run};
 use xtask::{fuzz, readme, results, rooms};
 
-const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | results [FILE] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench import [--json] | bench twin |
+const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | results [FILE] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench import [--json] | bench twin |
     bench sensors [--rewrite] |
     fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
@@ -24,6 +24,7 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
          scaling: how time and memory grow with the mesh; writes docs/benchmarks/scaling.*
          peers: the same press on MuJoCo and Newton; needs Python 3 and the network, writes docs/benchmarks/peers.*
          recording: rate, faults and kills of a recording on the emulated bench; writes docs/benchmarks/recording.*
+         serial: a thousand frames of sixteen taxels a second over a serial line for ten minutes; writes docs/benchmarks/serial.*
          import: how long a CSV log of two million rows takes to import, and how much memory
          twin: how fast a thousand twins are stepped; writes docs/benchmarks/twin.*
          sensors: how fast a thousand imperfect sensors are stepped, beside MuJoCo's touch_grid if TWINTAC_PYTHON names a Python that has it;

@@ -3,12 +3,14 @@
 #[cfg(test)]
 mod conflicts;
 mod dataset;
+mod stream;
 
 use std::path::PathBuf;
 
 pub(crate) use dataset::Dataset;
+pub(crate) use stream::{Ports, RowFormat, Stream};
 
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 use twintac_gel::mesh::LengthUnit;
 
 /// Barometric touch sensors and their digital twin.
@@ -45,6 +47,8 @@ pub(crate) enum Command {
     Calibrate(Calibrate),
     /// Measure a sensor's properties in recorded presses: sensitivity, noise, hysteresis, and more.
     Characterize(Characterize),
+    /// List what a sensor may be plugged into, and what it sounds like.
+    Ports(Ports),
     /// Show a sensor's frames live: on a dashboard, or as rows of text.
     Stream(Stream),
     /// Press a sensor along a protocol and record it: on a bench with a robot, or on the emulated one.
@@ -575,54 +579,4 @@ pub(crate) struct Report {
     /// Folder of an evaluated run.
     #[arg(long, value_name = "DIR")]
     pub(crate) run: PathBuf,
-}
-
-/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` they are a dashboard.
-#[derive(Args, Debug)]
-#[command(group = ArgGroup::new("source").required(true))]
-pub(crate) struct Stream {
-    /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
-    #[arg(long, value_name = "PATH", group = "source")]
-    pub(crate) bus: Option<PathBuf>,
-    /// The emulated sensor, pressed by a slow motion.
-    #[arg(long, group = "source")]
-    pub(crate) lab: bool,
-    /// Sensor description (TOML) [default: PhysTac].
-    #[arg(long, value_name = "FILE")]
-    pub(crate) sensor: Option<PathBuf>,
-    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(crate) scale: Option<u16>,
-    /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
-    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
-    pub(crate) altitude_m: Option<f32>,
-    /// Rows on standard output instead of the dashboard.
-    #[arg(long, value_enum)]
-    pub(crate) format: Option<RowFormat>,
-    /// End after so many rows.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format", conflicts_with = "out")]
-    pub(crate) frames: Option<u64>,
-    /// End after so long, s.
-    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format", conflicts_with = "out")]
-    pub(crate) seconds: Option<f64>,
-    /// Folder of the dashboard's recordings (MCAP).
-    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]
-    pub(crate) out: PathBuf,
-}
-
-/// A time, s, that passes.
-fn duration_s(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => Ok(seconds),
-        _ => Err("expected seconds, a finite number above 0".to_owned()),
-    }
-}
-
-/// How frames are written.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum RowFormat {
-    /// Comma-separated values under a header.
-    Csv,
-    /// A JSON object a line.
-    Jsonl,
 }

@@ -32,11 +32,26 @@ impl Program {
         match run(arguments, self) {
             Ok(()) => 0,
             Err(error) => {
-                let _ = writeln!(std::io::stderr(), "error: {}", visible(&format!("{error:#}")));
+                let _ = writeln!(std::io::stderr(), "error: {}", visible(&said(&error)));
                 if error.is::<command::Stopped>() { 3 } else { 2 }
             }
         }
     }
+}
+
+/// An error and what caused it. Some errors quote their cause and name it as well: it is said once.
+fn said(error: &anyhow::Error) -> String {
+    let mut said = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if said.contains(&cause) {
+            continue;
+        }
+        if !said.is_empty() {
+            said.push_str(": ");
+        }
+        said.push_str(&cause);
+    }
+    said
 }
 
 fn run(arguments: Arguments, program: &Program) -> Result<()> {
@@ -47,4 +62,25 @@ fn run(arguments: Arguments, program: &Program) -> Result<()> {
             .context("starting threads")?;
     }
     command::run(arguments.command, program)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cause_is_said_once() {
+        #[derive(Debug, thiserror::Error)]
+        #[error("cannot read a.toml: {source}")]
+        struct Quoting {
+            source: std::io::Error,
+        }
+        let error = anyhow::Error::new(Quoting {
+            source: std::io::Error::other("no such file"),
+        });
+        assert_eq!(
+            said(&error.context("reading settings")),
+            "reading settings: cannot read a.toml: no such file"
+        );
+    }
 }

@@ -5,6 +5,7 @@
 
 #![allow(clippy::unwrap_used)] // a property that does not hold is a panic
 
+mod line;
 mod log;
 mod netft;
 mod seeds;
@@ -24,7 +25,7 @@ pub struct Target {
 }
 
 /// All kinds.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     Target {
         name: "xarm_frames",
         run: xarm::frames,
@@ -49,6 +50,11 @@ pub const TARGETS: [Target; 8] = [
         name: "bench_texts",
         run: text::texts,
         seeds: seeds::texts,
+    },
+    Target {
+        name: "line_bytes",
+        run: line::bytes,
+        seeds: seeds::lines,
     },
     Target {
         name: "log_file",

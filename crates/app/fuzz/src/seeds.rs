@@ -368,7 +368,7 @@ fn written(messages: &[Message]) -> (Vec<u8>, usize) {
     (writer.finish().unwrap(), end)
 }
 
-/// Calls, then a bus on which all is well, one where a taxel is missing, one that hangs.
+/// Calls and a chip, then a bus on which all is well, one where a taxel is missing, one that hangs.
 pub(crate) fn taxel_bus() -> Vec<Vec<u8>> {
     let counts = [0x00, 0x31, 0x79, 0x80, 0x19, 0x80];
     let frame = counts.repeat(40);
@@ -376,11 +376,26 @@ pub(crate) fn taxel_bus() -> Vec<Vec<u8>> {
     missing[100] = 0xF0;
     let mut hung = frame.clone();
     hung[60..120].fill(0xFB);
-    let calls = |calls: u8, bytes: &[u8]| [&[calls], bytes].concat();
-    vec![
-        calls(0, &frame),
-        calls(1, &frame),
-        calls(0xFF, &missing),
-        calls(4, &hung),
-    ]
+    let calls = |calls: u8, chip: u8, bytes: &[u8]| [&[calls, chip], bytes].concat();
+    let mut seeds = vec![
+        calls(0, 0, &frame),
+        calls(1, 0, &frame),
+        calls(0xFF, 0, &missing),
+        calls(4, 0, &hung),
+    ];
+    // Of every other chip, a bus that says what it likes.
+    seeds.extend((1..11).map(|chip| calls(0, chip, &frame)));
+    seeds
+}
+
+/// A form and the size of pieces, then lines and packets as boards send them.
+pub(crate) fn lines() -> Vec<Vec<u8>> {
+    let texts: [&[u8]; 4] = [
+        b"ESP-ROM:esp32s3\r\n1,100,101325,nan,25.5*3a\r\n# comment\n2,110,101330,101200,25.5*00\r\n",
+        b"{\"n\": 1, \"t\": 1000, \"p\": [100.5, null]}\n{\"n\": 2, \"t\": 2000, \"p\":\n",
+        b"\xAA\x55\x01\x00\x00\x00\x10\x27\x20\x4e\xAA\x55\x02\x00\x00\x00\x10\x27\x20\x4e",
+        b"\x01\x05\x01\x02\x03\x04\x05\x06\x07\x08\x00\xff\x00",
+    ];
+    let seed = |(form, text): (usize, &&[u8])| [&[form as u8, 7], *text].concat();
+    texts.iter().enumerate().map(seed).collect()
 }

@@ -5,14 +5,18 @@ use std::rc::Rc;
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
-use phystac::{Fault, FreeAir, Health, Oversampling, PhysTac, Settings, Thresholds, Transfer, scale_hint};
+use phystac::{
+    Chip, Fault, FreeAir, Health, PhysTac, Settings, Thresholds, Transfer, Wired, Wiring, scale_hint,
+};
 
 const SWITCH: u8 = 0x70;
 const COMMAND: u8 = 0x30;
 const PRESSURE_CONFIGURATION: u8 = 0xA6;
 /// What one call may cost, whatever the bus does: transactions, and µs.
-const MOST_TRANSACTIONS: usize = 1000;
+const MOST_TRANSACTIONS: usize = 3000;
 const MOST_US: u64 = 200_000;
+/// What switching a chip on may cost besides, µs.
+const MOST_START_US: u64 = 200_000;
 
 /// The first byte of a transaction says how it ends; up to these all is as it should be but for the data.
 const HONEST: u8 = 0xDF;
@@ -20,6 +24,7 @@ const HONEST: u8 = 0xDF;
 /// A bus that answers from bytes; when there are none left, with zeros.
 struct Bytes<'a> {
     bytes: &'a [u8],
+    chip: Chip,
     mask: u8,
     configuration: u8,
     transactions: Rc<Cell<usize>>,
@@ -37,6 +42,7 @@ impl Bytes<'_> {
     fn check_write(&mut self, address: u8, bytes: &[u8]) {
         match (address, bytes) {
             (SWITCH, [mask]) => self.mask = *mask,
+            _ if self.chip != Chip::Cps135b => {}
             (_, [COMMAND, command]) => assert_eq!(command & 0b111, 0b010, "no other is for us to write"),
             (_, [PRESSURE_CONFIGURATION, configuration]) => {
                 assert_eq!(
@@ -100,9 +106,18 @@ impl DelayNs for Time {
     }
 }
 
-/// A sensor whose bus answers with these bytes. The first one says what is called between frames.
+/// A sensor whose bus answers with these bytes. The first one says what is called between frames, the second of which chips it is.
 pub(crate) fn bus(bytes: &[u8]) {
-    let Some((calls, bytes)) = bytes.split_first() else {
+    let [calls, chip, bytes @ ..] = bytes else {
+        return;
+    };
+    let chip = Chip::ALL[usize::from(*chip) % Chip::ALL.len()];
+    let samples = (calls & 1 == 1).then(|| chip.data().speeds[0].samples);
+    let wired = [0, 1, 2, 3, 4, 5, 6, 7].map(|channel| Wired {
+        samples,
+        ..Wired::on_channel(chip, channel)
+    });
+    let Ok(wiring) = Wiring::new(&wired) else {
         return;
     };
     let transactions = Rc::new(Cell::new(0));
@@ -110,11 +125,12 @@ pub(crate) fn bus(bytes: &[u8]) {
     let clock = time.clone();
     let bus = Bytes {
         bytes,
+        chip,
         mask: 0,
         configuration: 0,
         transactions: Rc::clone(&transactions),
     };
-    let settings = Settings::<8>::default();
+    let settings = Settings::<8>::new(wiring);
     let mut sensor = PhysTac::new(bus, time.clone(), move || clock.0.get() / 1000, settings);
     let transfer = Transfer::per_pa(32);
     let mut health = Health::new(transfer, Thresholds::default());
@@ -122,7 +138,6 @@ pub(crate) fn bus(bytes: &[u8]) {
         let (before, before_ns) = (transactions.get(), time.0.get());
         let called = match (calls >> turn & 1, turn) {
             (0, _) => sensor.trigger(),
-            (_, 0 | 4) => sensor.set_oversampling(Oversampling::X4096).map(|_| ()),
             (_, 1 | 5) => sensor.stop(),
             (_, 2 | 6) => {
                 sensor.readmit();
@@ -132,7 +147,7 @@ pub(crate) fn bus(bytes: &[u8]) {
         };
         let frame = sensor.frame();
         assert!(transactions.get() - before <= MOST_TRANSACTIONS);
-        assert!(time.0.get() - before_ns <= 1000 * MOST_US);
+        assert!(time.0.get() - before_ns <= 1000 * (MOST_US + 16 * MOST_START_US));
         if let Err(error) = called {
             assert!(!error.to_string().is_empty());
         }
@@ -146,8 +161,8 @@ fn check(frame: &mut phystac::Frame<8>, health: &mut Health<8>, transfer: &Trans
     assert!(frame.read_us.iter().all(|read_us| *read_us >= frame.triggered_us));
     for (taxel, pressure_pa) in frame.taxels.iter().zip(frame.pressures_pa(transfer)) {
         if let (Ok(sample), Ok(pressure_pa)) = (taxel, pressure_pa) {
-            assert!((-128.0..128.0).contains(&sample.temperature_c));
-            assert!(pressure_pa.abs() <= transfer.full_scale_pa(), "{pressure_pa} Pa");
+            assert!(!sample.temperature_c.is_nan());
+            assert!(pressure_pa.is_finite(), "{pressure_pa} Pa");
         }
     }
     let air = FreeAir::default();

@@ -9,17 +9,18 @@ use phystac::recovery::{free_bus, reset_switch};
 use serde::Deserialize;
 use twintac_emulate::{EmulatedBench, EmulatedBenchSettings, LabClock, ScheduledFault, check_faults};
 use twintac_lab::{Lab, LiveTable, Reality};
-use twintac_live::{Known, emulated_board};
+use twintac_live::emulated_board;
 use twintac_press::PressSettings;
 use twintac_recording::Provenance;
 use twintac_rig::xarm::ReportPort;
 use twintac_rig::{BenchClock, netft};
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
+use twintac_source::{Known, driver_settings};
 use twintac_work::{At, WorkError};
 
 use crate::OpenBench;
-use crate::open::{Addresses, connect};
+use crate::open::{Addresses, Tactile, connect};
 
 /// What a file of faults holds.
 #[derive(Deserialize)]
@@ -60,7 +61,9 @@ impl OpenBench {
             faults,
             ..EmulatedBenchSettings::default()
         };
-        devices.board.barometer.noise_pa = 1e3 * reality.readout.noise_kpa;
+        let noise_pa = 1e3 * reality.readout.noise_kpa;
+        devices.board.barometer.noise_pa = noise_pa; // at 1024 samples
+        devices.board.noise_pa = Some(noise_pa);
         devices.board.seed = reality.seed;
         devices.force.noise_n = reality.robot.force_noise_n;
         devices.force.seed = reality.seed;
@@ -75,7 +78,7 @@ impl OpenBench {
             force: (devices.force.requests(), configuration),
         };
         let clock = BenchClock::start();
-        let mut driver = twintac_live::driver_settings(sensor)?;
+        let mut driver = driver_settings(sensor)?;
         driver.conversion_us = settings.conversion_us;
         let taxels = PhysTac::new(devices.board.bus(), lab_clock, move || clock.now_us(), driver);
         let ((mut scl, mut sda), mut reset) = (devices.board.lines(), devices.board.reset_line());
@@ -85,7 +88,8 @@ impl OpenBench {
             let _ = free_bus(&mut scl, &mut sda, delay);
         };
         let known = Known::default().or_emulated(sensor);
-        let connected = connect(&addresses, taxels, free, sensor, &known, clock)
+        let connected = Tactile::on_bus(taxels, free, sensor, &known)
+            .and_then(|tactile| connect(&addresses, tactile, clock))
             .at(|| "connecting to the emulated bench".to_owned())?;
         Ok(Self {
             devices: connected.bench,

@@ -8,12 +8,12 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use phystac::{Clock, PhysTac, Transfer};
 use twintac_lab::{Reality, Selector};
-use twintac_live::{Known, TAXELS, power_on};
 use twintac_press::{Bench, Streams};
 use twintac_recording::Provenance;
 use twintac_rig::xarm::{Client, ReportPort, ReportReader};
 use twintac_rig::{BenchClock, NetFtSource, netft};
 use twintac_sensor::Sensor;
+use twintac_source::{FrameReader, Known, TAXELS, TactileSource, power_on};
 use twintac_work::WorkError;
 
 /// How long a device may take to accept a connection.
@@ -22,7 +22,7 @@ pub(crate) const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 /// A bench that is switched on: its robot is enabled, and stands. Dropped, it stops.
 pub struct OpenBench {
     pub(crate) devices: Bench<Client<TcpStream>>,
-    pub(crate) transfer: Transfer,
+    pub(crate) transfer: Option<Transfer>,
     pub(crate) provenance: Provenance,
     pub(crate) notes: Vec<String>,
     /// Where the robot listens.
@@ -69,7 +69,7 @@ pub(crate) struct Addresses {
 /// Devices that are connected, how counts become pressure, and what was odd.
 pub(crate) struct Connected {
     pub(crate) bench: Bench<Client<TcpStream>>,
-    pub(crate) transfer: Transfer,
+    pub(crate) transfer: Option<Transfer>,
     pub(crate) notes: Vec<String>,
 }
 
@@ -80,25 +80,47 @@ pub(crate) fn connect_to(reports: SocketAddr) -> Result<TcpStream, WorkError> {
     })
 }
 
-/// Connects, checks the taxels in free air, and has everything heard. The robot is enabled last.
-pub(crate) fn connect<I, D, C>(
+/// The tactile sensor, checked.
+pub(crate) struct Tactile {
+    pub(crate) source: Box<dyn TactileSource>,
+    pub(crate) transfer: Option<Transfer>,
+    pub(crate) notes: Vec<String>,
+}
+
+impl Tactile {
+    /// On a bus, checked in free air. `free` frees a bus that hangs.
+    pub(crate) fn on_bus<I, D, C>(
+        mut taxels: PhysTac<I, D, C, TAXELS>,
+        free: impl FnMut(&mut I, &mut D) + Send + 'static,
+        sensor: &Sensor,
+        known: &Known,
+    ) -> Result<Self, WorkError>
+    where
+        I: I2c + Send + 'static,
+        D: DelayNs + Send + 'static,
+        C: Clock + Send + 'static,
+    {
+        let checked = power_on(&mut taxels, sensor, known)?;
+        let reader = FrameReader::new(taxels, &checked)
+            .converting_ahead()
+            .freed_by(free);
+        Ok(Self {
+            source: Box::new(reader),
+            transfer: checked.transfer,
+            notes: checked.notes,
+        })
+    }
+}
+
+/// Connects, and has everything heard. The robot is enabled last.
+pub(crate) fn connect(
     addresses: &Addresses,
-    mut taxels: PhysTac<I, D, C, TAXELS>,
-    free: impl FnMut(&mut I, &mut D) + Send + 'static,
-    sensor: &Sensor,
-    known: &Known,
+    tactile: Tactile,
     clock: BenchClock,
-) -> Result<Connected, WorkError>
-where
-    I: I2c + Send + 'static,
-    D: DelayNs + Send + 'static,
-    C: Clock + Send + 'static,
-{
-    let checked = power_on(&mut taxels, sensor, known)?;
-    let mut notes = checked.notes.clone();
+) -> Result<Connected, WorkError> {
+    let mut notes = tactile.notes;
     let mut streams = Streams::new(clock);
-    let mut screening = checked.screening();
-    streams.hear_taxels(taxels, move |frame| screening.frame(frame), free)?;
+    streams.hear_taxels(tactile.source)?;
     let (requests, configuration) = addresses.force.clone();
     let mut force = netft::Client::connect(requests, configuration)?;
     force.start(false)?;
@@ -113,7 +135,7 @@ where
     arm.begin_servo()?;
     Ok(Connected {
         bench: Bench { arm, streams },
-        transfer: checked.transfer,
+        transfer: tactile.transfer,
         notes,
     })
 }

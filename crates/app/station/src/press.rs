@@ -110,7 +110,7 @@ impl OpenBench {
             sensor_toml: file.text.clone(),
             provenance: self.provenance,
             taxels: sensor.taxels.iter().map(|taxel| taxel.name.clone()).collect(),
-            transfer: Some(twintac_live::confirmed_transfer(&self.transfer)),
+            transfer: self.transfer.as_ref().map(twintac_source::confirmed_transfer),
             // Set by the runner.
             base_from_gel: Pose::IDENTITY,
             tool_from_indenter: Pose::IDENTITY,

@@ -1,18 +1,18 @@
 //! A bench that moves something real.
 
-use std::net::{SocketAddr, ToSocketAddrs};
+use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::path::Path;
 
-use twintac_live::{Known, TAXELS};
 use twintac_press::PressSettings;
 use twintac_recording::Provenance;
 use twintac_rig::xarm::{PORT, ReportPort, ReportReader};
 use twintac_rig::{BenchClock, netft};
 use twintac_sensor::Sensor;
+use twintac_source::{Known, LineSource, SerialLine, SourceError, TAXELS};
 use twintac_work::WorkError;
 
 use crate::OpenBench;
-use crate::open::{Addresses, CONNECT_WITHIN, connect, connect_to};
+use crate::open::{Addresses, CONNECT_WITHIN, Tactile, connect, connect_to};
 
 #[cfg(not(target_os = "linux"))]
 use phystac::PhysTac;
@@ -38,11 +38,17 @@ impl OpenBench {
             .and_then(|report| report.status)
             .ok_or_else(|| WorkError::Input("the robot does not report its settings".to_owned()))?;
         devices.check_tool(&tool)?;
-        let mut driver = twintac_live::driver_settings(sensor)?;
-        driver.conversion_us = settings.conversion_us;
-        let taxels = open_bus(Path::new(&devices.tactile), driver, clock)?;
-        // Where the kernel's driver of the bus can free it, it does; the switch's reset line is not wired to this computer.
-        let connected = connect(&addresses, taxels, |_, _| {}, sensor, known, clock)?;
+        let tactile = match &devices.line {
+            Some(line) => on_line(&devices.tactile, line, sensor, clock)?,
+            None => {
+                let mut driver = twintac_source::driver_settings(sensor)?;
+                driver.conversion_us = settings.conversion_us;
+                let taxels = open_bus(Path::new(&devices.tactile), driver, clock)?;
+                // Where the kernel's driver of the bus can free it, it does; the switch's reset line is not wired to this computer.
+                Tactile::on_bus(taxels, |_, _| {}, sensor, known)?
+            }
+        };
+        let connected = connect(&addresses, tactile, clock)?;
         Ok(Self {
             devices: connected.bench,
             transfer: connected.transfer,
@@ -54,6 +60,33 @@ impl OpenBench {
             _emulated: None,
         })
     }
+}
+
+/// A sensor whose frames come over a serial port, or in datagrams.
+fn on_line(tactile: &str, line: &Path, sensor: &Sensor, clock: BenchClock) -> Result<Tactile, WorkError> {
+    let description = twintac_line::Description::read(line)?;
+    let now = Box::new(move || clock.now_us());
+    let n_taxels = sensor.taxels.len();
+    let source = match tactile.strip_prefix("udp:") {
+        Some(address) => {
+            let socket = UdpSocket::bind(address).map_err(|error| SourceError::Open {
+                wire: tactile.to_owned(),
+                problem: error.to_string(),
+            })?;
+            LineSource::new(socket, &description, n_taxels, now)?
+        }
+        None => LineSource::new(
+            SerialLine::open(tactile, &description)?,
+            &description,
+            n_taxels,
+            now,
+        )?,
+    };
+    Ok(Tactile {
+        source: Box::new(source),
+        transfer: None,
+        notes: Vec::new(),
+    })
 }
 
 /// Where something listens.
@@ -74,8 +107,8 @@ fn open_bus(
     path: &Path,
     driver: phystac::Settings<TAXELS>,
     clock: BenchClock,
-) -> Result<twintac_live::LinuxPhysTac, WorkError> {
-    Ok(twintac_live::open_linux(
+) -> Result<twintac_source::LinuxPhysTac, WorkError> {
+    Ok(twintac_source::open_linux(
         path,
         driver,
         Box::new(move || clock.now_us()),
@@ -88,7 +121,7 @@ fn open_bus(
     _: phystac::Settings<TAXELS>,
     _: BenchClock,
 ) -> Result<
-    PhysTac<twintac_emulate::i2c::Bus, twintac_emulate::LabClock, twintac_live::BoxedClock, TAXELS>,
+    PhysTac<twintac_emulate::i2c::Bus, twintac_emulate::LabClock, twintac_source::BoxedClock, TAXELS>,
     WorkError,
 > {
     Err(WorkError::Input(format!(

@@ -82,6 +82,15 @@ pub struct ErrorPlace {
 }
 
 impl Error {
+    /// Whether it only says that a source, such as a log that is played, has no further frames.
+    #[cfg(feature = "live")]
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        use twintac_live::LiveError;
+        use twintac_source::SourceError;
+        matches!(self, Self::Live(LiveError::Source(SourceError::Over)))
+    }
+
     /// Where the error stands.
     #[must_use]
     pub fn place(&self) -> ErrorPlace {

@@ -3,15 +3,16 @@
 use std::path::Path;
 use std::time::Duration;
 
-use twintac_live::{Known, Live, Tare, Taring};
+use twintac_live::{Live, Origin, Tare, Taring};
 use twintac_recording::Provenance;
+use twintac_source::Known;
 
 use crate::{Error, Sensor};
 
 /// How long to wait for a frame at a time.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Reads a sensor frame by frame: on an I²C bus of Linux, or emulated.
+/// Reads a sensor frame by frame: on an I²C bus of Linux, a serial line, from datagrams, a log, or emulated.
 #[derive(Debug)]
 pub struct Reader {
     live: Live,
@@ -35,18 +36,43 @@ pub struct Reading {
 
 impl Reader {
     /// Reads the sensor on `/dev/i2c-N`, which nothing may touch meanwhile: the first frames make the tare. `counts_per_pa` is the scale of
-    /// its barometers, confirmed by who knows the parts; without it, the description's counts.
+    /// barometers that do not say it themselves, confirmed by who knows the parts; without it, the description's counts.
     ///
     /// # Errors
     /// A bus that cannot be opened; a sensor that does not answer, does not read free air, or whose scale nobody has confirmed.
-    #[cfg(target_os = "linux")]
     pub fn open(bus: impl AsRef<Path>, sensor: &Sensor, counts_per_pa: Option<u16>) -> Result<Self, Error> {
-        let file = sensor.file();
         let known = Known {
             counts_per_pa,
             altitude_m: None,
         };
-        Self::of(Live::on_linux(bus.as_ref(), &file.sensor, &file.text, &known)?)
+        Self::from(&Origin::Bus(bus.as_ref().to_owned()), sensor, &known)
+    }
+
+    /// Reads the frames that a microcontroller writes to a serial port, as a file describes them (TOML). Nothing may touch the sensor meanwhile: the
+    /// first frames make the tare.
+    ///
+    /// # Errors
+    /// A port that cannot be opened; a description that is wrong, or of another number of taxels; a line on which no frame comes.
+    pub fn serial(port: &str, line: impl AsRef<Path>, sensor: &Sensor) -> Result<Self, Error> {
+        let (port, line) = (port.to_owned(), line.as_ref().to_owned());
+        Self::from(&Origin::Serial { port, line }, sensor, &Known::default())
+    }
+
+    /// Reads frames that come as datagrams to an address of this computer, such as `0.0.0.0:9000`, as a file describes them (TOML).
+    ///
+    /// # Errors
+    /// As [`serial`](Self::serial).
+    pub fn udp(address: &str, line: impl AsRef<Path>, sensor: &Sensor) -> Result<Self, Error> {
+        let (address, line) = (address.to_owned(), line.as_ref().to_owned());
+        Self::from(&Origin::Udp { address, line }, sensor, &Known::default())
+    }
+
+    /// Plays the frames of a log (MCAP) at their own pace.
+    ///
+    /// # Errors
+    /// A log that cannot be read, has no frames, or is of other taxels.
+    pub fn replay(log: impl AsRef<Path>, sensor: &Sensor) -> Result<Self, Error> {
+        Self::from(&Origin::Log(log.as_ref().to_owned()), sensor, &Known::default())
     }
 
     /// Reads an emulated sensor in real time: registers on an emulated bus, pressed by a ball that wanders about.
@@ -54,14 +80,22 @@ impl Reader {
     /// # Errors
     /// A sensor that is not read this way.
     pub fn emulated(sensor: &Sensor) -> Result<Self, Error> {
+        Self::from(&Origin::Emulated, sensor, &Known::default())
+    }
+
+    fn from(origin: &Origin, sensor: &Sensor, known: &Known) -> Result<Self, Error> {
         let file = sensor.file();
-        Self::of(Live::in_the_lab(&file.sensor, &file.text, &Known::default())?)
+        Self::of(Live::open(origin, &file.sensor, &file.text, known)?)
     }
 
     fn of(mut live: Live) -> Result<Self, Error> {
         let mut taring = Taring::default();
         loop {
-            if let Some(reading) = live.source.next(PATIENCE)?
+            let next = live
+                .source
+                .next(PATIENCE)
+                .map_err(twintac_live::LiveError::from)?;
+            if let Some(reading) = next
                 && let Some(tare) = taring.push(&reading.frame)
             {
                 return Ok(Self { live, tare });
@@ -81,6 +115,12 @@ impl Reader {
         &self.live.notes
     }
 
+    /// What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        self.live.source.tally().remarks
+    }
+
     /// The next frame. Up to 256 wait for whom is late; more are missed.
     ///
     /// # Errors
@@ -98,7 +138,12 @@ impl Reader {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn wait(&mut self, patience: Duration) -> Result<Option<Reading>, Error> {
-        let Some(reading) = self.live.source.next(patience)? else {
+        let next = self
+            .live
+            .source
+            .next(patience)
+            .map_err(twintac_live::LiveError::from)?;
+        let Some(reading) = next else {
             return Ok(None);
         };
         let taxels = &reading.frame.taxels;

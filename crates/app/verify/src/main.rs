@@ -15,6 +15,8 @@ mod peers;
 mod recording;
 mod rung;
 mod scaling;
+#[cfg(unix)]
+mod serial;
 
 #[derive(Parser)]
 #[command(about = "Benchmarks and verification of the soft body and of the bench")]
@@ -50,6 +52,9 @@ enum Task {
         #[arg(long)]
         json: bool,
     },
+    /// A thousand frames of sixteen taxels a second over a serial line: writes docs/benchmarks/serial.*
+    #[cfg(unix)]
+    Serial(serial::Options),
     /// Such a log: one JSON line
     ReadLog {
         /// The log
@@ -72,6 +77,8 @@ fn main() -> ExitCode {
         Task::Peers(options) => peers::run(&options).map(|()| true),
         Task::Recording(options) => recording::run(&options).map(|()| true),
         Task::Import { json } => import::run(json).map(|()| true),
+        #[cfg(unix)]
+        Task::Serial(options) => serial::run(&options).map(|()| true),
         Task::ReadLog { log } => import::print_imported(&log).map(|()| true),
         Task::Press { poissons_ratio } => peers::print_row(poissons_ratio).map(|()| true),
     };

@@ -104,6 +104,9 @@ pub enum WorkError {
     Emulate(#[from] twintac_emulate::EmulateError),
     /// The sensor could not be read.
     #[error(transparent)]
+    Source(#[from] twintac_source::SourceError),
+    /// What was read could not be shown.
+    #[error(transparent)]
     Live(#[from] twintac_live::LiveError),
     /// Robot or force sensor could not be used.
     #[error(transparent)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{CHANNELS, EmulateError};
+use crate::{EmulateError, MOST_TAXELS};
 
 /// Something that goes wrong, from a moment on.
 ///
@@ -43,11 +43,11 @@ pub enum Moment {
     Count(u64),
 }
 
-/// Something that can go wrong.
+/// Something that can go wrong. Channels are counted over all switches, by address: those of the first are 0 to 7, of the second 8 to 15.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum FaultKind {
-    /// Lasts: a channel's barometer, or without a channel the switch, does not acknowledge.
+    /// Lasts: a channel's barometer, or without a channel every switch, does not acknowledge.
     NoAcknowledge {
         /// The channel.
         channel: Option<u8>,
@@ -57,7 +57,7 @@ pub enum FaultKind {
         /// The channel.
         channel: u8,
     },
-    /// Happens: a channel's barometer, or without a channel the switch, waits for nine clocks and holds the data line until it gets
+    /// Happens: a channel's barometer, or without a channel the first switch, waits for nine clocks and holds the data line until it gets
     /// them. The switch's reset frees its own side.
     StuckBus {
         /// The channel.
@@ -68,10 +68,15 @@ pub enum FaultKind {
         /// By how much, s.
         by_s: f64,
     },
-    /// Happens: the switch loses power for a moment, and with it its mask.
+    /// Happens: all switches lose power for a moment, and with it their masks.
     SwitchBrownOut,
     /// Happens: a channel's barometer loses power for a moment, and with it what it measures and how.
     BarometerBrownOut {
+        /// The channel.
+        channel: u8,
+    },
+    /// Happens: a channel's barometer loses what its factory calibrated it to, if it keeps that where it can be read.
+    LostCalibration {
         /// The channel.
         channel: u8,
     },
@@ -126,6 +131,7 @@ impl FaultKind {
             | Self::ClockStretch { .. }
             | Self::SwitchBrownOut
             | Self::BarometerBrownOut { .. }
+            | Self::LostCalibration { .. }
             | Self::EndlessConversion { .. } => FaultWire::I2c,
             Self::ConnectionReset | Self::RobotError { .. } | Self::UnansweredRequests => FaultWire::Robot,
             Self::LostDatagrams
@@ -144,6 +150,7 @@ impl FaultKind {
             Self::StuckBus { .. }
                 | Self::SwitchBrownOut
                 | Self::BarometerBrownOut { .. }
+                | Self::LostCalibration { .. }
                 | Self::ConnectionReset
                 | Self::RobotError { .. }
         )
@@ -154,6 +161,7 @@ impl FaultKind {
             Self::NoAcknowledge { channel } | Self::StuckBus { channel } => channel,
             Self::Short { channel }
             | Self::BarometerBrownOut { channel }
+            | Self::LostCalibration { channel }
             | Self::EndlessConversion { channel } => Some(channel),
             _ => None,
         }
@@ -167,9 +175,9 @@ impl ScheduledFault {
         if self
             .what
             .channel()
-            .is_some_and(|channel| usize::from(channel) >= CHANNELS)
+            .is_some_and(|channel| usize::from(channel) >= MOST_TAXELS)
         {
-            return bad("what.channel", "expected 0 to 7");
+            return bad("what.channel", "expected 0 to 63");
         }
         if let FaultKind::ClockStretch { by_s } | FaultKind::LateDatagrams { by_s } = self.what
             && !(by_s > 0.0 && by_s.is_finite())
@@ -218,11 +226,11 @@ mod tests {
         for (fault, words) in [
             (
                 ScheduledFault {
-                    what: FaultKind::Short { channel: 8 },
+                    what: FaultKind::Short { channel: 64 },
                     begins,
                     lasts,
                 },
-                "`faults[0].what.channel` expected 0 to 7",
+                "`faults[0].what.channel` expected 0 to 63",
             ),
             (
                 lost(Moment::TimeS(-1.0), None),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use twintac_rig::{TcpPose, Wrench};
 
-use crate::{CHANNELS, Physics, Sensed};
+use crate::{MOST_TAXELS, Physics, Sensed};
 
 /// A ball at the tool that presses an elastic half-space from above: Hertz's contact.
 ///
@@ -12,7 +12,7 @@ use crate::{CHANNELS, Physics, Sensed};
 #[derive(Clone, Debug)]
 pub struct Hertz {
     /// Where the barometers are, in the robot's base frame, mm. They lie in one plane, the surface at rest.
-    pub taxels_mm: [DVec3; CHANNELS],
+    pub taxels_mm: Vec<DVec3>,
     /// Radius of the ball, mm; its lowest point is the tool centre point.
     pub radius_mm: f64,
     /// Plane-strain modulus `E / (1 - ν²)` of the half-space, kPa.
@@ -27,10 +27,10 @@ impl Default for Hertz {
     /// A ball of 20 mm on 60 kPa, over two rows of four barometers 4 mm apart, 200 mm in front of the robot and 100 mm above its base.
     fn default() -> Self {
         Self {
-            taxels_mm: std::array::from_fn(|taxel| {
-                let (row, column) = ((taxel / 4) as f64, (taxel % 4) as f64);
+            taxels_mm: Vec::from_iter((0..8).map(|taxel| {
+                let (row, column) = (f64::from(taxel / 4), f64::from(taxel % 4));
                 DVec3::new(194.0 + 4.0 * column, -2.0 + 4.0 * row, 100.0)
-            }),
+            })),
             radius_mm: 20.0,
             modulus_kpa: 60.0,
             air_kpa: 101.325,
@@ -60,14 +60,20 @@ impl Hertz {
 impl Physics for Hertz {
     fn at(&mut self, tool: &TcpPose, _: f64) -> Sensed {
         let tip_mm = tool.position_mm;
-        let depth_mm = self.taxels_mm[0].z - tip_mm.z;
+        let surface_mm = self
+            .taxels_mm
+            .first()
+            .map_or(f64::NEG_INFINITY, |taxel_mm| taxel_mm.z);
+        let depth_mm = surface_mm - tip_mm.z;
         let force_n = DVec3::NEG_Z * self.force_n(depth_mm);
-        let middle_mm = self.taxels_mm.iter().sum::<DVec3>() / CHANNELS as f64;
+        let middle_mm = self.taxels_mm.iter().sum::<DVec3>() / self.taxels_mm.len().max(1) as f64;
+        let mut taxel_pressures_kpa = [self.air_kpa; MOST_TAXELS];
+        for (pressure_kpa, taxel_mm) in taxel_pressures_kpa.iter_mut().zip(&self.taxels_mm) {
+            let distance_mm = (taxel_mm - tip_mm).truncate().length();
+            *pressure_kpa += self.pressure_kpa(depth_mm, distance_mm);
+        }
         Sensed {
-            taxel_pressures_kpa: self.taxels_mm.map(|taxel_mm| {
-                let distance_mm = (taxel_mm - tip_mm).truncate().length();
-                self.air_kpa + self.pressure_kpa(depth_mm, distance_mm)
-            }),
+            taxel_pressures_kpa,
             temperature_c: self.temperature_c,
             wrench: Wrench {
                 force_n,

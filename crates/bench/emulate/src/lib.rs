@@ -1,6 +1,6 @@
 //! The devices of a bench, emulated at the level of their protocols, with faults on demand.
 //!
-//! There are a sensor's eight barometers behind their I²C switch ([`i2c`]), a robot arm that listens on TCP ([`robot`]), and a force/torque
+//! There are a sensor's barometers behind their I²C switches ([`i2c`]), a robot arm that listens on TCP ([`robot`]), and a force/torque
 //! sensor that streams by UDP ([`force`]). They share one [`LabClock`] and one [`Workcell`]. The workcell moves the robot's tool and asks a
 //! [`Physics`], which the caller provides, what the sensors feel there. [`EmulatedBench`] connects all of them.
 //!
@@ -41,5 +41,5 @@ pub use emulated_bench::{EmulatedBench, EmulatedBenchSettings};
 pub use error::EmulateError;
 pub use fault::{FaultKind, Moment, ScheduledFault, check_faults};
 pub use hertz::Hertz;
-pub use physics::{CHANNELS, Physics, Sensed};
+pub use physics::{MOST_TAXELS, Physics, Sensed};
 pub use workcell::{Situation, Workcell};

@@ -2,14 +2,14 @@
 
 use twintac_rig::{TcpPose, Wrench};
 
-/// Barometers that a switch can have.
-pub const CHANNELS: usize = 8;
+/// Barometers that a board can have.
+pub const MOST_TAXELS: usize = 64;
 
 /// What the sensor and the force sensor are exposed to at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensed {
-    /// Absolute pressure at each channel's barometer, kPa.
-    pub taxel_pressures_kpa: [f64; CHANNELS],
+    /// Absolute pressure at each barometer, kPa, in the order of the board's parts; beyond them nobody feels it.
+    pub taxel_pressures_kpa: [f64; MOST_TAXELS],
     /// Temperature of the barometers, °C.
     pub temperature_c: f64,
     /// Force and torque on the force sensor, in its own frame.
@@ -30,7 +30,7 @@ impl Sensed {
     #[must_use]
     pub fn untouched(pressure_kpa: f64, temperature_c: f64) -> Self {
         Self {
-            taxel_pressures_kpa: [pressure_kpa; CHANNELS],
+            taxel_pressures_kpa: [pressure_kpa; MOST_TAXELS],
             temperature_c,
             wrench: Wrench::ZERO,
         }
@@ -40,11 +40,8 @@ impl Sensed {
     pub(crate) fn mix(&self, other: &Self, fraction: f64) -> Self {
         let between = |one: f64, two: f64| one + fraction * (two - one);
         Self {
-            taxel_pressures_kpa: std::array::from_fn(|channel| {
-                between(
-                    self.taxel_pressures_kpa[channel],
-                    other.taxel_pressures_kpa[channel],
-                )
+            taxel_pressures_kpa: std::array::from_fn(|taxel| {
+                between(self.taxel_pressures_kpa[taxel], other.taxel_pressures_kpa[taxel])
             }),
             temperature_c: between(self.temperature_c, other.temperature_c),
             wrench: Wrench {

@@ -65,7 +65,7 @@ fn a_press_shows_on_all_wires() {
     assert!((mean_n + hertz.force_n(depth_mm)).abs() < 0.03, "{mean_n} N");
 
     let pressures_pa = sensor.frame().unwrap().pressures_pa(&Transfer::per_pa(32));
-    for (pressure_pa, taxel_mm) in pressures_pa.iter().zip(hertz.taxels_mm) {
+    for (pressure_pa, taxel_mm) in pressures_pa.iter().zip(&hertz.taxels_mm) {
         let distance_mm = (taxel_mm - pose.position_mm).truncate().length();
         let expected_kpa = hertz.air_kpa + hertz.pressure_kpa(depth_mm, distance_mm);
         let kpa = 1e-3 * f64::from(pressure_pa.unwrap());
@@ -98,7 +98,7 @@ fn in_virtual_time_the_wires_wait_for_whoever_moves_the_clock() {
 fn settings_are_files_that_people_write() {
     let text = r#"
 [board]
-channels = [0, 1, 2, 3]
+parts = [{ chip = "CPS135B", switch = 0x70, channel = 3 }, { chip = "BMP390", address = 0x77 }]
 barometer = { counts_per_pa = 8.0, is_signed = false }
 
 [robot]

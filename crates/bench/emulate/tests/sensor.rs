@@ -5,8 +5,8 @@
 use embedded_hal::i2c::{ErrorKind, I2c, NoAcknowledgeSource};
 use glam::DVec3;
 use phystac::recovery::{free_bus, reset_switch};
-use phystac::{Budget, Error, Frame, Oversampling, PhysTac, Settings, Transfer};
-use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
+use phystac::{Budget, Chip, Error, Frame, PhysTac, Settings, Transfer, Wired, Wiring};
+use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus, PartSettings};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{FaultKind, Hertz, LabClock, Moment, ScheduledFault, Workcell};
 use twintac_rig::TcpPose;
@@ -31,12 +31,16 @@ fn board(clock: &LabClock, settings: &BoardSettings, faults: &[ScheduledFault]) 
 type Sensor = PhysTac<Bus, LabClock, Box<dyn Fn() -> u64>, 8>;
 
 fn sensor(clock: &LabClock, board: &Board) -> Sensor {
+    sensor_of(clock, board, Settings::default())
+}
+
+fn sensor_of(clock: &LabClock, board: &Board, settings: Settings<8>) -> Sensor {
     let now = clock.clone();
     PhysTac::new(
         board.bus(),
         clock.clone(),
         Box::new(move || now.now_us()),
-        Settings::default(),
+        settings,
     )
 }
 
@@ -96,19 +100,14 @@ fn a_frame_takes_as_long_as_its_clocks_and_its_conversions() {
     for _ in 0..20 {
         sensor.frame().unwrap();
     }
-    let budget = Budget {
-        n_taxels: 8,
-        bus_hz: 400_000,
-        conversion_us: 6000,
-        polls: 1,
-    };
+    let budget = Budget::new(&Settings::<8>::default(), 400_000);
     let frame_s = (clock.now_s() - begun_s) / 20.0;
     let expected_s = f64::from(budget.frame_us()) * 1e-6;
     assert!(
         (frame_s - expected_s).abs() < 20e-6,
         "{frame_s} s, {expected_s} s"
     );
-    let conversions_s: Vec<f64> = board.conversions_s().into_iter().flatten().collect();
+    let conversions_s: Vec<f64> = board.conversions_s();
     assert!(conversions_s.iter().all(|s| (5.2e-3..6.0e-3).contains(s)));
     assert!(
         conversions_s.windows(2).all(|pair| pair[0] != pair[1]),
@@ -141,25 +140,25 @@ fn the_same_seed_gives_the_same_frames_and_another_one_others() {
 
 #[test]
 fn noise_is_as_loud_as_set_and_quieter_with_more_samples() {
-    let deviation_pa = |oversampling: Option<Oversampling>| {
-        let (_, _, mut sensor) = faulty(&[]);
-        if let Some(oversampling) = oversampling {
-            assert!(
-                sensor
-                    .set_oversampling(oversampling)
-                    .unwrap()
-                    .iter()
-                    .all(Result::is_ok)
-            );
-            sensor.set_conversion_us(10_000);
-        }
+    let deviation_pa = |samples: Option<u16>| {
+        let wired = |channel| Wired {
+            samples,
+            ..Wired::on_channel(Chip::Cps135b, channel)
+        };
+        let settings = Settings {
+            conversion_us: 10_000,
+            ..Settings::new(Wiring::new(&[0, 1, 2, 3, 4, 5, 6, 7].map(wired)).unwrap())
+        };
+        let clock = LabClock::virtual_time();
+        let board = board(&clock, &BoardSettings::default(), &[]);
+        let mut sensor = sensor_of(&clock, &board, settings);
         let readings: Vec<f64> = (0..300)
             .map(|_| f64::from(sensor.frame().unwrap().pressures_pa(&Transfer::per_pa(32))[0].unwrap()))
             .collect();
         let mean = readings.iter().sum::<f64>() / 300.0;
         (readings.iter().map(|pa| (pa - mean).powi(2)).sum::<f64>() / 299.0).sqrt()
     };
-    let (usual_pa, quiet_pa) = (deviation_pa(None), deviation_pa(Some(Oversampling::X4096)));
+    let (usual_pa, quiet_pa) = (deviation_pa(None), deviation_pa(Some(4096)));
     assert!((usual_pa - 15.0).abs() < 2.5, "{usual_pa}");
     assert!((quiet_pa - 7.5).abs() < 1.3, "{quiet_pa}");
 }
@@ -268,7 +267,9 @@ fn a_missing_barometer_and_a_missing_switch_are_named() {
 fn a_board_with_four_barometers_is_one_with_four_missing() {
     let clock = LabClock::virtual_time();
     let settings = BoardSettings {
-        channels: vec![0, 1, 2, 3],
+        parts: [0, 1, 2, 3]
+            .map(|channel| PartSettings::on_channel("CPS135B", channel))
+            .into(),
         ..BoardSettings::default()
     };
     let board = board(&clock, &settings, &[]);

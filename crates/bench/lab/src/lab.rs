@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use twintac_emulate::CHANNELS;
 use twintac_material::Yeoh;
 use twintac_protocol::PressPlan;
 use twintac_random::{RandomStream, normal, stream};
@@ -176,19 +175,9 @@ impl Lab {
         self.gel.clone().with_material(material)
     }
 
-    /// The taxels that have a channel of a switch, and it.
-    pub(crate) fn taxel_channels(&self) -> impl Iterator<Item = (usize, usize)> {
-        let channels = self.drawing.taxels.iter().map(|taxel| usize::from(taxel.channel));
-        channels.enumerate().filter(|&(_, channel)| channel < CHANNELS)
-    }
-
-    /// The port of each channel; of one without a taxel, a perfect one.
-    pub(crate) fn channels(&self) -> [Port; CHANNELS] {
-        let mut channels = [Port::PERFECT; CHANNELS];
-        for (taxel, channel) in self.taxel_channels() {
-            channels[channel] = self.ports[taxel];
-        }
-        channels
+    /// The ports of the taxels.
+    pub(crate) fn ports(&self) -> &[Port] {
+        &self.ports
     }
 
     /// How much deeper than the robot believes the indenter is in a press, mm.

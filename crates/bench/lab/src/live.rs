@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use twintac_depth_table::PressFrame;
-use twintac_emulate::{CHANNELS, Physics, Sensed};
+use twintac_emulate::{MOST_TAXELS, Physics, Sensed};
 use twintac_protocol::PressPlan;
 use twintac_random::{RandomStream, normal, stream};
 use twintac_rig::{TcpPose, Wrench};
@@ -24,8 +24,8 @@ use crate::{ClimateReality, Lab, LabError, Relaxation};
 /// How much deeper than planned the tables go, mm.
 const SPARE_MM: f64 = 0.5;
 
-/// Values that a table gives: the force, and the pressures at all channels.
-const VALUES: usize = 1 + CHANNELS;
+/// Values that a table gives: the force, and the pressures at all taxels that there can be.
+const VALUES: usize = 1 + MOST_TAXELS;
 
 /// What the devices feel of one cast of a sensor, pressed at the places of a plan.
 pub struct LiveGel {
@@ -35,8 +35,8 @@ pub struct LiveGel {
     selected: Arc<AtomicUsize>,
     relaxation: Vec<Relaxation>,
     climate: ClimateReality,
-    /// Of each channel.
-    ports: [Port; CHANNELS],
+    /// Of each taxel.
+    ports: Vec<Port>,
     drift_kpa_per_sqrt_s: f64,
     random: RandomStream,
     memory: Memory,
@@ -61,12 +61,12 @@ pub struct LiveTable {
     depths_mm: Vec<f64>,
     /// Force, N, at each.
     force_n: Vec<f64>,
-    /// Pressure, kPa, at each, of every channel; empty of a channel without a taxel.
-    pressures_kpa: [Vec<f64>; CHANNELS],
+    /// Pressure, kPa, at each, of every taxel.
+    pressures_kpa: Vec<Vec<f64>>,
     /// The same on the way back, from the deepest on; empty without friction.
     depths_back_mm: Vec<f64>,
     force_back_n: Vec<f64>,
-    pressures_back_kpa: [Vec<f64>; CHANNELS],
+    pressures_back_kpa: Vec<Vec<f64>>,
 }
 
 /// A table to be asked.
@@ -84,7 +84,7 @@ struct Memory {
     turn_mm: f64,
     /// Of each term of the relaxation.
     fading: Vec<[f64; VALUES]>,
-    walk_kpa: [f64; CHANNELS],
+    walk_kpa: [f64; MOST_TAXELS],
 }
 
 impl Lab {
@@ -135,13 +135,10 @@ impl Lab {
         })
     }
 
-    /// Pressures of every channel; of one without a taxel, none.
-    fn pressures_kpa(&self, frames: &[PressFrame]) -> [Vec<f64>; CHANNELS] {
-        let mut pressures_kpa = [const { Vec::new() }; CHANNELS];
-        for (taxel, channel) in self.taxel_channels() {
-            pressures_kpa[channel] = column(frames, &|frame| frame.port_pressure_kpa[taxel]);
-        }
-        pressures_kpa
+    /// Pressures of every taxel.
+    fn pressures_kpa(&self, frames: &[PressFrame]) -> Vec<Vec<f64>> {
+        let of = |taxel: usize| column(frames, &|frame| frame.port_pressure_kpa[taxel]);
+        (0..self.ports().len()).map(of).collect()
     }
 
     /// The gel, as it stands in the robot's base frame, under an indenter that sits in the tool's frame.
@@ -168,11 +165,11 @@ impl Lab {
                 elastic: [0.0; VALUES],
                 turn_mm: 0.0,
                 fading: vec![[0.0; VALUES]; reality.gel.relaxation.len()],
-                walk_kpa: [0.0; CHANNELS],
+                walk_kpa: [0.0; MOST_TAXELS],
             },
             relaxation: reality.gel.relaxation.clone(),
             climate: reality.climate.clone(),
-            ports: self.channels(),
+            ports: self.ports().to_vec(),
             drift_kpa_per_sqrt_s: reality.readout.drift_kpa_per_sqrt_s,
             random: stream(reality.seed, "live"),
         };
@@ -236,12 +233,13 @@ impl Physics for LiveGel {
         let force_n = self.base_from_gel.rotation * (DVec3::NEG_Z * felt[0]);
         let warmed_k = self.climate.warmed_k(time_s);
         let arm_mm = tool.position_mm - self.base_from_gel.position_mm;
-        let taxel_pressures_kpa = std::array::from_fn(|channel| {
-            let deviation_kpa = self.drift_kpa_per_sqrt_s * step_s.max(0.0).sqrt();
-            let walk_kpa = &mut self.memory.walk_kpa[channel];
+        let deviation_kpa = self.drift_kpa_per_sqrt_s * step_s.max(0.0).sqrt();
+        let mut taxel_pressures_kpa = [Port::PERFECT.absolute_kpa(0.0, warmed_k); MOST_TAXELS];
+        for (taxel, port) in self.ports.iter().enumerate() {
+            let walk_kpa = &mut self.memory.walk_kpa[taxel];
             *walk_kpa += normal(&mut self.random, deviation_kpa);
-            self.ports[channel].absolute_kpa(felt[1 + channel], warmed_k) + *walk_kpa
-        });
+            taxel_pressures_kpa[taxel] = port.absolute_kpa(felt[1 + taxel], warmed_k) + *walk_kpa;
+        }
         Sensed {
             taxel_pressures_kpa,
             temperature_c: self.climate.start_c + warmed_k,
@@ -309,7 +307,7 @@ mod tests {
             elastic: [0.0; VALUES],
             turn_mm: 0.0,
             fading: vec![[0.0; VALUES]],
-            walk_kpa: [0.0; CHANNELS],
+            walk_kpa: [0.0; MOST_TAXELS],
         };
         for step in 0..2000 {
             memory.advance([5.0; VALUES], f64::from(step) * 1e-3, &terms);
@@ -328,7 +326,7 @@ mod tests {
             elastic: [0.0; VALUES],
             turn_mm: 0.0,
             fading: vec![[0.0; VALUES]; 2],
-            walk_kpa: [0.0; CHANNELS],
+            walk_kpa: [0.0; MOST_TAXELS],
         };
         let mut felt = memory.advance([5.0; VALUES], 1e-9, &terms)[0];
         assert!((felt - 5.0).abs() < 1e-6, "all of it at once: {felt}");

@@ -1,13 +1,12 @@
 //! What is looked at.
 
-use phystac::{Settings, Transfer, Wiring};
+use phystac::Transfer;
 use twintac_log::Description;
 use twintac_map::{Rectangle, pitch_mm};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 use twintac_shape::Pose;
-
-use crate::{LiveError, TAXELS, confirmed_transfer};
+use twintac_source::confirmed_transfer;
 
 /// A sensor, and where its numbers come from.
 #[derive(Clone, Debug)]
@@ -22,8 +21,8 @@ pub struct About {
     pub places_mm: Vec<[f64; 2]>,
     /// Hardware or emulated.
     pub provenance: Provenance,
-    /// What counts stand for, confirmed.
-    pub transfer: Transfer,
+    /// What counts stand for, confirmed, where chips do not say it themselves.
+    pub transfer: Option<Transfer>,
     /// When the bench's clock started: wall-clock time, ns since 1970-01-01 UTC.
     pub start_unix_ns: u64,
 }
@@ -35,7 +34,7 @@ impl About {
         sensor: &Sensor,
         sensor_toml: &str,
         provenance: Provenance,
-        transfer: Transfer,
+        transfer: Option<Transfer>,
         start_unix_ns: u64,
     ) -> Self {
         let place = |taxel: &twintac_sensor::Taxel| [taxel.position_mm.x, taxel.position_mm.y];
@@ -69,7 +68,7 @@ impl About {
             sensor_toml: self.sensor_toml.clone(),
             provenance: self.provenance,
             taxels: self.taxels.clone(),
-            transfer: Some(confirmed_transfer(&self.transfer)),
+            transfer: self.transfer.as_ref().map(confirmed_transfer),
             base_from_gel: Pose::IDENTITY,
             tool_from_indenter: Pose::IDENTITY,
             force_axis: glam::DVec3::NEG_Z,
@@ -77,26 +76,4 @@ impl About {
             versions: [("twintac".to_owned(), env!("CARGO_PKG_VERSION").to_owned())].into(),
         }
     }
-}
-
-/// How the driver finds a sensor's taxels.
-///
-/// # Errors
-/// The sensor is not read this way: it has another number of taxels, or channels that a switch lacks.
-pub fn driver_settings(sensor: &Sensor) -> Result<Settings<TAXELS>, LiveError> {
-    let problem = |problem: String| LiveError::Sensor {
-        sensor: sensor.name.clone(),
-        problem,
-    };
-    let channels: Vec<u8> = sensor.taxels.iter().map(|taxel| taxel.channel).collect();
-    let n = channels.len();
-    let channels: [u8; TAXELS] = channels
-        .try_into()
-        .map_err(|_| problem(format!("has {n} taxels, expected {TAXELS}")))?;
-    let wiring = Wiring::new(channels).ok_or_else(|| {
-        problem(format!(
-            "channels are {channels:?}, expected each from 0 to 7 once"
-        ))
-    })?;
-    Ok(Settings::new(wiring))
 }

@@ -3,16 +3,15 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use phystac::PhysTac;
-use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus};
+use phystac::{PhysTac, Wired};
+use twintac_emulate::i2c::{BarometerSettings, Board, BoardSettings, Bus, PartSettings};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{Hertz, LabClock, Physics, ScheduledFault, Sensed, Workcell};
 use twintac_rig::TcpPose;
 use twintac_sensor::Sensor;
+use twintac_source::{BoxedClock, TAXELS, driver_settings, emulated_scale, full_scale_kpa};
 
-use crate::about::driver_settings;
-use crate::full_scale::{emulated_scale, full_scale_kpa};
-use crate::{BoxedClock, LiveError, TAXELS};
+use crate::LiveError;
 
 /// A ball that wanders around over the taxels and presses every few seconds. It is a function of time alone.
 #[derive(Clone, Debug)]
@@ -32,14 +31,16 @@ impl WanderingBall {
     /// Depth in the middle of a press, mm.
     const DEPTH_MM: f64 = 2.0;
 
-    /// Over a sensor's taxels, whose places become those of the physics, by channel.
+    /// Over a sensor's taxels, whose places become those of the physics.
     fn over(sensor: &Sensor) -> Self {
-        let mut hertz = Hertz::default();
-        for taxel in &sensor.taxels {
-            if let Some(place_mm) = hertz.taxels_mm.get_mut(usize::from(taxel.channel)) {
-                *place_mm = taxel.position_mm.with_z(0.0);
-            }
-        }
+        let hertz = Hertz {
+            taxels_mm: sensor
+                .taxels
+                .iter()
+                .map(|taxel| taxel.position_mm.with_z(0.0))
+                .collect(),
+            ..Hertz::default()
+        };
         let least = hertz.taxels_mm.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let most = hertz
             .taxels_mm
@@ -98,8 +99,8 @@ pub fn emulated_phystac(
     Ok(PhysTac::new(board.bus(), clock, now, settings))
 }
 
-/// The board of a sensor that nobody has soldered: its barometers count as the description confirms, else by the finest scale that reaches the
-/// description's range.
+/// The board of a sensor that nobody has soldered: the chips that the description names. A CPS135B counts as the description confirms, else by the
+/// finest scale that reaches the description's range.
 #[must_use]
 pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
     let readout = &sensor.readout;
@@ -118,8 +119,19 @@ pub fn emulated_board(sensor: &Sensor) -> BoardSettings {
         },
     };
     BoardSettings {
-        channels: sensor.taxels.iter().map(|taxel| taxel.channel).collect(),
+        parts: sensor.wiring().map_or(Vec::new(), |wiring| {
+            wiring.taxels().map(|wired| part(&wired)).collect()
+        }),
         barometer,
         ..BoardSettings::default()
+    }
+}
+
+fn part(wired: &Wired) -> PartSettings {
+    PartSettings {
+        chip: wired.chip.to_string(),
+        address: Some(wired.address),
+        switch: wired.behind.map(|(switch, _)| switch.get()),
+        channel: wired.behind.map_or(0, |(_, channel)| channel),
     }
 }

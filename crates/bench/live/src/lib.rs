@@ -1,12 +1,12 @@
 //! Frames of a sensor as they come: as rows of text, or as a dashboard on the terminal.
 //!
-//! A [`FrameSource`] reads a sensor on a thread of its own and hands its frames out through a bounded channel. Frames that do not fit are counted
-//! as missed: the bus waits for nobody. The sensor is on any bus of `embedded_hal`: `/dev/i2c-N` of Linux, or an
-//! emulated one ([`emulated_phystac`]). [`stream_rows`] writes rows, [`dashboard::run`] draws.
+//! A [`FrameSource`](twintac_source::FrameSource) reads a sensor on a thread of its own. The sensor is on a wire of its own, or an emulated one
+//! ([`emulated_phystac`]). [`stream_rows`] writes rows, [`dashboard::run`] draws.
 //!
 //! ```
-//! use twintac_live::{FrameReader, Known, emulated_phystac, power_on};
 //! use twintac_emulate::LabClock;
+//! use twintac_live::emulated_phystac;
+//! use twintac_source::{FrameReader, Known, power_on};
 //!
 //! let sensor = twintac_sensor::Sensor::read("../../../sensors/phystac.toml")?;
 //! let mut phystac = emulated_phystac(&sensor, LabClock::virtual_time(), &[])?;
@@ -24,34 +24,15 @@ mod about;
 pub mod dashboard;
 mod emulated;
 mod error;
-mod full_scale;
-#[cfg(target_os = "linux")]
-mod linux;
 mod live;
-mod reader;
 mod rows;
-mod scale;
-mod screening;
-mod source;
 mod stream;
 mod tare;
 
-pub use about::{About, driver_settings};
+pub use about::About;
 pub use emulated::{EmulatedPhysTac, emulated_board, emulated_phystac};
 pub use error::LiveError;
-#[cfg(target_os = "linux")]
-pub use linux::{LinuxBus, LinuxPhysTac, open_linux};
-pub use live::Live;
-pub use reader::{FrameReader, Reading};
+pub use live::{Live, Origin};
 pub use rows::{Format, RowWriter};
-pub use scale::{Known, PowerOn, power_on};
-pub use screening::{Screening, confirmed_transfer};
-pub use source::{FrameSource, Tally};
 pub use stream::{StopAfter, Streamed, stream_rows};
 pub use tare::{Tare, Taring};
-
-/// Taxels of a sensor that is read here: as many as the switch has channels.
-pub const TAXELS: usize = 8;
-
-/// A clock that may go to another thread.
-pub type BoxedClock = Box<dyn Fn() -> u64 + Send>;

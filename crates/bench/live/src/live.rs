@@ -1,6 +1,8 @@
 //! A sensor that is switched on, checked and read.
 
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::net::UdpSocket;
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
@@ -8,10 +10,37 @@ use phystac::PhysTac;
 use twintac_emulate::LabClock;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
-
-use crate::{
-    About, BoxedClock, FrameReader, FrameSource, Known, LiveError, TAXELS, emulated_phystac, power_on,
+use twintac_source::{
+    BoxedClock, FrameReader, FrameSource, Known, LineSource, ReplaySource, SerialLine, SourceError, TAXELS,
+    power_on,
 };
+
+use crate::{About, LiveError, emulated_phystac};
+
+/// Where a sensor's frames come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// The emulated sensor of the description, in real time.
+    Emulated,
+    /// A bus of Linux, `/dev/i2c-N`.
+    Bus(PathBuf),
+    /// A serial port, and the file that describes what comes over it.
+    Serial {
+        /// `/dev/ttyACM0`, `COM3`.
+        port: String,
+        /// How frames stand on the line (TOML).
+        line: PathBuf,
+    },
+    /// Datagrams that come to a port of this computer, and the file that describes them.
+    Udp {
+        /// Where to listen, such as `0.0.0.0:9000`.
+        address: String,
+        /// How frames stand in them (TOML).
+        line: PathBuf,
+    },
+    /// A log, played at its own pace.
+    Log(PathBuf),
+}
 
 /// A sensor that is being read.
 #[derive(Debug)]
@@ -25,54 +54,117 @@ pub struct Live {
 }
 
 impl Live {
-    /// The emulated sensor of a description, whose text is `sensor_toml`, in real time. Its barometers count as [`emulated_board`](crate::emulated_board)
-    /// says, which needs nobody to confirm it.
+    /// The sensor of a description, whose text is `sensor_toml`, from wherever its frames come. Emulated barometers count as
+    /// [`emulated_board`](crate::emulated_board) says, which needs nobody to confirm it.
     ///
     /// # Errors
-    /// Those of [`emulated_phystac`] and [`power_on`].
-    pub fn in_the_lab(sensor: &Sensor, sensor_toml: &str, known: &Known) -> Result<Self, LiveError> {
-        let start_unix_ns = unix_ns();
-        let phystac = emulated_phystac(sensor, LabClock::real(), &[])?;
-        let from = (Provenance::Emulated, start_unix_ns);
-        let known = known.or_emulated(sensor);
-        Self::begin(phystac, sensor, sensor_toml, &known, from)
-    }
-
-    /// A sensor on `/dev/i2c-N`.
-    ///
-    /// # Errors
-    /// Those of [`open_linux`](crate::open_linux) and [`power_on`].
-    #[cfg(target_os = "linux")]
-    pub fn on_linux(
-        path: &std::path::Path,
+    /// A wire that cannot be opened; a sensor that is not read this way, does not answer, or does not read free air.
+    pub fn open(
+        origin: &Origin,
         sensor: &Sensor,
         sensor_toml: &str,
         known: &Known,
     ) -> Result<Self, LiveError> {
         let start_unix_ns = unix_ns();
-        let settings = crate::driver_settings(sensor)?;
-        let start = std::time::Instant::now();
-        let clock: BoxedClock = Box::new(move || start.elapsed().as_micros() as u64); // 584 thousand years
-        let phystac = crate::open_linux(path, settings, clock)?;
-        let from = (Provenance::Real, start_unix_ns);
-        Self::begin(phystac, sensor, sensor_toml, known, from)
+        let about = |provenance| About::new(sensor, sensor_toml, provenance, None, start_unix_ns);
+        match origin {
+            Origin::Emulated => {
+                let phystac = emulated_phystac(sensor, LabClock::real(), &[])?;
+                let known = known.or_emulated(sensor);
+                Self::on_bus(phystac, sensor, &known, about(Provenance::Emulated))
+            }
+            #[cfg(target_os = "linux")]
+            Origin::Bus(path) => {
+                let settings = twintac_source::driver_settings(sensor)?;
+                let phystac = twintac_source::open_linux(path, settings, clock())?;
+                Self::on_bus(phystac, sensor, known, about(Provenance::Real))
+            }
+            #[cfg(not(target_os = "linux"))]
+            Origin::Bus(path) => Err(not_opened(
+                &path.display().to_string(),
+                "buses are opened on Linux only",
+            )),
+            Origin::Serial { port, line } => {
+                let line = described(line, sensor)?;
+                let wire = SerialLine::open(port, &line)?;
+                let source = LineSource::new(wire, &line, sensor.taxels.len(), clock())?;
+                Self::of(source, about(Provenance::Real), Vec::new())
+            }
+            Origin::Udp { address, line } => {
+                let line = described(line, sensor)?;
+                let socket =
+                    UdpSocket::bind(address).map_err(|error| not_opened(address, &error.to_string()))?;
+                let source = LineSource::new(socket, &line, sensor.taxels.len(), clock())?;
+                Self::of(source, about(Provenance::Real), Vec::new())
+            }
+            Origin::Log(path) => {
+                let source = ReplaySource::open(path, true)?;
+                let log = source.description();
+                if log.taxels != about(log.provenance).taxels {
+                    let problem = format!(
+                        "its taxels are {}, those of sensor {} others",
+                        log.taxels.join(", "),
+                        sensor.name
+                    );
+                    return Err(not_opened(&path.display().to_string(), &problem));
+                }
+                let about = about(log.provenance);
+                Self::of(source, about, Vec::new())
+            }
+        }
     }
 
-    fn begin<I2C: I2c + Send + 'static, D: DelayNs + Send + 'static>(
+    fn on_bus<I2C: I2c + Send + 'static, D: DelayNs + Send + 'static>(
         mut phystac: PhysTac<I2C, D, BoxedClock, TAXELS>,
         sensor: &Sensor,
-        sensor_toml: &str,
         known: &Known,
-        (provenance, start_unix_ns): (Provenance, u64),
+        about: About,
     ) -> Result<Self, LiveError> {
         let checked = power_on(&mut phystac, sensor, known)?;
-        let reader = FrameReader::new(phystac, &checked);
+        let about = About {
+            transfer: checked.transfer,
+            ..about
+        };
+        Self::of(FrameReader::new(phystac, &checked), about, checked.notes)
+    }
+
+    fn of(
+        source: impl twintac_source::TactileSource + 'static,
+        about: About,
+        notes: Vec<String>,
+    ) -> Result<Self, LiveError> {
         Ok(Self {
-            source: FrameSource::start(reader, FrameSource::USUAL_CAPACITY)?,
-            about: About::new(sensor, sensor_toml, provenance, checked.transfer, start_unix_ns),
-            notes: checked.notes,
+            source: FrameSource::start(source, FrameSource::USUAL_CAPACITY)?,
+            about,
+            notes,
         })
     }
+}
+
+/// How frames of a sensor stand on a line.
+fn described(line: &Path, sensor: &Sensor) -> Result<twintac_line::Description, LiveError> {
+    let description = twintac_line::Description::read(line).map_err(SourceError::from)?;
+    let (n, n_taxels) = (description.n_pressures(), sensor.taxels.len());
+    if n != n_taxels {
+        let problem = format!(
+            "has {n_taxels} taxels; frames that {} describes have {n} pressures",
+            line.display()
+        );
+        let sensor = sensor.name.clone();
+        return Err(SourceError::Sensor { sensor, problem }.into());
+    }
+    Ok(description)
+}
+
+fn not_opened(wire: &str, problem: &str) -> LiveError {
+    let (wire, problem) = (wire.to_owned(), problem.to_owned());
+    SourceError::Open { wire, problem }.into()
+}
+
+/// A clock that begins now.
+fn clock() -> BoxedClock {
+    let start = Instant::now();
+    Box::new(move || start.elapsed().as_micros() as u64) // 584 thousand years
 }
 
 /// Wall-clock time, ns since 1970-01-01 UTC; 0 on a computer that stands before.

@@ -4,8 +4,9 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use twintac_recording::Provenance;
+use twintac_source::Reading;
 
-use crate::{About, Reading, Tare};
+use crate::{About, Tare};
 
 /// How rows are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

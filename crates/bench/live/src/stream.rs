@@ -3,7 +3,9 @@
 use std::io::{self, ErrorKind, Write};
 use std::time::Duration;
 
-use crate::{About, Format, FrameSource, LiveError, Reading, RowWriter, Tally, Tare, Taring};
+use twintac_source::{FrameSource, Reading, SourceError, Tally};
+
+use crate::{About, Format, LiveError, RowWriter, Tare, Taring};
 
 /// When to end by oneself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +45,7 @@ pub fn stream_rows(
     streamed.tally = source.tally();
     match result {
         Err(LiveError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(streamed),
+        Err(LiveError::Source(SourceError::Over)) => Ok(streamed),
         result => result.map(|()| streamed),
     }
 }

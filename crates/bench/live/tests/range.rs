@@ -10,9 +10,10 @@ use phystac::PhysTac;
 use twintac_emulate::i2c::{Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{LabClock, Physics, Sensed, Workcell};
-use twintac_live::{BoxedClock, FrameReader, Known, TAXELS, driver_settings, emulated_board, power_on};
+use twintac_live::emulated_board;
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
+use twintac_source::{BoxedClock, FrameReader, Known, TAXELS, driver_settings, power_on};
 
 const AIR_KPA: f64 = 101.325;
 /// Time of a step, s: five frames, so that no value is taken for frozen.

@@ -15,12 +15,10 @@ use phystac::{PhysTac, Settings, Transfer};
 use twintac_emulate::i2c::{Board, BoardSettings};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{Hertz, LabClock, ScheduledFault, Workcell};
-use twintac_live::{
-    Format, FrameReader, FrameSource, Known, LiveError, RowWriter, StopAfter, Taring, emulated_board,
-    emulated_phystac, power_on, stream_rows,
-};
+use twintac_live::{Format, RowWriter, StopAfter, Taring, emulated_board, emulated_phystac, stream_rows};
 use twintac_log::TaxelState;
 use twintac_rig::TcpPose;
+use twintac_source::{FrameReader, FrameSource, Known, SourceError, power_on};
 
 /// So many frames as text, read and written on one thread.
 fn rows(format: Format, frames: usize, faults: &[ScheduledFault]) -> String {
@@ -208,7 +206,10 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
         };
         let streamed = run(ErrorKind::BrokenPipe).unwrap();
         assert!(streamed.rows > 10, "{streamed:?}");
-        assert!(matches!(run(ErrorKind::StorageFull), Err(LiveError::Write(_))));
+        assert!(matches!(
+            run(ErrorKind::StorageFull),
+            Err(twintac_live::LiveError::Write(_))
+        ));
     }
 }
 
@@ -231,10 +232,10 @@ fn no_scale_is_guessed() {
     // 1500 kPa, the description's range, need 24 bits.
     assert_eq!(
         confirmed.transfer,
-        Transfer {
+        Some(Transfer {
             signed: false,
             ..Transfer::per_pa(8)
-        }
+        })
     );
 
     let mut described = sensor();
@@ -246,12 +247,37 @@ fn no_scale_is_guessed() {
 }
 
 #[test]
-fn a_description_of_four_taxels_is_refused_by_name() {
+fn other_chips_need_nobody_to_confirm_a_scale_and_a_sensor_without_wiring_is_refused_by_name() {
     let strip = twintac_sensor::Sensor::read("../../../sensors/strip4-gel-a.toml").unwrap();
-    let error = emulated_phystac(&strip, LabClock::virtual_time(), &[])
+    let mut phystac = emulated_phystac(&strip, LabClock::virtual_time(), &[]).unwrap();
+    let checked = power_on(&mut phystac, &strip, &Known::default()).unwrap();
+    assert_eq!(checked.transfer, None);
+    let frame = FrameReader::new(phystac, &checked).read().unwrap().frame;
+    assert_eq!(frame.taxels.len(), 4);
+    assert!(
+        frame
+            .taxels
+            .iter()
+            .all(|taxel| (taxel.pressure_pa.unwrap() - 101_325.0).abs() < 300.0),
+        "{frame:?}"
+    );
+
+    let mut phystac = emulated_phystac(&strip, LabClock::virtual_time(), &[]).unwrap();
+    let error = power_on(&mut phystac, &strip, &scale(8)).unwrap_err();
+    assert!(matches!(error, SourceError::NothingToScale), "{error}");
+
+    let mut unwired = strip;
+    unwired.readout.chip = None;
+    unwired.taxels.iter_mut().for_each(|taxel| taxel.channel = None);
+    let error = emulated_phystac(&unwired, LabClock::virtual_time(), &[])
         .err()
         .unwrap();
-    assert_eq!(error.to_string(), "sensor strip4-gel-a: has 4 taxels, expected 8");
+    assert!(
+        error
+            .to_string()
+            .starts_with("sensor strip4-gel-a: its description does not say how"),
+        "{error}"
+    );
 }
 
 /// A bus that nothing answers on.
@@ -310,7 +336,7 @@ fn a_high_place_is_free_air_where_it_is_said_to_be_high() {
     };
     assert!(matches!(
         power_on_at(None),
-        Err(LiveError::ScaleContradicted { n_free: 0, .. })
+        Err(SourceError::ScaleContradicted { n_free: 0, .. })
     ));
     assert_eq!(power_on_at(Some(3640.0)).unwrap().notes, Vec::<String>::new());
 }
@@ -327,8 +353,10 @@ fn a_described_transfer_is_used_as_it_is() {
     let mut phystac = emulated_phystac(&described, LabClock::virtual_time(), &[]).unwrap();
     let checked = power_on(&mut phystac, &described, &Known::default()).unwrap();
     assert_eq!(
-        (checked.transfer.offset_pa, checked.transfer.signed),
-        (-1e6, false)
+        checked
+            .transfer
+            .map(|transfer| (transfer.offset_pa, transfer.signed)),
+        Some((-1e6, false))
     );
     let frame = FrameReader::new(phystac, &checked).read().unwrap().frame;
     let pressures_pa = frame.taxels.iter().map(|taxel| taxel.pressure_pa.unwrap());

@@ -15,8 +15,8 @@ use phystac::PhysTac;
 use twintac_emulate::i2c::{Board, BoardSettings, Bus};
 use twintac_emulate::robot::ArmSettings;
 use twintac_emulate::{LabClock, Physics, Sensed, Workcell};
-use twintac_live::{BoxedClock, FrameReader, FrameSource, Known, LiveError, driver_settings, power_on};
 use twintac_rig::TcpPose;
+use twintac_source::{BoxedClock, FrameReader, FrameSource, Known, SourceError, driver_settings, power_on};
 
 /// Free air.
 struct Air;
@@ -81,7 +81,7 @@ fn a_bus_that_hangs_is_given_up_after_three_seconds_and_left_behind() {
     };
     let waited = start.elapsed();
     assert!(
-        matches!(&error, LiveError::Bus { problem } if problem.contains("3 s")),
+        matches!(&error, SourceError::Wire { problem } if problem.contains("3 s")),
         "{error}"
     );
     assert!(

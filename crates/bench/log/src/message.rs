@@ -93,6 +93,12 @@ pub enum TaxelState {
     Saturated = 6,
     /// Its value no longer changes.
     Frozen = 7,
+    /// Another part than the one described answers at its address.
+    WrongChip = 8,
+    /// What its barometer was calibrated to cannot be read, or fails its check.
+    Uncalibrated = 9,
+    /// Its barometer lost its settings, with its power.
+    Restarted = 10,
 }
 
 impl TaxelState {
@@ -108,11 +114,14 @@ impl TaxelState {
             Self::Refused => Some("refused"),
             Self::Saturated => Some("saturated"),
             Self::Frozen => Some("frozen"),
+            Self::WrongChip => Some("wrong chip"),
+            Self::Uncalibrated => Some("uncalibrated"),
+            Self::Restarted => Some("restarted"),
         }
     }
 
     pub(crate) fn from_code(code: u8) -> Option<Self> {
-        const ALL: [TaxelState; 8] = [
+        const ALL: [TaxelState; 11] = [
             TaxelState::Good,
             TaxelState::Missing,
             TaxelState::Stuck,
@@ -121,6 +130,9 @@ impl TaxelState {
             TaxelState::Refused,
             TaxelState::Saturated,
             TaxelState::Frozen,
+            TaxelState::WrongChip,
+            TaxelState::Uncalibrated,
+            TaxelState::Restarted,
         ];
         ALL.get(usize::from(code)).copied()
     }

@@ -76,8 +76,12 @@ pub struct Devices {
     pub robot: String,
     /// Name or address of the Net F/T box.
     pub force: String,
-    /// I²C bus of the tactile sensor, such as /dev/i2c-1.
+    /// Where the tactile sensor is: its I²C bus, such as /dev/i2c-1; with `line`, a serial port such as /dev/ttyACM0, or `udp:0.0.0.0:9000` for
+    /// datagrams.
     pub tactile: String,
+    /// The file that says how frames stand on a serial line or in datagrams (TOML), from the folder where the program runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<std::path::PathBuf>,
     /// The tool centre point that is set in the robot's controller, in the flange's frame, mm: placement and limits count from there, so a
     /// controller with another one is refused. Default: the flange itself.
     #[serde(default)]

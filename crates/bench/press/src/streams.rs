@@ -6,12 +6,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use embedded_hal::delay::DelayNs;
-use embedded_hal::i2c::I2c;
-use phystac::{Clock, Error, Frame, PhysTac};
 use twintac_log::TactileFrame;
 use twintac_rig::xarm::{Mode, MotionState, Report, ReportReader, Wire};
 use twintac_rig::{BenchClock, Cause, TcpPose, WrenchSample, WrenchSource};
+use twintac_source::TactileSource;
 
 use crate::PressError;
 
@@ -160,38 +158,20 @@ impl Streams {
         })
     }
 
-    /// Hears a tactile sensor, which is read as fast as its bus lets it; its frames must be stamped on this bench's clock
-    /// ([`BenchClock::now_us`]). `message` makes of each frame what is recorded. `free` frees a bus that hangs; its channels are looked into
-    /// anew.
+    /// Hears a tactile sensor, whose frames must be stamped on this bench's clock ([`BenchClock::now_us`]).
     ///
     /// # Errors
     /// No thread.
-    pub fn hear_taxels<I, D, C, const N: usize>(
-        &mut self,
-        mut sensor: PhysTac<I, D, C, N>,
-        mut message: impl FnMut(Frame<N>) -> TactileFrame + Send + 'static,
-        mut free: impl FnMut(&mut I, &mut D) + Send + 'static,
-    ) -> Result<(), PressError>
-    where
-        I: I2c + Send + 'static,
-        D: DelayNs + Send + 'static,
-        C: Clock + Send + 'static,
-    {
+    pub fn hear_taxels(&mut self, mut source: impl TactileSource + 'static) -> Result<(), PressError> {
         self.start("the tactile sensor", move |ear| {
             while ear.goes_on() {
-                match sensor.frame() {
-                    Ok(frame) => {
-                        // The barometers convert while the frame is handed on. An error is found again by the next frame.
-                        let _ = sensor.trigger();
-                        let frame_s = frame.triggered_us as f64 * 1e-6;
-                        ear.say(frame_s, StreamEvent::Frame(message(frame)));
-                    }
+                match source.next_frame(WAIT) {
+                    Ok(Some(reading)) => ear.say(reading.bench_s, StreamEvent::Frame(reading.frame)),
+                    Ok(None) if source.is_over() => return ear.fail(Source::Tactile, "it has ended"),
+                    Ok(None) => {}
                     Err(error) => {
                         let problem = error.to_string();
                         ear.say(ear.clock.now_s(), StreamEvent::NoFrame { problem });
-                        if matches!(error, Error::BusHung { .. }) {
-                            sensor.recover(&mut free);
-                        }
                         std::thread::sleep(AFTER_FAILURE);
                     }
                 }

@@ -15,7 +15,6 @@ use tempfile::TempDir;
 use twintac_emulate::{
     EmulatedBench, EmulatedBenchSettings, FaultKind, Hertz, LabClock, Moment, ScheduledFault,
 };
-use twintac_live::{Screening, confirmed_transfer};
 use twintac_log::{
     Body, Description, Ending, Event, LogReader, ReadOptions, Stream, TaxelState, read_presses,
 };
@@ -26,6 +25,7 @@ use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_rig::xarm::{Client, ReportPort, ReportReader};
 use twintac_rig::{BenchClock, Cause, NetFtSource, SensorLimits, netft};
+use twintac_source::{FrameReader, PowerOn, confirmed_transfer};
 
 const LIMITS: SensorLimits = SensorLimits {
     force_n: 20.0,
@@ -120,10 +120,15 @@ fn bench() -> (EmulatedBench, Bench<Client<TcpStream>>) {
         ..phystac::Settings::default()
     };
     let sensor = PhysTac::new(devices.board.bus(), clock, move || bench_clock.now_us(), driver);
-    let mut screening = Screening::new(Transfer::per_pa(32), Thresholds::default());
-    streams
-        .hear_taxels(sensor, move |frame| screening.frame(frame), free)
-        .unwrap();
+    let checked = PowerOn {
+        transfer: Some(Transfer::per_pa(32)),
+        thresholds: Thresholds::default(),
+        notes: Vec::new(),
+    };
+    let reader = FrameReader::new(sensor, &checked)
+        .converting_ahead()
+        .freed_by(free);
+    streams.hear_taxels(reader).unwrap();
     let mut arm = Client::connect(devices.robot.commands()).unwrap();
     arm.set_answer_within(LATEST);
     arm.enable().unwrap();

@@ -199,7 +199,6 @@ impl Checker<'_> {
         if self.sensor.taxels.is_empty() {
             return Err(self.error("taxels", "is empty", "describe at least one taxel"));
         }
-        let mut channels = BTreeMap::new();
         for (index, taxel) in self.sensor.taxels.iter().enumerate() {
             let field = |name: &str| format!("taxels[{index}].{name}");
             let at = taxel.position_mm;
@@ -217,12 +216,11 @@ impl Checker<'_> {
                 return Err(self.error(&field("position_mm"), problem, "put the taxel onto its face"));
             }
             self.above_zero(&field("port_radius_mm"), taxel.port_radius_mm, most::LENGTH_MM)?;
-            if let Some(first) = channels.insert(taxel.channel, index) {
-                let problem = format!("is {}, as that of taxels[{first}]", taxel.channel);
-                return Err(self.error(&field("channel"), problem, "give each taxel a channel of its own"));
-            }
         }
-        Ok(())
+        match self.sensor.miswired() {
+            Some(wrong) => Err(self.error(&wrong.field, wrong.problem, &wrong.remedy)),
+            None => Ok(()),
+        }
     }
 
     fn readout(&self) -> Checked {
@@ -238,6 +236,16 @@ impl Checker<'_> {
             readout.resolution_kpa,
             most::PRESSURE_KPA,
         )?;
+        let is_scaled = readout.counts_per_pa.is_some() || readout.transfer.is_some();
+        if is_scaled && !self.sensor.has_unscaled_chips() {
+            let field = if readout.transfer.is_some() {
+                "readout.transfer"
+            } else {
+                "readout.counts_per_pa"
+            };
+            let problem = "stands beside chips that say themselves what they count".to_owned();
+            return Err(self.error(field, problem, "leave it out"));
+        }
         if readout.counts_per_pa == Some(0) {
             let problem = "is 0".to_owned();
             return Err(self.error(

@@ -53,6 +53,9 @@ impl Sensor {
             "  read-out    {} to {} kPa in steps of {} kPa, {} Hz, reported in {}{mark}",
             readout.min_kpa, readout.max_kpa, readout.resolution_kpa, readout.rate_hz, readout.unit
         )?;
+        if self.is_wired() {
+            writeln!(out, "  chips       {}", self.chips_in_words())?;
+        }
         writeln!(
             out,
             "  taxels      {:<8} {:>7} {:>26} {:>12}",
@@ -65,7 +68,10 @@ impl Sensor {
             writeln!(
                 out,
                 "              {:<8} {:>7} {place:>26} {port:>12}",
-                taxel.name, taxel.channel
+                taxel.name,
+                taxel
+                    .channel
+                    .map_or("-".to_owned(), |channel| channel.to_string())
             )?;
         }
         for (index, inclusion) in self.inclusions.iter().enumerate() {

@@ -14,12 +14,14 @@ mod material;
 mod material_table;
 mod sensor;
 mod sensor_file;
+mod wiring;
 
 pub use indenter_file::IndenterFile;
 pub use material::GelMaterial;
 pub use sensor::{ConfirmedTransfer, Gel, Inclusion, Indenter, LoadLimits, Readout, Sensor, Shell, Taxel};
 pub use sensor_file::SensorFile;
 pub use twintac_material::{Model, PronyTerm};
+pub use wiring::MOST_TAXELS;
 
 /// Why a description cannot be used: what is wrong with which field, in which file and line.
 pub type SensorError = twintac_config::ConfigError;

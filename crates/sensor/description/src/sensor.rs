@@ -132,8 +132,21 @@ pub struct Taxel {
     pub position_mm: DVec3,
     /// Radius of the port, a disc with normal z over which pressure is averaged, mm.
     pub port_radius_mm: f64,
-    /// Which channel of the bus it is read through.
-    pub channel: u8,
+    /// Which channel of its switch it is read through, 0 to 7. Left out: its chip is on the bus itself, behind no switch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channel: Option<u8>,
+    /// The 7-bit address of that switch. Left out: 0x70.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub switch: Option<u8>,
+    /// The manufacturer's name for its chip, such as `BMP390`. Left out: [`Readout::chip`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chip: Option<String>,
+    /// Its chip's 7-bit address. Left out: the first that such chips have.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub address: Option<u8>,
+    /// How many samples of its chip make one pressure. Left out: [`Readout::samples`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u16>,
     /// Why its readings are not to be trusted, if they are not: it is then left out of headline figures and
     /// reported beside them.
     #[serde(default)]
@@ -152,6 +165,12 @@ pub struct Readout {
     pub resolution_kpa: f64,
     /// Readings of all taxels in a second, Hz.
     pub rate_hz: f64,
+    /// The manufacturer's name for the chips of taxels that name none themselves, such as `MS5837-30BA`. Left out: `CPS135B`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chip: Option<String>,
+    /// How many samples of a chip make one pressure, for taxels that say nothing else. Left out: what is usual of the chip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u16>,
     /// Unit that the device itself reports, such as `kPa` or `psi`; for people to read.
     #[serde(default = "kilopascal")]
     pub unit: String,

@@ -1,49 +1,107 @@
 //! How many frames a second a bus carries.
 
-/// What a frame costs on the bus: nine clocks a byte, and one each for START, repeated START and STOP.
+use crate::asynch::FRAMES_PER_TEMPERATURE;
+use crate::settings::Settings;
+use crate::wiring::Wired;
+
+/// What a frame costs on the bus: nine clocks a byte, and one each for START, repeated START and STOP. A barometer is asked once whether it has
+/// ended: at the end of its longest conversion it has.
 ///
 /// ```
-/// use phystac::Budget;
+/// use phystac::{Budget, Settings};
 ///
-/// let budget = Budget { n_taxels: 8, bus_hz: 400_000, conversion_us: 6000, polls: 0 };
-/// assert_eq!(budget.rate_hz().round(), 125.0);
+/// let budget = Budget::new(&Settings::default(), 400_000);
+/// assert_eq!(budget.rate_hz().round(), 114.0);
 /// assert_eq!(budget.one_by_one_hz().round(), 20.0);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Taxels.
-    pub n_taxels: u32,
-    /// The bus's clock, Hz; at most 400 000.
-    pub bus_hz: u32,
-    /// How long a barometer converts, µs.
-    pub conversion_us: u32,
-    /// How often each taxel is asked whether it has ended. [`PhysTac`](crate::PhysTac) asks at least once; 0 for one that relies on waiting.
-    pub polls: u32,
+    /// Clocks of a frame, without temperatures that are converted apart.
+    frame_clocks: u32,
+    /// The longest conversion, µs.
+    conversion_us: u32,
+    /// What temperatures cost that are converted apart, in the mean of frames, µs.
+    temperature_us: f32,
+    /// Time of a frame in which each barometer is triggered, awaited and read by itself, µs.
+    one_by_one_us: f32,
+    bus_hz: u32,
 }
 
 impl Budget {
     /// Address and mask.
     const OPEN: u32 = 9 * 2 + 2;
-    /// Address, register, command.
-    const TRIGGER: u32 = 9 * 3 + 2;
-    /// Address, register; address, byte.
-    const POLL: u32 = 9 * 4 + 3;
-    /// Address, register; address, five bytes.
-    const READ: u32 = 9 * 8 + 3;
 
-    /// Clocks of a frame with one trigger for all.
+    /// Of a sensor on a bus of so many clocks a second; at most 400 000.
+    #[must_use]
+    pub fn new<const N: usize>(settings: &Settings<N>, bus_hz: u32) -> Self {
+        let clocks_us = |clocks: u32| 1e6 * clocks as f32 / bus_hz as f32;
+        let wiring = &settings.wiring;
+        let n_switches = wiring.switches().count() as u32;
+        let is_apart = |wired: &Wired| wired.chip.data().cost.is_temperature_apart;
+        let time_us = |index: usize| {
+            let published = wiring.speed(index).and_then(|speed| speed.conversion_us);
+            published.unwrap_or(settings.conversion_us)
+        };
+        let (mut frame_clocks, mut temperature_clocks, mut one_by_one_us) = (0, 0, 0.0);
+        let (mut conversion_us, mut apart_us) = (0, 0);
+        for (index, wired) in wiring.taxels().enumerate() {
+            let cost = wired.chip.data().cost;
+            let is_first = |is_alike: &dyn Fn(&Wired) -> bool| {
+                !wiring.taxels().take(index).any(|before| is_alike(&before))
+            };
+            let command = 9 * (1 + cost.command) + 2;
+            let opening = if wired.behind.is_some() { Self::OPEN } else { 0 };
+            // Commands of a kind are one write, once the channels of every switch are open.
+            let alike = |before: &Wired| {
+                (before.chip, before.address, before.samples) == (wired.chip, wired.address, wired.samples)
+            };
+            let told = if is_first(&alike) {
+                command + n_switches * Self::OPEN
+            } else {
+                0
+            };
+            // From one switch to the next, the one before is closed.
+            let changes = |before: &Wired| {
+                before.behind.map(|(switch, _)| switch) != wired.behind.map(|(switch, _)| switch)
+            };
+            let is_other = index > 0
+                && wiring
+                    .taxels()
+                    .nth(index - 1)
+                    .is_some_and(|before| changes(&before));
+            let closing = if is_other { Self::OPEN } else { 0 };
+            let clocks = told + closing + opening + cost.collect_clocks;
+            frame_clocks += clocks;
+            conversion_us = conversion_us.max(time_us(index));
+            if is_apart(&wired) {
+                temperature_clocks += clocks;
+                apart_us = apart_us.max(time_us(index));
+            }
+            one_by_one_us += time_us(index) as f32 + clocks_us(opening + command + cost.collect_clocks);
+        }
+        Self {
+            frame_clocks,
+            conversion_us,
+            temperature_us: (apart_us as f32 + clocks_us(temperature_clocks)) / FRAMES_PER_TEMPERATURE as f32,
+            one_by_one_us,
+            bus_hz,
+        }
+    }
+
+    /// Clocks of a frame, without temperatures that are converted apart.
     #[must_use]
     pub const fn frame_clocks(&self) -> u32 {
-        Self::OPEN + Self::TRIGGER + self.n_taxels * (Self::OPEN + self.polls * Self::POLL + Self::READ)
+        self.frame_clocks
     }
 
-    /// Time of a frame with one trigger for all, µs.
+    /// Time of a frame in the mean, µs.
     #[must_use]
     pub fn frame_us(&self) -> f32 {
-        self.conversion_us as f32 + self.clocks_us(self.frame_clocks())
+        let clocks_us = 1e6 * self.frame_clocks as f32 / self.bus_hz as f32;
+        self.conversion_us as f32 + clocks_us + self.temperature_us
     }
 
-    /// Frames a second with one trigger for all, Hz.
+    /// Frames a second, Hz.
     #[must_use]
     pub fn rate_hz(&self) -> f32 {
         1e6 / self.frame_us()
@@ -52,12 +110,7 @@ impl Budget {
     /// Frames a second if each taxel were triggered, awaited and read by itself, Hz.
     #[must_use]
     pub fn one_by_one_hz(&self) -> f32 {
-        let clocks = Self::OPEN + Self::TRIGGER + self.polls * Self::POLL + Self::READ;
-        1e6 / (self.n_taxels as f32 * (self.conversion_us as f32 + self.clocks_us(clocks)))
-    }
-
-    fn clocks_us(&self, clocks: u32) -> f32 {
-        1e6 * clocks as f32 / self.bus_hz as f32
+        1e6 / self.one_by_one_us
     }
 }
 
@@ -69,37 +122,29 @@ mod tests {
     fn rates_of_eight_taxels() {
         // conversion, then with one trigger at 100 and 400 kHz, then one by one
         let table = [
-            (2500, [94.43, 221.12], [33.42, 44.48]),
-            (6000, [70.97, 124.65], [17.27, 19.81]),
-            (20_000, [35.60, 45.41], [5.89, 6.15]),
+            (2500, [71.92, 185.05], [30.11, 42.91]),
+            (6000, [57.47, 112.43], [16.36, 19.49]),
+            (20_000, [31.85, 43.70], [5.77, 6.12]),
         ];
         for (conversion_us, together_hz, one_by_one_hz) in table {
             for (index, bus_hz) in [100_000, 400_000].into_iter().enumerate() {
-                let budget = Budget {
-                    n_taxels: 8,
-                    bus_hz,
+                let settings = Settings {
                     conversion_us,
-                    polls: 0,
+                    ..Settings::default()
                 };
-                assert_eq!(budget.frame_clocks(), 809);
-                assert!((budget.rate_hz() - together_hz[index]).abs() < 0.01, "{budget:?}");
+                let budget = Budget::new(&settings, bus_hz);
+                assert_eq!(budget.frame_clocks(), 809 + 8 * 39);
                 assert!(
-                    (budget.one_by_one_hz() - one_by_one_hz[index]).abs() < 0.01,
-                    "{budget:?}"
+                    (budget.rate_hz() / together_hz[index] - 1.0).abs() < 0.02,
+                    "{budget:?} {}",
+                    budget.rate_hz()
+                );
+                assert!(
+                    (budget.one_by_one_hz() / one_by_one_hz[index] - 1.0).abs() < 0.02,
+                    "{budget:?} {}",
+                    budget.one_by_one_hz()
                 );
             }
         }
-    }
-
-    #[test]
-    fn fifty_five_hertz_leave_room_and_are_out_of_reach_one_by_one() {
-        let budget = Budget {
-            n_taxels: 8,
-            bus_hz: 400_000,
-            conversion_us: 6000,
-            polls: 2,
-        };
-        assert!(budget.rate_hz() > 1.5 * 55.0);
-        assert!(Budget { polls: 0, ..budget }.one_by_one_hz() < 0.5 * 55.0);
     }
 }

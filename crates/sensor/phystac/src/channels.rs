@@ -1,4 +1,4 @@
-//! The switch's channels and its address.
+//! A switch's channels and its address.
 
 use core::fmt;
 use core::ops::BitOr;
@@ -67,6 +67,9 @@ impl fmt::Display for Channels {
 pub struct SwitchAddress(u8);
 
 impl SwitchAddress {
+    /// The lowest of the eight.
+    pub(crate) const FIRST: u8 = 0x70;
+
     /// The address that the levels of the pins A2, A1 and A0 give.
     #[must_use]
     pub const fn from_pins(a2: bool, a1: bool, a0: bool) -> Self {
@@ -96,43 +99,6 @@ impl Default for SwitchAddress {
     }
 }
 
-/// Which channel each of the `N` taxels is on; no two share one, as all barometers have the same address.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wiring<const N: usize>([Channels; N]);
-
-impl<const N: usize> Wiring<N> {
-    /// Taxel `i` on channel `channels[i]`; `None` if a channel is beyond 7 or given twice.
-    #[must_use]
-    pub fn new(channels: [u8; N]) -> Option<Self> {
-        let mut wiring = [Channels::NONE; N];
-        let mut used = Channels::NONE;
-        for (channel, number) in wiring.iter_mut().zip(channels) {
-            *channel = Channels::only(number).filter(|only| !used.contains(*only))?;
-            used = used | *channel;
-        }
-        Some(Self(wiring))
-    }
-
-    /// The channel of each taxel, in the order of the taxels.
-    #[must_use]
-    pub const fn channels(&self) -> [Channels; N] {
-        self.0
-    }
-
-    /// The channels of all taxels.
-    #[must_use]
-    pub fn all(&self) -> Channels {
-        self.0.iter().fold(Channels::NONE, |all, one| all | *one)
-    }
-}
-
-/// Taxel `i` on channel `i`.
-impl Default for Wiring<8> {
-    fn default() -> Self {
-        Self(core::array::from_fn(|taxel| Channels(1 << taxel)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,17 +112,5 @@ mod tests {
             Some(SwitchAddress::from_pins(true, true, true))
         );
         assert_eq!(SwitchAddress::new(0x6D), None);
-    }
-
-    #[test]
-    fn wiring_refuses_what_is_not_on_the_board() {
-        assert_eq!(Wiring::new([0, 1, 2, 3, 4, 5, 6, 7]), Some(Wiring::default()));
-        assert_eq!(
-            Wiring::new([3, 5]).map(|wiring| wiring.all().mask()),
-            Some(0b0010_1000)
-        );
-        assert_eq!(Wiring::new([3, 8]), None);
-        assert_eq!(Wiring::new([3, 5, 3]), None);
-        assert_eq!(Wiring::new([0, 1, 2, 3, 4, 5, 6, 7, 0]), None);
     }
 }

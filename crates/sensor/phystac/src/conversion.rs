@@ -37,10 +37,50 @@ impl fmt::Debug for Counts {
 /// What one conversion gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Pressure, in the part's own units; [`Transfer`] knows them.
+    /// The bits that stand for the pressure, as they came.
     pub counts: Counts,
-    /// The chip's temperature, °C, in steps of 1/256.
+    /// What the chip itself makes of them.
+    pub pressure: Pressure,
+    /// The chip's temperature, °C.
     pub temperature_c: f32,
+}
+
+/// The pressure that a chip says it felt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pressure {
+    /// Pa.
+    Pascal(f32),
+    /// The chip does not measure that far.
+    OutOfRange,
+    /// The chip only counts: a [`Transfer`] says what that stands for.
+    Unscaled,
+}
+
+impl Sample {
+    /// Of a chip that knows its scale.
+    pub(crate) fn scaled(counts: Counts, pressure_pa: f32, temperature_c: f32, range_pa: [f32; 2]) -> Self {
+        let [lowest_pa, highest_pa] = range_pa;
+        Self {
+            counts,
+            pressure: match (lowest_pa..=highest_pa).contains(&pressure_pa) {
+                true => Pressure::Pascal(pressure_pa),
+                false => Pressure::OutOfRange,
+            },
+            temperature_c,
+        }
+    }
+
+    /// Pressure, Pa. `transfer` counts where the chip does not know its scale.
+    ///
+    /// # Errors
+    /// [`Fault::Saturated`]: the pressure is at an end of the range or beyond.
+    pub fn pressure_pa(&self, transfer: &Transfer) -> Result<f32, Fault> {
+        match self.pressure {
+            Pressure::Pascal(pressure_pa) => Ok(pressure_pa),
+            Pressure::OutOfRange => Err(Fault::Saturated),
+            Pressure::Unscaled => transfer.pressure_pa(self.counts),
+        }
+    }
 }
 
 /// What pressure counts stand for: `pressure = pa_per_count · counts + offset_pa`.

@@ -35,6 +35,21 @@ pub enum Error<E> {
     NotTriggered,
     /// The conversion did not end in time, or was lost with the part's power.
     ConversionStuck,
+    /// Something answers at a barometer's address though all channels are closed: another device on the bus itself, which would speak at the same
+    /// time as the barometers.
+    AddressConflict {
+        /// The address.
+        address: u8,
+    },
+    /// The part that answers is another one: its register of identity does not hold what it should.
+    WrongChip {
+        /// What it holds.
+        found: u8,
+    },
+    /// What the part was calibrated to cannot be read, or fails its check.
+    Uncalibrated,
+    /// The part has lost its settings, with its power.
+    Restarted,
     /// The barometer's pressure configuration reads back otherwise than written.
     OversamplingRefused {
         /// The byte written.
@@ -75,6 +90,17 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             Self::BarometerMissing => f.write_str("the barometer does not acknowledge its address"),
             Self::NotTriggered => f.write_str("no barometer takes the trigger"),
             Self::ConversionStuck => f.write_str("the conversion does not end"),
+            Self::AddressConflict { address } => {
+                write!(
+                    f,
+                    "something answers at the barometers' address {address:#04x} with all channels of the switches closed"
+                )
+            }
+            Self::WrongChip { found } => {
+                write!(f, "another part answers: its identity is {found:#04x}")
+            }
+            Self::Uncalibrated => f.write_str("the barometer's calibration fails its check"),
+            Self::Restarted => f.write_str("the barometer lost its settings"),
             Self::OversamplingRefused { wrote, found } => {
                 write!(
                     f,

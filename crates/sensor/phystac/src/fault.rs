@@ -18,7 +18,16 @@ pub enum Fault {
     Isolated,
     /// Its barometer does not keep the oversampling that it is given.
     Refused,
-    /// The pressure is at an end of the range or beyond; found by [`Transfer`](crate::Transfer) and [`Health`](crate::Health).
+    /// Another part than the one described answers at its address.
+    WrongChip,
+    /// What its barometer was calibrated to cannot be read, or fails its check.
+    Uncalibrated,
+    /// Its barometer lost its settings, with its power; it is switched on anew before the next frame.
+    Restarted,
+    /// The sensor has no such taxel: its [`Wiring`](crate::Wiring) is shorter than its capacity.
+    NotWired,
+    /// The pressure is at an end of the range or beyond; found by [`Sample::pressure_pa`](crate::Sample::pressure_pa) and
+    /// [`Health`](crate::Health).
     Saturated,
     /// The same value, bit for bit, for too many frames; found by [`Health`](crate::Health).
     Frozen,
@@ -32,6 +41,10 @@ impl fmt::Display for Fault {
             Self::Bus(kind) => write!(f, "the bus fails on this channel: {kind}"),
             Self::Isolated => f.write_str("the channel hung the bus and is kept closed"),
             Self::Refused => f.write_str("the barometer does not keep its oversampling"),
+            Self::WrongChip => f.write_str("another part answers at its address"),
+            Self::Uncalibrated => f.write_str("the barometer's calibration fails its check"),
+            Self::Restarted => f.write_str("the barometer lost its settings"),
+            Self::NotWired => f.write_str("there is no such taxel"),
             Self::Saturated => f.write_str("the pressure is out of range"),
             Self::Frozen => f.write_str("the value no longer changes"),
         }

@@ -15,15 +15,16 @@ pub struct Frame<const N: usize> {
 }
 
 impl<const N: usize> Frame<N> {
-    /// What each taxel gave as pressure, Pa, or why it gave nothing.
+    /// What each taxel gave as pressure, Pa, or why it gave nothing. `transfer` counts for chips that do not know their scale.
     pub fn pressures_pa(&self, transfer: &Transfer) -> [Result<f32, Fault>; N] {
         self.taxels
-            .map(|taxel| taxel.and_then(|sample| transfer.pressure_pa(sample.counts)))
+            .map(|taxel| taxel.and_then(|sample| sample.pressure_pa(transfer)))
     }
 
     /// The taxels that gave nothing, by index.
     pub fn faults(&self) -> impl Iterator<Item = (usize, Fault)> {
-        let faults = self.taxels.iter().map(|taxel| taxel.err());
+        let of = |taxel: &Result<Sample, Fault>| taxel.err().filter(|fault| *fault != Fault::NotWired);
+        let faults = self.taxels.iter().map(of);
         faults
             .enumerate()
             .filter_map(|(index, fault)| Some((index, fault?)))

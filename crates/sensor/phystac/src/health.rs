@@ -1,6 +1,6 @@
 //! What only many frames tell: values that no longer change, and taxels that drift away from the others.
 
-use crate::conversion::{Counts, Sample, Transfer};
+use crate::conversion::{Sample, Transfer};
 use crate::fault::Fault;
 use crate::frame::Frame;
 
@@ -9,8 +9,8 @@ use crate::frame::Frame;
 pub struct Thresholds {
     /// Equal samples in a row that make a taxel frozen.
     ///
-    /// Default 10. The family's last bit is 1/4 to 1/64 Pa, below the noise of a barometer: a living part repeats itself by chance, but not
-    /// ten times in pressure and temperature alike.
+    /// Default 10. A barometer's last bit is below its noise: a living part repeats itself by chance, but not ten times in pressure and
+    /// temperature alike.
     pub frozen_frames: u16,
     /// Drift that is too much, Pa. Default 500: a start, not measured on a sensor.
     pub drift_pa: f32,
@@ -29,10 +29,10 @@ impl Default for Thresholds {
 }
 
 impl Thresholds {
-    /// Whether a count is at an end of the counts' range, or of the rated one, or beyond.
-    fn is_out_of_range(&self, counts: Counts, transfer: &Transfer) -> bool {
+    /// Whether a sample is at an end of its part's range, or of the rated one, or beyond.
+    fn is_out_of_range(&self, sample: &Sample, transfer: &Transfer) -> bool {
         let [lowest_pa, highest_pa] = self.rated_pa;
-        transfer.pressure_pa(counts).map_or(true, |pressure_pa| {
+        sample.pressure_pa(transfer).map_or(true, |pressure_pa| {
             !(lowest_pa..=highest_pa).contains(&pressure_pa)
         })
     }
@@ -82,7 +82,7 @@ impl<const N: usize> Health<N> {
                 1
             };
             *last = Some(sample);
-            if self.thresholds.is_out_of_range(sample.counts, &self.transfer) {
+            if self.thresholds.is_out_of_range(&sample, &self.transfer) {
                 *taxel = Err(Fault::Saturated);
             } else if *repeats >= self.thresholds.frozen_frames {
                 *taxel = Err(Fault::Frozen);
@@ -134,6 +134,7 @@ fn median<const N: usize>(numbers: [Option<f32>; N]) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::conversion::{Counts, Pressure};
 
     fn frame<const N: usize>(pressures_pa: [Option<f32>; N]) -> Frame<N> {
         Frame {
@@ -145,6 +146,7 @@ mod tests {
                 let counts = Counts::from_be_bytes([high, middle, low]);
                 Ok(Sample {
                     counts,
+                    pressure: Pressure::Unscaled,
                     temperature_c: 20.0,
                 })
             }),

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::conversion::{Counts, Transfer};
+use crate::conversion::{Counts, Pressure, Transfer};
 use crate::frame::Frame;
 
 /// Counts per Pa that a part of the family can have, if the atmosphere is within its range: 2²³ counts are 2.1 MPa to 131 kPa.
@@ -81,7 +81,7 @@ impl ScaleHint {
 
 /// The scale with which all taxels of a frame, taken with nothing touching the sensor, read free air.
 ///
-/// Taxels that gave nothing do not vote.
+/// Taxels that gave nothing do not vote, nor do those whose chip knows its scale.
 ///
 /// # Errors
 /// If that is not exactly one scale.
@@ -89,6 +89,9 @@ pub fn scale_hint<const N: usize>(frame: &Frame<N>, air: FreeAir) -> Result<Scal
     let mut hint = None;
     for (taxel, sample) in frame.taxels.iter().enumerate() {
         let Ok(sample) = sample else { continue };
+        if sample.pressure != Pressure::Unscaled {
+            continue;
+        }
         let counts_per_pa = scale_of(taxel, sample.counts, air)?;
         let pressure_pa = pressure_pa(sample.counts, counts_per_pa);
         let so_far = *hint.get_or_insert(ScaleHint {
@@ -213,6 +216,7 @@ mod tests {
                 let counts = Counts::from_be_bytes([high, middle, low]);
                 Ok(Sample {
                     counts,
+                    pressure: Pressure::Unscaled,
                     temperature_c: 20.0,
                 })
             }),

@@ -1,17 +1,18 @@
 //! How the sensor is wired, and how long its barometers take.
 
-use crate::channels::{SwitchAddress, Wiring};
+use crate::patience::Patience;
+use crate::wiring::Wiring;
 
 /// How a [`PhysTac`](crate::PhysTac) is wired and timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings<const N: usize> {
-    /// The switch's address.
-    pub switch: SwitchAddress,
-    /// Which channel each taxel is on.
+    /// Which chip each taxel is, and where.
     pub wiring: Wiring<N>,
-    /// How long to leave the bus alone after a trigger, µs. Default 6000, what public code of the CPS135B waits.
+    /// How long to leave a chip alone after its trigger, µs, if its data sheet does not say. Default 6000, what public code of the CPS135B
+    /// waits.
     pub conversion_us: u32,
-    /// How long all taxels together may take beyond that. Default 56 waits of 250 µs: 20 ms in all, the family's longest conversion.
+    /// How long all taxels together may take beyond that. Default 56 waits of 250 µs: 20 ms in all, the longest conversion of the CPS135B's
+    /// family.
     pub patience: Patience,
     /// How long a channel that hung the bus stays closed before it is looked into again, µs. Each further time is twice as long, up to 64 times.
     /// Default 1 s: a channel that goes on hanging the bus costs a frame each time.
@@ -23,7 +24,6 @@ impl<const N: usize> Settings<N> {
     #[must_use]
     pub fn new(wiring: Wiring<N>) -> Self {
         Self {
-            switch: SwitchAddress::default(),
             wiring,
             conversion_us: 6000,
             patience: Patience {
@@ -35,18 +35,9 @@ impl<const N: usize> Settings<N> {
     }
 }
 
-/// Taxel `i` on channel `i` of a switch at 0x70.
+/// Taxel `i` a CPS135B on channel `i` of a switch at 0x70.
 impl Default for Settings<8> {
     fn default() -> Self {
         Self::new(Wiring::default())
     }
-}
-
-/// How often to ask again whether a conversion has ended: a bound that no broken clock can move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
-    /// Time between two questions, µs.
-    pub interval_us: u32,
-    /// How many such times to wait.
-    pub waits: u32,
 }

@@ -416,7 +416,7 @@ fn only_a_taxel_that_hangs_the_bus_twice_running_is_left_out() {
     let mut hang_at = |taxel: Option<usize>| {
         sensor.recover(|bus, _| bus.reset()); // so that the next frame looks into each channel, with three transactions
         if let Some(taxel) = taxel {
-            bench.with(|world| world.failing = world.count + 2 + 3 * taxel + 2..usize::MAX);
+            bench.with(|world| world.failing = world.count + 3 + 3 * taxel + 2..usize::MAX);
         }
         next_frame(&bench, &mut sensor)
     };

@@ -106,7 +106,7 @@ fn what_a_fast_gel_does_not_know_may_differ() {
         sensor.readout.rate_hz = 10.0;
         for taxel in &mut sensor.taxels {
             taxel.name += "x";
-            taxel.channel += 1;
+            taxel.channel = None;
             taxel.doubtful = Some("a reason".to_owned());
         }
     });

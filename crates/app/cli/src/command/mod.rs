@@ -14,6 +14,7 @@ mod imperfection;
 mod locate;
 mod mesh;
 mod paper;
+mod ports;
 mod predict;
 mod record;
 mod reproduce;
@@ -40,6 +41,7 @@ pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
         Command::Dataset(arguments) => dataset::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Characterize(arguments) => characterize::run(&arguments),
+        Command::Ports(arguments) => ports::run(&arguments),
         Command::Stream(arguments) => stream::run(&arguments),
         Command::Record(arguments) => record::run(&arguments, program),
         Command::Export(arguments) => export::run(&arguments),

@@ -7,13 +7,13 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 use twintac_lab::Reality;
-use twintac_live::Known;
 use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_limits};
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_run::built_in::{LAB_RIG, reality};
 use twintac_run::{Run, RunSettings, check_logs};
 use twintac_sensor::SensorFile;
+use twintac_source::Known;
 use twintac_station::{OpenBench, preview, read_faults};
 use twintac_work::{Caller, Planned, Progress};
 

@@ -1,11 +1,10 @@
 //! `twintac stream`: touch as it happens.
 
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use twintac_live::{Format, Known, Live, StopAfter, Tally, dashboard, stream_rows};
-use twintac_sensor::SensorFile;
+use twintac_live::{Format, Live, Origin, StopAfter, dashboard, stream_rows};
+use twintac_source::{Known, Tally};
 
 use super::files::sensor_or_phystac;
 use crate::arguments::{RowFormat, Stream};
@@ -17,10 +16,7 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
         counts_per_pa: arguments.scale,
         altitude_m: arguments.altitude_m,
     };
-    let mut live = match (&arguments.bus, arguments.lab) {
-        (Some(bus), false) => on_bus(bus, &sensor, &known)?,
-        _ => Live::in_the_lab(&sensor.sensor, &sensor.text, &known)?,
-    };
+    let mut live = Live::open(&origin(arguments), &sensor.sensor, &sensor.text, &known)?;
     for note in &live.notes {
         say(note);
     }
@@ -46,17 +42,27 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
     Ok(())
 }
 
-#[cfg(target_os = "linux")]
-fn on_bus(bus: &Path, sensor: &SensorFile, known: &Known) -> Result<Live> {
-    Ok(Live::on_linux(bus, &sensor.sensor, &sensor.text, known)?)
-}
-
-#[cfg(not(target_os = "linux"))]
-fn on_bus(bus: &Path, _: &SensorFile, _: &Known) -> Result<Live> {
-    anyhow::bail!(
-        "{}: buses are opened on Linux only; `--lab` is emulated anywhere",
-        bus.display()
-    )
+/// Where the frames come from.
+fn origin(arguments: &Stream) -> Origin {
+    let line = arguments.line.clone().unwrap_or_default();
+    match (
+        &arguments.bus,
+        &arguments.serial,
+        &arguments.udp,
+        &arguments.replay,
+    ) {
+        (Some(bus), ..) => Origin::Bus(bus.clone()),
+        (_, Some(port), ..) => Origin::Serial {
+            port: port.clone(),
+            line,
+        },
+        (_, _, Some(address), _) => Origin::Udp {
+            address: address.clone(),
+            line,
+        },
+        (.., Some(log)) => Origin::Log(log.clone()),
+        _ => Origin::Emulated,
+    }
 }
 
 /// Says what was lost, if anything was.
@@ -68,5 +74,8 @@ fn sum_up(tally: &Tally) {
         say(&format!(
             "{read} frames were read; {missed} of them missed; {failed} times none came"
         ));
+    }
+    for remark in &tally.remarks {
+        say(remark);
     }
 }

@@ -4,16 +4,18 @@ use std::fmt;
 use std::sync::{Arc, Mutex};
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, Operation};
+use twintac_random::stream;
 
-use super::barometer::Barometer;
-use super::parts::Parts;
+use super::chip::{Analog, Make, kind};
+use super::parts::{Part, Parts};
+use super::switch::Switch;
 use super::transaction::Transaction;
-use super::{BoardSettings, ClockLine, DataLine, ResetLine};
+use super::{BoardSettings, ClockLine, DataLine, PartSettings, ResetLine};
 use crate::clock::nanoseconds;
 use crate::fault::FaultWire;
 use crate::schedule::Schedule;
 use crate::worker::locked;
-use crate::{CHANNELS, EmulateError, FaultKind, ScheduledFault, Workcell};
+use crate::{EmulateError, FaultKind, ScheduledFault, Workcell};
 
 /// Lateness beyond which the bus does not catch up.
 const MOST_LATE_NS: u64 = 5_000_000;
@@ -45,16 +47,32 @@ impl Board {
     ) -> Result<Self, EmulateError> {
         settings.check()?;
         crate::fault::check_faults(faults)?;
-        let barometer = |channel: usize| {
-            let is_there = settings.channels.contains(&(channel as u8)); // 0 to 7
-            is_there.then(|| Barometer::new(channel, settings.barometer, settings.seed))
+        let switches = settings.switches();
+        let part = |(taxel, part): (usize, &PartSettings)| {
+            let random = stream(settings.seed, &format!("barometer {taxel}"));
+            let kind = kind(&part.chip)?;
+            let noise_pa = settings.noise_pa.filter(|_| !kind.has_settings);
+            let analog = Analog::new(random, settings.barometer.conversion_spread, noise_pa);
+            let make = Make {
+                analog,
+                settings: &settings.barometer,
+            };
+            Some(Part {
+                address: part.address(),
+                behind: part.switch.and_then(|address| {
+                    let switch = switches.iter().position(|switch| *switch == address)?;
+                    Some((switch, part.channel))
+                }),
+                taxel,
+                chip: (kind.make)(make),
+                is_addressed: false,
+            })
         };
+        let barometers = settings.parts.iter().enumerate().filter_map(part).collect();
+        let schedule = Schedule::new(faults, FaultWire::I2c);
+        let switches = switches.iter().map(|address| Switch::new(*address)).collect();
         Ok(Self {
-            parts: Arc::new(Mutex::new(Parts::new(
-                settings.switch_address,
-                std::array::from_fn(barometer),
-                Schedule::new(faults, FaultWire::I2c),
-            ))),
+            parts: Arc::new(Mutex::new(Parts::new(switches, barometers, schedule))),
             workcell,
             period_ns: 1e9 / settings.bus_hz,
             timeout_ns: nanoseconds(settings.timeout_s),
@@ -86,21 +104,22 @@ impl Board {
         (clock, data)
     }
 
-    /// The switch's RESET.
+    /// The RESET of all switches.
     #[must_use]
     pub fn reset_line(&self) -> ResetLine {
         let parts = Arc::clone(&self.parts);
         ResetLine { parts }
     }
 
-    /// How long each channel's barometer takes for a conversion, s.
+    /// How long each barometer takes for a conversion as it is set, s.
     #[must_use]
-    pub fn conversions_s(&self) -> [Option<f64>; CHANNELS] {
+    pub fn conversions_s(&self) -> Vec<f64> {
         let parts = locked(&self.parts);
         parts
             .barometers
-            .each_ref()
-            .map(|part| part.as_ref().map(Barometer::conversion_s))
+            .iter()
+            .map(|part| part.chip.conversion_s())
+            .collect()
     }
 
     fn transaction(&self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
@@ -151,8 +170,8 @@ impl fmt::Debug for Board {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = locked(&self.parts);
         f.debug_struct("Board")
-            .field("mask", &parts.switch.mask())
-            .field("barometers", &parts.barometers.iter().flatten().count())
+            .field("switches", &parts.switches)
+            .field("barometers", &parts.barometers.len())
             .finish()
     }
 }

@@ -1,17 +1,18 @@
-//! The sensor: a bus with a TCA9548A and eight CPS135B behind it, register by register and clock by clock.
+//! The sensor: a bus with switches (TCA9548A) and barometers behind them, register by register and clock by clock.
 //!
-//! Sources: Texas Instruments SCPS207 for the switch; for the barometer, whose data sheet is not public, the registers that CFSensor's
-//! XGZP6847D and XGZP6897D (data sheet V2.5) and NOVOSENSE's NSA2300 share. What none of them says is guessed, and stands in
-//! [`BarometerSettings`] where it can be.
+//! Sources: Texas Instruments SCPS207 for the switch; for each kind of barometer those that its file names. What no source says is guessed,
+//! and stands in [`BarometerSettings`] where it can be.
 
-mod barometer;
+mod barometer_settings;
 mod board;
+mod chip;
 mod lines;
 mod parts;
 mod settings;
 mod switch;
 mod transaction;
 
+pub use barometer_settings::BarometerSettings;
 pub use board::{Board, Bus};
 pub use lines::{ClockLine, DataLine, ResetLine};
-pub use settings::{BarometerSettings, BoardSettings};
+pub use settings::{BoardSettings, PartSettings};

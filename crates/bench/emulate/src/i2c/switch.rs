@@ -1,14 +1,27 @@
 //! The TCA9548A.
 
 /// The switch: one register, which opens a channel for each bit.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Switch {
+    address: u8,
     mask: u8,
     /// The byte written in this transaction; it counts from STOP on.
     written: Option<u8>,
 }
 
 impl Switch {
+    pub(super) fn new(address: u8) -> Self {
+        Self {
+            address,
+            mask: 0,
+            written: None,
+        }
+    }
+
+    pub(super) fn address(&self) -> u8 {
+        self.address
+    }
+
     pub(super) fn mask(self) -> u8 {
         self.mask
     }
@@ -23,6 +36,6 @@ impl Switch {
 
     /// RESET, or power that comes back.
     pub(super) fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self::new(self.address);
     }
 }

@@ -2,12 +2,8 @@
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 
-use super::barometer::Barometer;
-use super::parts::Parts;
+use super::parts::{Part, Parts};
 use crate::{FaultKind, Workcell};
-
-/// Every barometer's 7-bit address.
-const BAROMETER: u8 = 0x6D;
 
 /// A transaction, byte by byte.
 pub(super) struct Transaction<'a> {
@@ -47,7 +43,11 @@ impl<'a> Transaction<'a> {
             }
             match operation {
                 Operation::Read(bytes) => bytes.iter_mut().for_each(|byte| *byte = self.read(address)),
-                Operation::Write(bytes) => bytes.iter().for_each(|byte| self.write(address, *byte)),
+                Operation::Write(bytes) => {
+                    for byte in bytes.iter() {
+                        self.write(address, *byte)?;
+                    }
+                }
             }
         }
         Ok(())
@@ -56,80 +56,92 @@ impl<'a> Transaction<'a> {
     /// START and an address.
     fn address(&mut self, address: u8, is_reading: bool) -> Result<(), ErrorKind> {
         self.clocks += 1 + 9;
-        let is_heard = self.is_switch(address) || {
-            let mut n_heard = 0;
-            self.each_barometer(address, |barometer, _| {
-                barometer.address(!is_reading);
-                n_heard += 1;
-            });
-            n_heard > 0
-        };
+        let mut n_heard = self.switch(address).is_some() as usize;
+        self.each_barometer(address, |part, _| {
+            part.is_addressed = !is_reading;
+            n_heard += 1;
+        });
         // Whoever hears it pulls the line: one is enough.
-        is_heard
-            .then_some(())
-            .ok_or(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address))
+        acknowledged(n_heard, NoAcknowledgeSource::Address)
     }
 
-    fn write(&mut self, address: u8, byte: u8) {
+    fn write(&mut self, address: u8, byte: u8) -> Result<(), ErrorKind> {
         self.clocks += 9;
-        if self.is_switch(address) {
-            self.parts.switch.write(byte);
+        let mut n_heard = 0;
+        if let Some(switch) = self.switch(address) {
+            self.parts.switches[switch].write(byte);
+            n_heard += 1;
         }
-        self.each_barometer(address, |barometer, now_ns| barometer.write(byte, now_ns));
+        self.each_barometer(address, |part, now_ns| {
+            match std::mem::take(&mut part.is_addressed) {
+                true => part.chip.point(byte, now_ns),
+                false => part.chip.write(byte, now_ns),
+            }
+            n_heard += 1;
+        });
+        acknowledged(n_heard, NoAcknowledgeSource::Data)
     }
 
     /// The byte that all who speak make together: a line is low if one of them pulls it.
     fn read(&mut self, address: u8) -> u8 {
         self.clocks += 9;
-        let mut byte = if self.is_switch(address) {
-            self.parts.switch.mask()
-        } else {
-            0xFF
-        };
-        self.each_barometer(address, |barometer, _| byte &= barometer.read());
+        let mut byte = self
+            .switch(address)
+            .map_or(0xFF, |switch| self.parts.switches[switch].mask());
+        self.each_barometer(address, |part, _| byte &= part.chip.read());
         byte
     }
 
     /// STOP; when it is, ns of the lab's clock.
     pub(super) fn stop(&mut self) -> u64 {
         self.clocks += 1;
-        self.parts.switch.stop();
+        self.parts
+            .switches
+            .iter_mut()
+            .for_each(super::switch::Switch::stop);
+        self.parts.barometers.iter_mut().for_each(|part| part.chip.stop());
         self.now_ns()
     }
 
-    fn is_switch(&self, address: u8) -> bool {
-        address == self.parts.switch_address
-            && !self
-                .parts
-                .schedule
-                .has(FaultKind::NoAcknowledge { channel: None })
+    /// The switch of that address, if it answers.
+    fn switch(&self, address: u8) -> Option<usize> {
+        let is_away = self
+            .parts
+            .schedule
+            .has(FaultKind::NoAcknowledge { channel: None });
+        let found = self
+            .parts
+            .switches
+            .iter()
+            .position(|switch| switch.address() == address);
+        found.filter(|_| !is_away)
     }
 
     /// All barometers at the address that are there and on open channels.
-    fn each_barometer(&mut self, address: u8, mut tell: impl FnMut(&mut Barometer, u64)) {
-        if address != BAROMETER {
-            return;
-        }
+    fn each_barometer(&mut self, address: u8, mut tell: impl FnMut(&mut Part, u64)) {
         let now_ns = self.now_ns();
-        let Parts {
-            switch,
-            barometers,
-            schedule,
-            ..
-        } = &mut *self.parts;
-        for (channel, barometer) in (0..).zip(barometers) {
-            let is_away = schedule.has(FaultKind::NoAcknowledge {
-                channel: Some(channel),
-            });
-            let Some(barometer) = barometer else { continue };
-            barometer.settle(
-                now_ns,
-                self.workcell,
-                schedule.has(FaultKind::EndlessConversion { channel }),
-            );
-            if switch.mask() >> channel & 1 == 1 && !is_away && barometer.acknowledges() {
-                tell(barometer, now_ns);
+        for index in 0..self.parts.barometers.len() {
+            if self.parts.barometers[index].address != address {
+                continue;
+            }
+            let channel = self.parts.barometers[index].channel();
+            let schedule = &self.parts.schedule;
+            let is_endless =
+                channel.is_some_and(|channel| schedule.has(FaultKind::EndlessConversion { channel }));
+            let is_away = channel.is_some() && schedule.has(FaultKind::NoAcknowledge { channel });
+            let is_reached = channel.is_none_or(|channel| self.parts.is_open(channel));
+            let part = &mut self.parts.barometers[index];
+            part.settle(now_ns, is_endless, self.workcell);
+            if is_reached && !is_away && part.chip.acknowledges() {
+                tell(part, now_ns);
             }
         }
+    }
+}
+
+fn acknowledged(n_heard: usize, source: NoAcknowledgeSource) -> Result<(), ErrorKind> {
+    match n_heard {
+        0 => Err(ErrorKind::NoAcknowledge(source)),
+        _ => Ok(()),
     }
 }

@@ -3,8 +3,9 @@
 use std::collections::VecDeque;
 
 use twintac_map::{MapSettings, PreparedMap};
+use twintac_source::{Reading, Tally};
 
-use crate::{About, LiveError, Reading, Tally, Tare, Taring};
+use crate::{About, LiveError, Tare, Taring};
 
 /// Frames that traces go back.
 const HISTORY: usize = 600;

@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
+use twintac_source::{FrameSource, Tally};
 
 use super::{DashboardState, RecordingStatus, TouchRecording, draw};
-use crate::{About, FrameSource, LiveError, Tally};
+use crate::{About, LiveError};
 
 /// Time between two pictures: 15 a second.
 const PICTURE: Duration = Duration::from_millis(66);

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use twintac_log::{Body, Event, LogError, LogSender, Message, Recorder, Stream, export_frames};
+use twintac_source::Reading;
 
-use crate::{About, LiveError, Reading};
+use crate::{About, LiveError};
 
 /// Files that are looked for a free name.
 const MOST_FILES: u32 = 10_000;

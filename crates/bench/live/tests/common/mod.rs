@@ -5,11 +5,10 @@
 use phystac::{Thresholds, Transfer};
 use twintac_emulate::i2c::Bus;
 use twintac_emulate::{FaultKind, LabClock, Moment, ScheduledFault};
-use twintac_live::{
-    About, BoxedClock, EmulatedPhysTac, FrameReader, Known, PowerOn, TAXELS, emulated_phystac, power_on,
-};
+use twintac_live::{About, EmulatedPhysTac, emulated_phystac};
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
+use twintac_source::{BoxedClock, FrameReader, Known, PowerOn, TAXELS, power_on};
 
 pub type LabReader = FrameReader<Bus, LabClock, BoxedClock, TAXELS>;
 
@@ -45,7 +44,7 @@ pub fn scale(counts_per_pa: u16) -> Known {
 /// A sensor that was switched on and found to be like this, whatever its range.
 pub fn checked(transfer: Transfer) -> PowerOn {
     PowerOn {
-        transfer,
+        transfer: Some(transfer),
         thresholds: Thresholds::default(),
         notes: Vec::new(),
     }

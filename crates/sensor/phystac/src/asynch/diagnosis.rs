@@ -1,10 +1,9 @@
-//! What a failed transaction says: of one taxel, of the switch, or of the bus.
+//! What a failed transaction says: of one taxel, of a switch, or of the bus.
 
 use embedded_hal_async::i2c::{Error as _, I2c};
 
 use super::PhysTac;
 use super::phystac::Taxel;
-use crate::channels::Channels;
 use crate::error::Error;
 use crate::fault::Fault;
 
@@ -18,12 +17,17 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         match error {
             Error::BarometerMissing => {
                 // If the channel is closed, nobody answers either.
-                let verified = self.switch().verify(taxel.channel).await;
-                self.diagnose(Some(taxel), verified).await?;
+                if let Some((switch, channel)) = taxel.place.behind {
+                    let verified = self.switch(switch).verify(channel).await;
+                    self.diagnose(Some(taxel), verified).await?;
+                }
                 Ok(Fault::Missing)
             }
             Error::ConversionStuck => Ok(Fault::Stuck),
             Error::OversamplingRefused { .. } => Ok(Fault::Refused),
+            Error::WrongChip { .. } => Ok(Fault::WrongChip),
+            Error::Uncalibrated => Ok(Fault::Uncalibrated),
+            Error::Restarted => Ok(Fault::Restarted),
             error => match self.diagnose(Some(taxel), Err(error)).await {
                 Err(Error::Bus(source)) => Ok(Fault::Bus(source.kind())),
                 result => result,
@@ -42,15 +46,28 @@ impl<I2C: I2c, D, C, const N: usize> PhysTac<I2C, D, C, N> {
         let Err(Error::Bus(source)) = result else {
             return result;
         };
-        if self.switch().select(Channels::NONE).await.is_ok() {
+        if self.is_alive().await {
             return Err(Error::Bus(source));
         }
-        let taxel = taxel.map(|Taxel { index, channel }| {
-            if self.suspect.replace(index) == Some(index) {
-                self.isolated = self.isolated | channel;
+        let taxel = taxel.map(|Taxel { index, place }| {
+            if self.suspect.replace(index) == Some(index) && place.behind.is_some() {
+                self.isolate(place.behind);
             }
             index
         });
         Err(Error::BusHung { taxel, source })
+    }
+
+    /// Whether transactions go through with all channels closed; without a switch: at all, whoever acknowledges.
+    async fn is_alive(&mut self) -> bool {
+        if self.settings.wiring.switches().next().is_some() {
+            return self.close().await.is_ok();
+        }
+        let Some(first) = self.settings.wiring.taxels().next() else {
+            return false;
+        };
+        let read = self.i2c_mut().read(first.address, &mut [0]).await;
+        let read = read.map_err(|source| Error::of_transaction(source, Error::BarometerMissing));
+        matches!(read, Ok(()) | Err(Error::BarometerMissing))
     }
 }

@@ -2,11 +2,10 @@
 //!
 //! Futures may be dropped at any point: no driver trusts what it has not seen end.
 
-mod barometer;
 mod diagnosis;
 mod phystac;
 mod switch;
 
-pub use barometer::Cps135b;
+pub(crate) use phystac::FRAMES_PER_TEMPERATURE;
 pub use phystac::PhysTac;
 pub use switch::Tca9548a;

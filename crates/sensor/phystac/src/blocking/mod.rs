@@ -3,11 +3,9 @@
 //! A bus that blocks is a bus whose futures are ready at once. So the protocol is written once, for [`asynch`](crate::asynch), and polled
 //! once here: no executor, no waker, nothing to wait for.
 
-mod barometer;
 mod phystac;
 mod switch;
 
-pub use barometer::Cps135b;
 pub use phystac::PhysTac;
 pub use switch::Tca9548a;
 

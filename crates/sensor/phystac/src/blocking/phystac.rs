@@ -7,20 +7,20 @@ use super::{AtOnce, now};
 use crate::asynch;
 use crate::clock::Clock;
 use crate::error::Error;
-use crate::fault::Fault;
 use crate::frame::Frame;
-use crate::register::Oversampling;
 use crate::settings::Settings;
 
-/// `N` barometers behind a switch, read as frames.
+/// Up to `N` barometers on a bus, behind switches or not, read as frames.
 ///
-/// A frame is triggered for all barometers with one write, so that its samples are of one moment; then each is asked, through its
-/// own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no other. One that failed in
-/// a frame is asked before the next trigger, and left out of the frame if it is still converting or fails again: its sample would be of
-/// an earlier moment than the frame says.
+/// A frame is triggered for all barometers at once, with one write for all that need the same bytes, so that its samples are of one moment; then
+/// each is asked, through its own channel, until it has ended, and read. What goes wrong with one taxel is that taxel's [`Fault`] and stops no
+/// other. One that failed in a frame is switched on anew before the next trigger, and left out of the frame if it is still converting or fails
+/// again: its sample would be of an earlier moment than the frame says.
 ///
-/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switch obeys, and looks into each
-/// channel before any broadcast.
+/// Chips that convert temperature apart do so in every sixteenth frame, after the pressures, and between count with the last one.
+///
+/// After an [`Error`] nothing is taken for granted: the next call closes all channels, sees that the switches obey and that nobody answers at the
+/// barometers' addresses, and looks into each channel before any broadcast.
 #[derive(Debug)]
 pub struct PhysTac<I2C, D, C, const N: usize>(asynch::PhysTac<AtOnce<I2C>, AtOnce<D>, C, N>);
 
@@ -30,18 +30,25 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
         Self(asynch::PhysTac::new(AtOnce(i2c), AtOnce(delay), clock, settings))
     }
 
+    /// How it is wired and timed.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings<N> {
+        self.0.settings()
+    }
+
     /// Gives the bus, the delay and the clock back. Channels stay open unless [`stop`](Self::stop) closed them.
     pub fn release(self) -> (I2C, D, C) {
         let (AtOnce(i2c), AtOnce(delay), clock) = self.0.release();
         (i2c, delay, clock)
     }
 
-    /// Closes all channels, sees that the switch obeys, looks into each channel alone, and lets conversions under way end.
+    /// Closes all channels, sees that the switches obey and that nothing else has a barometer's address, looks into each channel alone, switches
+    /// the barometers on, and lets conversions under way end.
     ///
     /// The other operations do so by themselves when needed.
     ///
     /// # Errors
-    /// Any but those of a single barometer; [`Error::BusHung`] with the taxel, if opening its channel hangs the bus.
+    /// Any but those of a single barometer; [`Error::AddressConflict`]; [`Error::BusHung`] with the taxel, if opening its channel hangs the bus.
     pub fn start(&mut self) -> Result<(), Error<I2C::Error>> {
         now(self.0.start())
     }
@@ -60,18 +67,6 @@ impl<I2C: I2c, D: DelayNs, C: Clock, const N: usize> PhysTac<I2C, D, C, N> {
     /// What stops all taxels; those of [`trigger`](Self::trigger). The frame under way is lost.
     pub fn frame(&mut self) -> Result<Frame<N>, Error<I2C::Error>> {
         now(self.0.frame())
-    }
-
-    /// Sets the oversampling of each barometer, until it loses power. More samples take longer: let
-    /// [`set_conversion_us`](Self::set_conversion_us) follow.
-    ///
-    /// # Errors
-    /// What stops all taxels. A frame under way is lost.
-    pub fn set_oversampling(
-        &mut self,
-        oversampling: Oversampling,
-    ) -> Result<[Result<(), Fault>; N], Error<I2C::Error>> {
-        now(self.0.set_oversampling(oversampling))
     }
 
     /// Closes all channels. A frame under way is lost.

@@ -70,8 +70,8 @@ mod tests {
         let rows: String = times.iter().map(|time| format!("{time}\n")).collect();
         std::fs::write(&path, format!("t\n{rows}")).unwrap();
         let description = import.descriptions.for_file(&path).unwrap();
-        let table = Table::read(&path, &description).unwrap();
-        leading_rows(&table, &times_s(&table, &description), &description)
+        let table = Table::read(&path, &description, &description.wanted_of(None)).unwrap();
+        leading_rows(&table, &times_s(&table, description.time.as_ref()), &description)
     }
 
     fn times(steps: impl IntoIterator<Item = f64>) -> Vec<f64> {

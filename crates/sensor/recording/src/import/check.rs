@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::DQuat;
 use twintac_config::{ConfigError, Document};
 
-use super::description::{Column, Description, Repeated, Split};
+use super::description::{Column, Description, JoinClock, Repeated, Split};
 use super::unit::{Pressure, Unit};
 
 /// Farthest that a quaternion's length may be from 1.
@@ -54,8 +54,62 @@ pub(super) fn check(d: &Description) -> Result<(), Problem> {
     check_times(d, is_static)?;
     check_load(d)?;
     check_presses(d)?;
+    check_joins(d)?;
     check_zero(d, is_static)?;
     check_outliers(d, is_static)
+}
+
+fn check_joins(d: &Description) -> Result<(), Problem> {
+    for (index, join) in d.joins.iter().enumerate() {
+        let field = |name: &str| format!("join[{index}].{name}");
+        let has_time = d.time.as_ref().is_some_and(|time| time.column.is_some());
+        require(
+            has_time && !matches!(d.presses, Split::Row),
+            format!("join[{index}]"),
+            "stands in a description whose own files have no time",
+            "give the main file's `time` a column, or put the columns into one file",
+        )?;
+        require(
+            !join.file.trim().is_empty() && !join.file.contains(['/', '\\']),
+            field("file"),
+            format!("is `{}`", join.file),
+            "give the name of a file in the same folder, such as \"{stem}-force.csv\"",
+        )?;
+        let wanted = d.wanted();
+        let is_read = |name: &String| wanted.iter().any(|(wanted, _)| wanted == name);
+        let unread = join.columns.iter().find(|name| !is_read(name));
+        require(
+            !join.columns.is_empty() && unread.is_none(),
+            field("columns"),
+            unread.map_or("is empty".to_owned(), |name| {
+                format!("has `{name}`, which nothing is read of")
+            }),
+            "give the columns that `x`, `y`, `z`, `rotation`, `force`, `presses` or `taxels` name and that are in this file",
+        )?;
+        require(
+            join.time.column.is_some(),
+            field("time"),
+            "has no column",
+            "give the column of its time",
+        )?;
+        let is_given = match join.clock {
+            JoinClock::Given { offset_s, rate } => offset_s.is_finite() && rate.is_finite() && rate > 0.0,
+            _ => true,
+        };
+        require(
+            is_given,
+            field("clock"),
+            "is not finite, or runs backwards",
+            FINITE,
+        )?;
+        require(
+            join.within_s > 0.0 && join.within_s.is_finite(),
+            field("within_s"),
+            format!("is {}", join.within_s),
+            "give a time above 0",
+        )?;
+    }
+    Ok(())
 }
 
 fn check_text(d: &Description) -> Result<(), Problem> {

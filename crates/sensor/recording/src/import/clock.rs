@@ -1,7 +1,7 @@
 //! The times of a file's rows: a counter that rolls over, a clock that passes midnight, and rows that were written in bursts.
 
 use super::cell::{DAY_S, Kind};
-use super::description::{Description, Repeated, TimeColumn};
+use super::description::{Repeated, TimeColumn};
 use super::table::Table;
 use super::unit::Time;
 
@@ -9,8 +9,8 @@ use super::unit::Time;
 const ROLLED_OVER: f64 = 0.5;
 
 /// The time of each row, s: a counter that rolls over goes on, and a clock's first row is at 0.
-pub(crate) fn times_s(table: &Table, description: &Description) -> Vec<f64> {
-    let Some(time) = &description.time else {
+pub(crate) fn times_s(table: &Table, time: Option<&TimeColumn>) -> Vec<f64> {
+    let Some(time) = time else {
         return vec![0.0; table.rows()];
     };
     let Some(name) = &time.column else {

@@ -74,6 +74,9 @@ pub(crate) struct Description {
     pub(crate) zero: Option<Zero>,
     /// Which static readings are marked as not valid.
     pub(crate) outliers: Option<Outliers>,
+    /// Other files of the same recording, each on a clock of its own.
+    #[serde(default, rename = "join")]
+    pub(crate) joins: Vec<Join>,
     /// Tables with `files`, a pattern of names, and any of the fields above for these files.
     #[serde(default, rename = "override")]
     pub(crate) overrides: Vec<toml::Table>,
@@ -156,6 +159,15 @@ pub(crate) struct TimeColumn {
 }
 
 impl TimeColumn {
+    /// Its column, and as what it is read.
+    pub(crate) fn wanted(&self) -> Option<(&str, Kind)> {
+        let is_clock = matches!(self.unit, Time::Clock);
+        Some((
+            self.column.as_deref()?,
+            if is_clock { Kind::Clock } else { Kind::Number },
+        ))
+    }
+
     /// A count as a time, s.
     pub(crate) fn convert(&self, count: f64) -> f64 {
         self.convert_step(count) + self.offset
@@ -164,6 +176,70 @@ impl TimeColumn {
     /// A difference of counts as a time, s.
     pub(crate) fn convert_step(&self, count: f64) -> f64 {
         count * self.scale / self.divide_by * self.unit.factor()
+    }
+}
+
+/// Another file of the same recording, with some of the columns.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Join {
+    /// Its name, in the same folder; `{stem}` stands for the main file's name without its ending.
+    pub(crate) file: String,
+    /// The columns that are its, which the main file does not have.
+    pub(crate) columns: Vec<String>,
+    /// Its time.
+    pub(crate) time: TimeColumn,
+    /// Its clock: the `same` as the main file's unless given; `found` by the presses; or what makes main times of its own: `{ offset_s = 1.12, rate = 1.0 }`.
+    #[serde(default)]
+    pub(crate) clock: JoinClock,
+    /// How far in time a row of it may be from one of the main file, s; 0.02 unless given.
+    #[serde(default = "within_s")]
+    pub(crate) within_s: f64,
+    /// Names of its columns, if it has no header line.
+    pub(crate) header: Option<Vec<String>>,
+    /// As for the main file, whose is meant unless given.
+    pub(crate) delimiter: Option<char>,
+    /// As for the main file, whose is meant unless given.
+    pub(crate) skip_lines: Option<u64>,
+    /// As for the main file, whose is meant unless given.
+    pub(crate) comment: Option<char>,
+    /// As for the main file, whose is meant unless given.
+    pub(crate) decimal: Option<char>,
+}
+
+fn within_s() -> f64 {
+    0.02
+}
+
+/// What the times of a joined file are on the main file's clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum JoinClock {
+    /// The same.
+    #[default]
+    Same,
+    /// Whatever makes the presses in both the same.
+    Found,
+    /// `offset_s + rate · time`.
+    #[serde(untagged)]
+    Given {
+        offset_s: f64,
+        #[serde(default = "one")]
+        rate: f64,
+    },
+}
+
+impl Join {
+    /// How its text is written.
+    pub(crate) fn layout(&self, main: &Description) -> Description {
+        Description {
+            columns: self.header.clone(),
+            delimiter: self.delimiter.unwrap_or(main.delimiter),
+            skip_lines: self.skip_lines.unwrap_or(main.skip_lines),
+            comment: self.comment.or(main.comment),
+            decimal: self.decimal.unwrap_or(main.decimal),
+            ..main.clone()
+        }
     }
 }
 
@@ -315,15 +391,7 @@ impl Description {
             .iter()
             .map(|taxel| (taxel.column.as_str(), Kind::Reading));
         let mut wanted: BTreeSet<(&str, Kind)> = readings.collect();
-        if let Some(TimeColumn {
-            column: Some(name),
-            unit,
-            ..
-        }) = &self.time
-        {
-            let is_clock = matches!(unit, Time::Clock);
-            wanted.insert((name, if is_clock { Kind::Clock } else { Kind::Number }));
-        }
+        wanted.extend(self.time.as_ref().and_then(TimeColumn::wanted));
         let places = [self.x.column.as_deref(), self.y.column.as_deref()];
         let height = self.z.as_ref().and_then(|z| z.column.as_deref());
         let force = self.force.as_ref().and_then(|force| force.column.as_deref());

@@ -5,10 +5,12 @@ mod buffered;
 mod cell;
 mod check;
 mod clock;
+mod correlate;
 mod describe;
 mod description;
 mod guess;
 mod header;
+mod join;
 mod outliers;
 mod plausible;
 mod split;
@@ -68,6 +70,13 @@ use track::Track;
 /// presses = { split = "return-to-rest", rest_mm = 0.0, tolerance_mm = 0.005, keep_rest_s = 1.0 }
 /// zero = { above_contact_mm = 0.5, window_s = 1.0 }       # zeroes each taxel before each press
 /// ## outliers = { within_mm = 0.8, jump = 0.15 }           # static presses: marks what leaps out of its neighbours
+///
+/// ## [[join]]                       # another file of the same recording, with some of the columns, on a clock of its own
+/// ## file = "{stem}-force.csv"      # {stem}: the main file's name without its ending
+/// ## columns = ["f"]
+/// ## time = { column = "us", unit = "us" }
+/// ## clock = "found"                # by the presses; or "same", or { offset_s = 1.12, rate = 1.0 }
+/// ## within_s = 0.02                # nearest row in time, no further than that
 ///
 /// [[override]]                    # any of the above, for files whose names match
 /// files = "gelA_*"
@@ -159,13 +168,17 @@ impl Import {
 }
 
 fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, FileSummary), RecordingError> {
-    let table = Table::read(path, description)?;
-    let (file, n_rows) = (table.file.clone(), table.rows());
-    let mut summary = FileSummary::new(file_name(path), n_rows + table.incomplete_rows);
+    let mut table = Table::read(path, description, &description.wanted_of(None))?;
+    let file = table.file.clone();
+    let n_rows_read = table.rows() + table.incomplete_rows;
+    let mut summary = FileSummary::new(file_name(path), n_rows_read);
     summary.rows_incomplete = table.incomplete_rows;
     summary.unread_columns.clone_from(&table.unread);
     table.notes.iter().for_each(|note| summary.warn(note.clone()));
-    let times_s = clock::times_s(&table, description);
+    let mut times_s = clock::times_s(&table, description.time.as_ref());
+    let notes = join::join(path, &mut table, &mut times_s, description)?;
+    notes.into_iter().for_each(|note| summary.warn(note));
+    let n_rows = table.rows();
     let dropped = buffered::leading_rows(&table, &times_s, description)?;
     let track = Track::new(table, times_s, description, dropped)?;
     summary.missing_readings = track.raw.iter().flatten().filter(|raw| raw.is_nan()).count();

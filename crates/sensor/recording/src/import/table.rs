@@ -1,6 +1,6 @@
 //! A CSV file as columns of numbers, with the line of each row.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::cell::{Cells, Kind, cells};
@@ -42,8 +42,12 @@ struct Rows<'a> {
 }
 
 impl Table {
-    /// Reads the columns that a description names.
-    pub(crate) fn read(path: &Path, description: &Description) -> Result<Self, RecordingError> {
+    /// Reads columns of a file whose text is as described.
+    pub(crate) fn read(
+        path: &Path,
+        description: &Description,
+        wanted: &BTreeSet<(&str, Kind)>,
+    ) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
         let text = Text::read(path, description.skip_lines)?;
         let mut reader = csv::ReaderBuilder::new()
@@ -68,7 +72,6 @@ impl Table {
             }
             None => (Vec::new(), 1),
         };
-        let wanted = description.wanted();
         let remedy = || header::remedy(text.rest(), text.skipped_lines, &header, description);
         let columns = wanted.iter().map(|&(name, kind)| {
             Ok(Wanted {
@@ -140,6 +143,23 @@ impl Table {
         self.columns
             .remove(&(name.to_owned(), Kind::Reading))
             .unwrap_or_default()
+    }
+
+    /// Puts the columns of another table beside these rows, by the row of it that each one's partner is; rows without one are left out.
+    pub(crate) fn put_beside(&mut self, other: &Self, partners: &[Option<usize>]) {
+        let keep = |numbers: &mut Vec<f64>| {
+            let mut partners = partners.iter();
+            numbers.retain(|_| partners.next().is_some_and(Option::is_some));
+        };
+        self.columns.values_mut().for_each(keep);
+        let mut kept = partners.iter();
+        self.lines.retain(|_| kept.next().is_some_and(Option::is_some));
+        for (key, numbers) in &other.columns {
+            if !self.columns.contains_key(key) {
+                let beside = partners.iter().flatten().map(|row| numbers[*row]);
+                self.columns.insert(key.clone(), beside.collect());
+            }
+        }
     }
 
     pub(crate) fn rows(&self) -> usize {

@@ -1,19 +1,27 @@
 //! Frames of the driver as messages of a log.
 
-use phystac::{Fault, Frame, Health, Thresholds, Transfer};
+use phystac::{Fault, Frame, Health, Pressure, Thresholds, Transfer};
 use twintac_log::{CountTransfer, TactileFrame, TaxelReading, TaxelState};
+
+/// What stands where no count needs a transfer.
+pub(crate) const UNUSED: Transfer = Transfer::per_pa(1);
 
 /// Makes messages of the driver's frames, one after the other.
 #[derive(Clone, Debug)]
-pub struct Screening<const N: usize> {
+pub(crate) struct Screening<const N: usize> {
+    /// Of a sensor whose chips all know their scale, whatever.
     transfer: Transfer,
     health: Health<N>,
 }
 
 impl<const N: usize> Screening<N> {
-    /// Of a sensor whose counts stand for this, of which no frame has been seen.
+    /// Of a sensor whose counts stand for this, where its chips do not say so themselves; no frame of it has been seen.
     #[must_use]
-    pub const fn new(transfer: Transfer, thresholds: Thresholds) -> Self {
+    pub(crate) const fn new(transfer: Option<Transfer>, thresholds: Thresholds) -> Self {
+        let transfer = match transfer {
+            Some(transfer) => transfer,
+            None => UNUSED,
+        };
         Self {
             transfer,
             health: Health::new(transfer, thresholds),
@@ -21,7 +29,7 @@ impl<const N: usize> Screening<N> {
     }
 
     /// The next frame as a message. A taxel that is saturated or frozen keeps its counts and has no pressure.
-    pub fn frame(&mut self, mut frame: Frame<N>) -> TactileFrame {
+    pub(crate) fn frame(&mut self, mut frame: Frame<N>) -> TactileFrame {
         let mut message = tactile_frame(&frame, &self.transfer);
         self.health.screen(&mut frame);
         for (index, fault) in frame.faults() {
@@ -46,6 +54,7 @@ pub fn confirmed_transfer(transfer: &Transfer) -> CountTransfer {
 /// A frame as a message, before it is compared with the frames before it.
 fn tactile_frame<const N: usize>(frame: &Frame<N>, transfer: &Transfer) -> TactileFrame {
     let taxels = frame.taxels.iter().zip(frame.read_us);
+    let taxels = taxels.filter(|(taxel, _)| **taxel != Err(Fault::NotWired));
     TactileFrame {
         triggered_us: frame.triggered_us,
         taxels: taxels
@@ -55,8 +64,8 @@ fn tactile_frame<const N: usize>(frame: &Frame<N>, transfer: &Transfer) -> Tacti
 }
 
 fn taxel_reading(taxel: Result<phystac::Sample, Fault>, read_us: u64, transfer: &Transfer) -> TaxelReading {
-    let pressure_pa = taxel.and_then(|sample| transfer.pressure_pa(sample.counts));
-    let count = |sample: phystac::Sample| match transfer.signed {
+    let pressure_pa = taxel.and_then(|sample| sample.pressure_pa(transfer));
+    let count = |sample: phystac::Sample| match sample.pressure == Pressure::Unscaled && transfer.signed {
         true => sample.counts.signed(),
         false => sample.counts.unsigned().cast_signed(),
     };
@@ -71,13 +80,16 @@ fn taxel_reading(taxel: Result<phystac::Sample, Fault>, read_us: u64, transfer: 
 
 fn taxel_state(fault: Fault) -> TaxelState {
     match fault {
-        Fault::Missing => TaxelState::Missing,
+        Fault::Missing | Fault::NotWired => TaxelState::Missing,
         Fault::Stuck => TaxelState::Stuck,
         Fault::Bus(_) => TaxelState::BusError,
         Fault::Isolated => TaxelState::Isolated,
         Fault::Refused => TaxelState::Refused,
         Fault::Saturated => TaxelState::Saturated,
         Fault::Frozen => TaxelState::Frozen,
+        Fault::WrongChip => TaxelState::WrongChip,
+        Fault::Uncalibrated => TaxelState::Uncalibrated,
+        Fault::Restarted => TaxelState::Restarted,
     }
 }
 
@@ -91,6 +103,7 @@ mod tests {
     fn sample(bytes: [u8; 3]) -> Sample {
         Sample {
             counts: Counts::from_be_bytes(bytes),
+            pressure: Pressure::Unscaled,
             temperature_c: 21.5,
         }
     }

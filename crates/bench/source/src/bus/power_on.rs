@@ -5,9 +5,10 @@ use embedded_hal::i2c::I2c;
 use phystac::{Clock, Frame, FreeAir, PhysTac, Thresholds, Transfer, scale_hint};
 use twintac_sensor::Sensor;
 
+use super::full_scale::{emulated_scale, full_scale_kpa};
+use super::screening::{Screening, UNUSED};
+use crate::SourceError;
 use crate::error::bus_error;
-use crate::full_scale::{emulated_scale, full_scale_kpa};
-use crate::{LiveError, Screening};
 
 /// What a person knows of the parts and the place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +24,7 @@ impl Known {
     #[must_use]
     pub fn or_emulated(self, sensor: &Sensor) -> Self {
         let is_described = sensor.readout.transfer.is_some() || sensor.readout.counts_per_pa.is_some();
-        let scale = (!is_described).then(|| emulated_scale(sensor));
+        let scale = (!is_described && sensor.has_unscaled_chips()).then(|| emulated_scale(sensor));
         Self {
             counts_per_pa: self.counts_per_pa.or(scale),
             ..self
@@ -34,8 +35,8 @@ impl Known {
 /// What was found when the sensor was switched on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerOn {
-    /// What counts stand for, confirmed.
-    pub transfer: Transfer,
+    /// What counts stand for, confirmed, where chips do not say it themselves.
+    pub transfer: Option<Transfer>,
     /// From when on a taxel is suspect; its range is the description's.
     pub thresholds: Thresholds,
     /// What is odd but stops nothing, a sentence each.
@@ -45,30 +46,35 @@ pub struct PowerOn {
 impl PowerOn {
     /// What makes messages of the frames to come.
     #[must_use]
-    pub const fn screening<const N: usize>(&self) -> Screening<N> {
+    pub(super) const fn screening<const N: usize>(&self) -> Screening<N> {
         Screening::new(self.transfer, self.thresholds)
     }
 }
 
-/// Reads a frame in free air, and says what counts stand for if somebody has confirmed it: `known`, or else the sensor's description.
+/// Reads a frame in free air, and says what counts stand for if somebody has confirmed it: `known`, or else the sensor's description. Chips that
+/// say it themselves need nobody.
 ///
 /// Counts per Pa are of two's complement, as the family's data sheet has it, unless only unsigned ones reach the description's range.
 ///
 /// # Errors
-/// [`LiveError::ScaleUnconfirmed`]: nobody has; with the scale hint of free air. [`LiveError::ScaleContradicted`]: free air is not what
-/// most taxels then read. [`LiveError::Bus`].
+/// [`SourceError::ScaleUnconfirmed`]: nobody has; with the scale hint of free air. [`SourceError::NothingToScale`]: somebody has, of chips that say
+/// it themselves. [`SourceError::ScaleContradicted`], [`SourceError::NotFreeAir`]: free air is not what most taxels read. [`SourceError::Wire`].
 pub fn power_on<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
     phystac: &mut PhysTac<I2C, D, C, N>,
     sensor: &Sensor,
     known: &Known,
-) -> Result<PowerOn, LiveError> {
+) -> Result<PowerOn, SourceError> {
     let frame = phystac.frame().map_err(bus_error)?;
     let air = known
         .altitude_m
         .map_or_else(FreeAir::default, FreeAir::at_altitude_m);
     let found = Found::of(&frame, air);
-    let transfer = confirmed(sensor, known).ok_or_else(|| found.unconfirmed(sensor))?;
-    let notes = check(&frame, sensor, air, &transfer, found)?;
+    let transfer = match sensor.has_unscaled_chips() {
+        true => Some(confirmed(sensor, known).ok_or_else(|| found.unconfirmed(sensor))?),
+        false if known.counts_per_pa.is_some() => return Err(SourceError::NothingToScale),
+        false => None,
+    };
+    let notes = check(&frame, sensor, air, transfer.as_ref(), found)?;
     let rated_kpa = [sensor.readout.min_kpa, sensor.readout.max_kpa];
     Ok(PowerOn {
         transfer,
@@ -124,11 +130,11 @@ impl Found {
         }
     }
 
-    fn unconfirmed(&self, sensor: &Sensor) -> LiveError {
+    fn unconfirmed(&self, sensor: &Sensor) -> SourceError {
         let scale = self
             .counts_per_pa
             .map_or("K".to_owned(), |found| found.to_string());
-        LiveError::ScaleUnconfirmed {
+        SourceError::ScaleUnconfirmed {
             found: self.text.clone(),
             advice: format!(
                 "give `--scale {scale}`, or write `counts_per_pa = {scale}` under [readout] in the description of sensor {}",
@@ -143,12 +149,13 @@ fn check<const N: usize>(
     frame: &Frame<N>,
     sensor: &Sensor,
     air: FreeAir,
-    transfer: &Transfer,
+    transfer: Option<&Transfer>,
     found: Found,
-) -> Result<Vec<String>, LiveError> {
+) -> Result<Vec<String>, SourceError> {
     let mut notes = Vec::new();
     let (mut n_free, mut n_read) = (0, 0);
-    for (taxel, pressure) in sensor.taxels.iter().zip(frame.pressures_pa(transfer)) {
+    let pressures = frame.pressures_pa(transfer.unwrap_or(&UNUSED));
+    for (taxel, pressure) in sensor.taxels.iter().zip(pressures) {
         let name = &taxel.name;
         match pressure {
             Ok(pressure_pa) => {
@@ -166,13 +173,23 @@ fn check<const N: usize>(
         }
     }
     if 2 * n_free <= n_read || n_read == 0 {
-        return Err(LiveError::ScaleContradicted {
+        let Some(transfer) = transfer else {
+            return Err(SourceError::NotFreeAir {
+                n_free,
+                n_read,
+                notes: notes.join("; "),
+            });
+        };
+        return Err(SourceError::ScaleContradicted {
             pa_per_count: transfer.pa_per_count,
             n_free,
             n_read,
             found: found.text,
         });
     }
+    let Some(transfer) = transfer else {
+        return Ok(notes);
+    };
     let (most_kpa, max_kpa) = (1e-3 * transfer.full_scale_pa(), sensor.readout.max_kpa);
     if f64::from(most_kpa) < max_kpa {
         notes.push(format!(

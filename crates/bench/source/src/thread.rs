@@ -6,11 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use embedded_hal::delay::DelayNs;
-use embedded_hal::i2c::I2c;
-use phystac::Clock;
-
-use crate::{FrameReader, LiveError, Reading};
+use crate::{Reading, SourceError, TactileSource};
 
 /// Failures in a row after which a sensor is given up, and the time to rest after each: 2 s.
 const MOST_FAILURES: u32 = 40;
@@ -27,7 +23,7 @@ const LEAVE: Duration = Duration::from_secs(1);
 pub struct FrameSource {
     readings: Receiver<Reading>,
     shared: Arc<Shared>,
-    thread: Option<JoinHandle<Result<(), LiveError>>>,
+    thread: Option<JoinHandle<Result<(), SourceError>>>,
     /// When the last frame was taken, or the thread was started.
     heard: Instant,
 }
@@ -43,6 +39,8 @@ pub struct Tally {
     pub failed: u64,
     /// Why, the last time.
     pub last_failure: Option<String>,
+    /// What was on the wire besides frames, a sentence each.
+    pub remarks: Vec<String>,
 }
 
 #[derive(Debug, Default)]
@@ -52,6 +50,7 @@ struct Shared {
     missed: AtomicU64,
     failed: AtomicU64,
     last_failure: Mutex<Option<String>>,
+    remarks: Mutex<Vec<String>>,
 }
 
 impl FrameSource {
@@ -61,23 +60,15 @@ impl FrameSource {
     /// Starts to read. `capacity` frames may wait to be taken; those that come while so many do are counted as missed.
     ///
     /// # Errors
-    /// [`LiveError::Thread`]: there is no thread.
-    pub fn start<I2C, D, C, const N: usize>(
-        reader: FrameReader<I2C, D, C, N>,
-        capacity: usize,
-    ) -> Result<Self, LiveError>
-    where
-        I2C: I2c + Send + 'static,
-        D: DelayNs + Send + 'static,
-        C: Clock + Send + 'static,
-    {
+    /// [`SourceError::Thread`]: there is no thread.
+    pub fn start(source: impl TactileSource + 'static, capacity: usize) -> Result<Self, SourceError> {
         let (sender, readings) = sync_channel(capacity);
         let shared = Arc::new(Shared::default());
         let its_shared = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("frames".to_owned())
-            .spawn(move || run(reader, &sender, &its_shared))
-            .map_err(|error| LiveError::Thread {
+            .spawn(move || run(source, &sender, &its_shared))
+            .map_err(|error| SourceError::Thread {
                 problem: error.to_string(),
             })?;
         Ok(Self {
@@ -91,22 +82,26 @@ impl FrameSource {
     /// The next frame, or `None` if none comes for so long.
     ///
     /// # Errors
-    /// [`LiveError::Bus`]: the sensor was given up, having failed for 2 s on end or been silent for 3 s. [`LiveError::Thread`].
-    pub fn next(&mut self, timeout: Duration) -> Result<Option<Reading>, LiveError> {
+    /// [`SourceError::Wire`]: the sensor was given up, having failed for 2 s on end or been silent for 3 s. [`SourceError::Thread`].
+    pub fn next(&mut self, timeout: Duration) -> Result<Option<Reading>, SourceError> {
         match self.readings.recv_timeout(timeout) {
             Ok(reading) => {
                 self.heard = Instant::now();
                 Ok(Some(reading))
             }
-            Err(RecvTimeoutError::Timeout) if self.heard.elapsed() >= SILENCE => Err(LiveError::Bus {
-                problem: format!("none came for {} s", SILENCE.as_secs()),
-            }),
+            Err(RecvTimeoutError::Timeout) if self.heard.elapsed() >= SILENCE => {
+                let silence = format!("none came for {} s", SILENCE.as_secs());
+                let said: Vec<String> = std::iter::once(silence).chain(self.tally().remarks).collect();
+                Err(SourceError::Wire {
+                    problem: said.join("; "),
+                })
+            }
             Err(RecvTimeoutError::Timeout) => Ok(None),
             Err(RecvTimeoutError::Disconnected) => {
                 let ended = self.thread.take().map(JoinHandle::join);
                 match ended {
                     Some(Ok(Err(error))) => Err(error),
-                    _ => Err(LiveError::Thread {
+                    _ => Err(SourceError::Thread {
                         problem: "it has ended".to_owned(),
                     }),
                 }
@@ -124,6 +119,11 @@ impl FrameSource {
             missed: shared.missed.load(Ordering::Relaxed),
             failed: shared.failed.load(Ordering::Relaxed),
             last_failure: last_failure.clone(),
+            remarks: shared
+                .remarks
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .clone(),
         }
     }
 }
@@ -146,15 +146,19 @@ impl Drop for FrameSource {
     }
 }
 
-fn run<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
-    mut reader: FrameReader<I2C, D, C, N>,
+fn run(
+    mut source: impl TactileSource,
     sender: &SyncSender<Reading>,
     shared: &Shared,
-) -> Result<(), LiveError> {
+) -> Result<(), SourceError> {
     let mut failures = 0;
     while !shared.is_over.load(Ordering::Relaxed) {
-        match reader.read() {
-            Ok(reading) => {
+        let read = source.next_frame(REST);
+        *shared.remarks.lock().unwrap_or_else(PoisonError::into_inner) = source.remarks();
+        match read {
+            Ok(None) if source.is_over() => return Err(SourceError::Over),
+            Ok(None) => {}
+            Ok(Some(reading)) => {
                 failures = 0;
                 shared.read.fetch_add(1, Ordering::Relaxed);
                 match sender.try_send(reading) {
@@ -176,5 +180,5 @@ fn run<I2C: I2c, D: DelayNs, C: Clock, const N: usize>(
             }
         }
     }
-    reader.stop()
+    source.stop()
 }

@@ -8,7 +8,7 @@ use linux_embedded_hal::i2cdev::linux::LinuxI2CError;
 use linux_embedded_hal::{Delay, I2CError, I2cdev};
 use phystac::{PhysTac, Settings};
 
-use crate::{BoxedClock, LiveError, TAXELS};
+use crate::{BoxedClock, SourceError, TAXELS};
 
 /// Adapters say that nobody acknowledged in two ways (Linux, i2c/fault-codes): this is the one that `linux-embedded-hal` does not know,
 /// and the one of a Raspberry Pi.
@@ -32,9 +32,9 @@ pub fn open_linux(
     path: &Path,
     settings: Settings<TAXELS>,
     clock: BoxedClock,
-) -> Result<LinuxPhysTac, LiveError> {
-    let bus = I2cdev::new(path).map_err(|error| LiveError::Open {
-        bus: path.display().to_string(),
+) -> Result<LinuxPhysTac, SourceError> {
+    let bus = I2cdev::new(path).map_err(|error| SourceError::Open {
+        wire: path.display().to_string(),
         problem: error.to_string(),
     })?;
     Ok(PhysTac::new(LinuxBus(bus), Delay, clock, settings))
@@ -98,7 +98,8 @@ mod tests {
 
     #[test]
     fn a_bus_that_is_not_there_is_named() {
-        let error = open_linux(Path::new("/dev/i2c-none"), Settings::default(), Box::new(|| 0))
+        let settings = Settings::new(phystac::Wiring::new(&[]).unwrap());
+        let error = open_linux(Path::new("/dev/i2c-none"), settings, Box::new(|| 0))
             .err()
             .unwrap();
         assert!(error.to_string().contains("/dev/i2c-none"), "{error}");

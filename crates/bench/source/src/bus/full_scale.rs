@@ -4,7 +4,8 @@ use phystac::{SCALES_PER_PA, Transfer};
 use twintac_sensor::Sensor;
 
 /// The largest pressure that counts of a scale can say, kPa.
-pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
+#[must_use]
+pub fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
     let transfer = Transfer {
         signed,
         ..Transfer::per_pa(counts_per_pa)
@@ -13,7 +14,8 @@ pub(crate) fn full_scale_kpa(counts_per_pa: u16, signed: bool) -> f64 {
 }
 
 /// The scale of emulated barometers of which the description confirms none, counts per Pa: the finest that reaches the description's range.
-pub(crate) fn emulated_scale(sensor: &Sensor) -> u16 {
+#[must_use]
+pub fn emulated_scale(sensor: &Sensor) -> u16 {
     let reaches = |per_pa: &u16| full_scale_kpa(*per_pa, false) >= sensor.readout.max_kpa;
     let finest = SCALES_PER_PA.into_iter().rev().find(reaches);
     finest.unwrap_or(SCALES_PER_PA[0])

@@ -1,0 +1,81 @@
+//! What can be typed behind `twintac stream` and `twintac ports`.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, ValueEnum};
+
+/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` they are a dashboard.
+#[derive(Args, Debug)]
+#[command(group = ArgGroup::new("source").required(true))]
+pub(crate) struct Stream {
+    /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
+    #[arg(long, value_name = "PATH", group = "source")]
+    pub(crate) bus: Option<PathBuf>,
+    /// Serial port that a microcontroller writes frames to, such as /dev/ttyACM0; `twintac ports` lists what is plugged in.
+    #[arg(long, value_name = "PORT", group = "source", requires = "line")]
+    pub(crate) serial: Option<String>,
+    /// Address where frames come as datagrams, such as 0.0.0.0:9000.
+    #[arg(long, value_name = "ADDRESS", group = "source", requires = "line")]
+    pub(crate) udp: Option<String>,
+    /// How frames stand on the serial line or in datagrams (TOML).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["bus", "lab", "replay"])]
+    pub(crate) line: Option<PathBuf>,
+    /// A log (MCAP), played at its own pace.
+    #[arg(long, value_name = "FILE", group = "source")]
+    pub(crate) replay: Option<PathBuf>,
+    /// The emulated sensor, pressed by a slow motion.
+    #[arg(long, group = "source")]
+    pub(crate) lab: bool,
+    /// Sensor description (TOML) [default: PhysTac].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sensor: Option<PathBuf>,
+    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) scale: Option<u16>,
+    /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
+    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
+    pub(crate) altitude_m: Option<f32>,
+    /// Rows on standard output instead of the dashboard.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<RowFormat>,
+    /// End after so many rows.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format", conflicts_with = "out")]
+    pub(crate) frames: Option<u64>,
+    /// End after so long, s.
+    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format", conflicts_with = "out")]
+    pub(crate) seconds: Option<f64>,
+    /// Folder of the dashboard's recordings (MCAP).
+    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]
+    pub(crate) out: PathBuf,
+}
+
+/// `twintac ports`.
+#[derive(Debug, Args)]
+pub(crate) struct Ports {
+    /// Listens to each serial port for so long, s, and says what comes: many boards start anew when their port is opened.
+    #[arg(long, value_name = "S", value_parser = duration_s)]
+    pub(crate) listen: Option<f64>,
+    /// Bits a second to listen at.
+    #[arg(long, value_name = "BAUD", default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(300..))]
+    pub(crate) baud: u32,
+    /// JSON on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// How frames are written.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum RowFormat {
+    /// Comma-separated values under a header.
+    Csv,
+    /// A JSON object a line.
+    Jsonl,
+}
+
+/// A time, s, that passes.
+fn duration_s(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if f64::is_finite(seconds) && seconds > 0.0 => Ok(seconds),
+        _ => Err("expected seconds, a finite number above 0".to_owned()),
+    }
+}

@@ -1,0 +1,181 @@
+//! Frames from a line that a microcontroller writes.
+
+mod device_clock;
+mod serial;
+mod udp;
+
+use device_clock::DeviceClock;
+pub use serial::SerialLine;
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::io::{self, ErrorKind};
+use std::time::{Duration, Instant};
+
+use twintac_line::{Decoder, Description, Heard, LineFrame, Tally};
+use twintac_log::{TactileFrame, TaxelReading, TaxelState};
+
+use crate::{BoxedClock, Reading, SourceError, TactileSource};
+
+/// Bytes as they come, from whatever.
+pub trait Wire: Send {
+    /// Waits for bytes, for so long at most, and says how many came; 0: none did.
+    ///
+    /// # Errors
+    /// What the operating system says; the end of what there is, as [`ErrorKind::UnexpectedEof`].
+    fn read(&mut self, bytes: &mut [u8], patience: Duration) -> io::Result<usize>;
+}
+
+/// Reads what a [`Description`] describes, from any wire.
+pub struct LineSource {
+    wire: Box<dyn Wire>,
+    decoder: Decoder,
+    clock: BoxedClock,
+    device_clock: DeviceClock,
+    /// From here on numbers are counted, where the line has none.
+    next_sequence: u64,
+    waiting: VecDeque<Reading>,
+    is_over: bool,
+    bytes: Vec<u8>,
+}
+
+impl LineSource {
+    /// A line of a sensor of so many taxels. `clock` is the bench's, µs.
+    ///
+    /// # Errors
+    /// The description has another number of pressures.
+    pub fn new(
+        wire: impl Wire + 'static,
+        description: &Description,
+        n_taxels: usize,
+        clock: BoxedClock,
+    ) -> Result<Self, SourceError> {
+        let n = description.n_pressures();
+        if n != n_taxels {
+            let problem = format!("has {n_taxels} taxels; frames on the line have {n} pressures");
+            let sensor = "of this line".to_owned();
+            return Err(SourceError::Sensor { sensor, problem });
+        }
+        Ok(Self {
+            wire: Box::new(wire),
+            decoder: Decoder::new(description, n_taxels),
+            clock,
+            device_clock: DeviceClock::default(),
+            next_sequence: 0,
+            waiting: VecDeque::new(),
+            is_over: false,
+            bytes: vec![0; 1 << 16],
+        })
+    }
+
+    /// What was on the line so far.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.decoder.tally()
+    }
+
+    /// Takes what has come.
+    fn take(&mut self, n: usize) {
+        let arrived_us = (self.clock)();
+        let mut frames = Vec::new();
+        let restarts = self.decoder.tally().restarts;
+        self.decoder.push(&self.bytes[..n], &mut |heard| {
+            if let Heard::Frame(frame) = heard {
+                frames.push(frame);
+            }
+        });
+        if self.decoder.tally().restarts != restarts {
+            self.device_clock = DeviceClock::default();
+        }
+        for frame in frames {
+            let reading = self.reading(frame, arrived_us);
+            self.waiting.push_back(reading);
+        }
+    }
+
+    fn reading(&mut self, frame: LineFrame, arrived_us: u64) -> Reading {
+        let arrived_s = arrived_us as f64 * 1e-6;
+        let bench_s = frame
+            .time_s
+            .map_or(arrived_s, |time_s| self.device_clock.bench_s(time_s, arrived_s));
+        let sequence = self.next_sequence + frame.lost_before;
+        self.next_sequence = sequence + 1;
+        let taxels = frame.pressures_kpa.iter().zip(&frame.temperatures_c);
+        Reading {
+            sequence,
+            bench_s,
+            frame: TactileFrame {
+                triggered_us: (bench_s * 1e6).round().max(0.0) as u64,
+                taxels: taxels
+                    .map(|(pressure_kpa, temperature_c)| TaxelReading {
+                        state: if pressure_kpa.is_some() {
+                            TaxelState::Good
+                        } else {
+                            TaxelState::Missing
+                        },
+                        read_us: arrived_us,
+                        counts: None,
+                        pressure_pa: pressure_kpa.map(|kpa| 1e3 * kpa),
+                        temperature_c: *temperature_c,
+                    })
+                    .collect(),
+            },
+        }
+    }
+}
+
+impl TactileSource for LineSource {
+    fn next_frame(&mut self, patience: Duration) -> Result<Option<Reading>, SourceError> {
+        let end = Instant::now() + patience;
+        loop {
+            if let Some(reading) = self.waiting.pop_front() {
+                return Ok(Some(reading));
+            }
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() || self.is_over {
+                return Ok(None);
+            }
+            match self.wire.read(&mut self.bytes, left) {
+                Ok(n) => self.take(n),
+                Err(error) if error.kind() == ErrorKind::UnexpectedEof => self.is_over = true,
+                Err(error) => {
+                    return Err(SourceError::Wire {
+                        problem: error.to_string(),
+                    });
+                }
+            }
+        }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let tally = self.tally();
+        let kinds = [
+            (tally.lost, "frames are missing"),
+            (tally.torn, "lines were torn"),
+            (tally.checksum, "lines had a wrong checksum"),
+            (tally.endless, "times nothing that was described came for long"),
+            (tally.doubled, "frames came twice"),
+            (tally.late, "frames came late, and were left out"),
+            (tally.restarts, "times the board started anew"),
+        ];
+        let some = kinds.into_iter().filter(|(n, _)| *n > 0);
+        let mut remarks: Vec<String> = some.map(|(n, what)| format!("{n} {what}")).collect();
+        let others = tally.comments + tally.text;
+        if tally.frames == 0 && others > 0 {
+            remarks.push(format!("{others} lines came, and none has readings as described"));
+        }
+        remarks
+    }
+
+    fn is_over(&self) -> bool {
+        self.is_over && self.waiting.is_empty()
+    }
+}
+
+impl fmt::Debug for LineSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LineSource")
+            .field("tally", &self.tally())
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,25 @@
+//! Datagrams, each of whole lines or packets.
+
+use std::io::{self, ErrorKind};
+use std::net::UdpSocket;
+use std::time::Duration;
+
+use super::Wire;
+
+/// A socket that hears datagrams. One that ends in the middle of a line ends that line.
+impl Wire for UdpSocket {
+    fn read(&mut self, bytes: &mut [u8], patience: Duration) -> io::Result<usize> {
+        self.set_read_timeout(Some(patience.max(Duration::from_millis(1))))?;
+        match self.recv(bytes) {
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted
+                ) =>
+            {
+                Ok(0)
+            }
+            read => read,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The numbers of a frame, and what they mean.
+
+use crate::description::{Description, Pressure};
+use crate::field::Meaning;
+
+/// A frame as it stood on the line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineFrame {
+    /// Its number, roll-overs undone, if the line numbers its frames.
+    pub sequence: Option<u64>,
+    /// When it was read on the microcontroller's clock, s, roll-overs undone, if the line says so.
+    pub time_s: Option<f64>,
+    /// Pressures of the taxels, kPa; `None` of one that is missing. `[n_taxels]`
+    pub pressures_kpa: Vec<Option<f64>>,
+    /// Temperatures of the taxels, °C; `None` where there is none. `[n_taxels]`
+    pub temperatures_c: Vec<Option<f64>>,
+    /// Frames that are missing between the one before and this one.
+    pub lost_before: u64,
+}
+
+/// The numbers of a frame as they stood.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) time: Option<f64>,
+    pub(crate) sequence: Option<f64>,
+    pub(crate) pressures: Vec<Option<f64>>,
+    pub(crate) temperatures: Vec<Option<f64>>,
+}
+
+impl Row {
+    pub(crate) fn push(&mut self, meaning: Meaning, number: Option<f64>) {
+        match meaning {
+            Meaning::Pressure => self.pressures.push(number),
+            Meaning::Temperature => self.temperatures.push(number),
+            Meaning::Time => self.time = number,
+            Meaning::Sequence => self.sequence = number,
+            Meaning::Ignored => {}
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.time = None;
+        self.sequence = None;
+        self.pressures.clear();
+        self.temperatures.clear();
+    }
+
+    /// Pressures of the taxels, kPa, in their order.
+    pub(crate) fn pressures_kpa(&self, description: &Description) -> Vec<Option<f64>> {
+        let Pressure { unit, gain, offset } = description.pressure;
+        let kpa = |number: f64| unit.kilopascals() * (gain * number + offset);
+        in_order(description, &self.pressures, kpa)
+    }
+
+    /// Temperatures of the taxels, °C, in their order.
+    pub(crate) fn temperatures_c(&self, description: &Description) -> Vec<Option<f64>> {
+        let n = self.pressures.len();
+        let celsius = |number: f64| description.temperature.gain * number + description.temperature.offset;
+        match self.temperatures.as_slice() {
+            [] => vec![None; n],
+            [one] if n != 1 => vec![one.map(celsius); n],
+            all => in_order(description, all, celsius),
+        }
+    }
+}
+
+fn in_order(
+    description: &Description,
+    numbers: &[Option<f64>],
+    convert: impl Fn(f64) -> f64,
+) -> Vec<Option<f64>> {
+    let convert = |number: &Option<f64>| number.map(&convert);
+    let Some(order) = &description.taxel_order else {
+        return numbers.iter().map(convert).collect();
+    };
+    let mut ordered = vec![None; numbers.len()];
+    for (taxel, number) in order.iter().zip(numbers) {
+        ordered[*taxel] = convert(number);
+    }
+    ordered
+}

@@ -1,0 +1,3 @@
+#![no_main]
+
+twintac_fuzz_harness::fuzz!("line_bytes");
