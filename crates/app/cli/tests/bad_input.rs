@@ -532,11 +532,53 @@ fn places_that_cannot_be_found() {
 
 #[test]
 fn a_stream_that_cannot_be() {
-    let strip = root().join("sensors/strip4-gel-a.toml");
+    let folder = tempfile::tempdir().unwrap();
     let stream = |more: &[&str]| twintac(&[&["stream", "--lab"], more].concat());
+    // A sensor that does not say how it is wired.
+    let unwired = folder.path().join("unwired.toml");
+    let described = std::fs::read_to_string(root().join("sensors/strip4-gel-a.toml")).unwrap();
+    let is_wiring = |line: &&str| line.starts_with("channel = ") || line.starts_with("chip = ");
+    let lines: Vec<&str> = described.lines().filter(|line| !is_wiring(line)).collect();
+    std::fs::write(&unwired, lines.join("\n")).unwrap();
     refused(
-        &stream(&["--sensor", text(&strip), "--format", "csv"]),
-        &["strip4-gel-a", "4 taxels, expected 8"],
+        &stream(&["--sensor", text(&unwired), "--format", "csv"]),
+        &["strip4-gel-a", "does not say how its taxels are wired"],
+    );
+    // A line that is described wrongly, or of another sensor, or comes over nothing.
+    let line = folder.path().join("line.toml");
+    for (described, words) in [
+        (
+            "form = \"text\"",
+            ["line.toml", "`fields` are what this form is read by"],
+        ),
+        (
+            "form = \"text\"\nfields = [\"pressure * 3\"]",
+            ["8 taxels", "3 pressures"],
+        ),
+        (
+            "form = \"text\"\nfields = [\"pressure * 8\"]",
+            ["/dev/ttyNONE7", "cannot open"],
+        ),
+    ] {
+        std::fs::write(&line, described).unwrap();
+        refused(
+            &twintac(&[
+                "stream",
+                "--serial",
+                "/dev/ttyNONE7",
+                "--line",
+                text(&line),
+                "--format",
+                "csv",
+            ]),
+            &words,
+        );
+    }
+    refused(&twintac(&["stream", "--serial", "/dev/ttyNONE7"]), &["--line"]);
+    refused(&stream(&["--line", text(&line)]), &["--line", "--lab"]);
+    refused(
+        &twintac(&["stream", "--replay", text(&line), "--format", "csv"]),
+        &["line.toml"],
     );
     for seconds in ["nan", "inf", "0", "-1"] {
         let seconds = format!("--seconds={seconds}");

@@ -37,6 +37,7 @@ fn help_on_each_command() {
         "dataset",
         "calibrate",
         "stream",
+        "ports",
         "characterize",
         "export",
         "record",
