@@ -259,7 +259,7 @@ impl Coefficients {
 mod tests {
     use super::*;
 
-    /// Coefficients of a part that somebody published (issue 30 of Infineon's driver).
+    /// Coefficients of a part that somebody published, in a report on Infineon's driver.
     const BYTES: [u8; 18] = [
         0x0D, 0xEE, 0xD7, 0x13, 0x7D, 0x8F, 0x24, 0x0C, 0xF7, 0x09, 0x05, 0xA4, 0xDA, 0x1B, 0x00, 0x6F, 0xFA,
         0xF7,

@@ -27,7 +27,7 @@ const SCALES: [f64; 8] = [
     1_040_384.0,
     2_088_960.0,
 ];
-/// What a part that somebody published holds from register 0x10 on (issue 30 of Infineon's driver).
+/// What a part that somebody published holds from register 0x10 on, in a report on Infineon's driver.
 const A_PART: [u8; 18] = [
     0x0D, 0xEE, 0xD7, 0x13, 0x7D, 0x8F, 0x24, 0x0C, 0xF7, 0x09, 0x05, 0xA4, 0xDA, 0x1B, 0x00, 0x6F, 0xFA,
     0xF7,
