@@ -1,6 +1,6 @@
 //! A bench that moves something real.
 
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
+use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::Path;
 
 use twintac_press::PressSettings;
@@ -8,7 +8,7 @@ use twintac_recording::Provenance;
 use twintac_rig::xarm::{PORT, ReportPort, ReportReader};
 use twintac_rig::{BenchClock, netft};
 use twintac_sensor::Sensor;
-use twintac_source::{Known, LineSource, SerialLine, SourceError, TAXELS};
+use twintac_source::{Known, LineSource, TAXELS};
 use twintac_work::WorkError;
 
 use crate::OpenBench;
@@ -64,23 +64,11 @@ impl OpenBench {
 
 /// A sensor whose frames come over a serial port, or in datagrams.
 fn on_line(tactile: &str, line: &Path, sensor: &Sensor, clock: BenchClock) -> Result<Tactile, WorkError> {
-    let description = twintac_line::Description::read(line)?;
     let now = Box::new(move || clock.now_us());
     let n_taxels = sensor.taxels.len();
     let source = match tactile.strip_prefix("udp:") {
-        Some(address) => {
-            let socket = UdpSocket::bind(address).map_err(|error| SourceError::Open {
-                wire: tactile.to_owned(),
-                problem: error.to_string(),
-            })?;
-            LineSource::new(socket, &description, n_taxels, now)?
-        }
-        None => LineSource::new(
-            SerialLine::open(tactile, &description)?,
-            &description,
-            n_taxels,
-            now,
-        )?,
+        Some(address) => LineSource::udp(address, line, n_taxels, now)?,
+        None => LineSource::serial(tactile, line, n_taxels, now)?,
     };
     Ok(Tactile {
         source: Box::new(source),

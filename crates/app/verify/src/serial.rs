@@ -71,8 +71,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         Ok(board)
     });
     let (mut heard, mut wrong, mut latencies_s) = (0, 0, Vec::new());
-    let mut said = 0;
-    while heard + source.tally().missed < n_sent {
+    let (mut said, mut n_numbered) = (0, 0);
+    while n_numbered < n_sent {
         let reading = match source.next(Duration::from_millis(500)) {
             Ok(Some(reading)) => reading,
             Ok(None) => continue,
@@ -83,6 +83,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             Err(error) => return Err(error.into()),
         };
         heard += 1;
+        n_numbered = reading.sequence + 1;
         let expected = (0..TAXELS).map(|taxel| pressure_pa(reading.sequence, taxel));
         let is_right = reading
             .frame
@@ -97,12 +98,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             eprintln!("{said} min: {heard} frames");
         }
     }
-    let lost_marked = source
-        .tally()
-        .remarks
-        .iter()
-        .find_map(|remark| remark.strip_suffix(" frames are missing")?.parse().ok());
-    let lost_marked = lost_marked.unwrap_or(0) + source.tally().missed;
+    // Numbers of frames go on over those that are missing.
+    let lost_marked = n_numbered - heard;
     drop(writer.join().map_err(|_| anyhow!("the board's thread died"))??);
     drop(computer);
     latencies_s.sort_by(f64::total_cmp);
@@ -117,7 +114,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         sent: n_sent,
         heard,
         lost_marked,
-        lost_unmarked: n_sent.saturating_sub(heard + lost_marked),
+        lost_unmarked: n_sent - n_numbered.min(n_sent),
         wrong,
         latency_median_ms: at(0.5),
         latency_99_ms: at(0.99),

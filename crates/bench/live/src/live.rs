@@ -1,7 +1,6 @@
 //! A sensor that is switched on, checked and read.
 
-use std::net::UdpSocket;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use embedded_hal::delay::DelayNs;
@@ -11,8 +10,7 @@ use twintac_emulate::LabClock;
 use twintac_recording::Provenance;
 use twintac_sensor::Sensor;
 use twintac_source::{
-    BoxedClock, FrameReader, FrameSource, Known, LineSource, ReplaySource, SerialLine, SourceError, TAXELS,
-    power_on,
+    BoxedClock, FrameReader, FrameSource, Known, LineSource, ReplaySource, SourceError, TAXELS, power_on,
 };
 
 use crate::{About, LiveError, emulated_phystac};
@@ -85,16 +83,11 @@ impl Live {
                 "buses are opened on Linux only",
             )),
             Origin::Serial { port, line } => {
-                let line = described(line, sensor)?;
-                let wire = SerialLine::open(port, &line)?;
-                let source = LineSource::new(wire, &line, sensor.taxels.len(), clock())?;
+                let source = LineSource::serial(port, line, sensor.taxels.len(), clock())?;
                 Self::of(source, about(Provenance::Real), Vec::new())
             }
             Origin::Udp { address, line } => {
-                let line = described(line, sensor)?;
-                let socket =
-                    UdpSocket::bind(address).map_err(|error| not_opened(address, &error.to_string()))?;
-                let source = LineSource::new(socket, &line, sensor.taxels.len(), clock())?;
+                let source = LineSource::udp(address, line, sensor.taxels.len(), clock())?;
                 Self::of(source, about(Provenance::Real), Vec::new())
             }
             Origin::Log(path) => {
@@ -139,21 +132,6 @@ impl Live {
             notes,
         })
     }
-}
-
-/// How frames of a sensor stand on a line.
-fn described(line: &Path, sensor: &Sensor) -> Result<twintac_line::Description, LiveError> {
-    let description = twintac_line::Description::read(line).map_err(SourceError::from)?;
-    let (n, n_taxels) = (description.n_pressures(), sensor.taxels.len());
-    if n != n_taxels {
-        let problem = format!(
-            "has {n_taxels} taxels; frames that {} describes have {n} pressures",
-            line.display()
-        );
-        let sensor = sensor.name.clone();
-        return Err(SourceError::Sensor { sensor, problem }.into());
-    }
-    Ok(description)
 }
 
 fn not_opened(wire: &str, problem: &str) -> LiveError {

@@ -15,6 +15,16 @@ pub enum SourceError {
         /// What is wrong with it.
         problem: String,
     },
+    /// Frames on the line are of another sensor.
+    #[error(
+        "the sensor has {n_taxels} taxels; frames that the line's description describes have {n_pressures} pressures"
+    )]
+    Taxels {
+        /// Taxels of the sensor.
+        n_taxels: usize,
+        /// Pressures of a frame.
+        n_pressures: usize,
+    },
     /// The wire could not be opened.
     #[error("cannot open {wire}: {problem}")]
     Open {

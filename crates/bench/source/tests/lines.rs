@@ -229,7 +229,7 @@ fn a_port_that_is_not_there_is_named_and_so_are_wrong_numbers_of_taxels() {
     assert!(error.to_string().contains("/dev/ttyNONE7"), "{error}");
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     let error = LineSource::new(socket, &description(), 7, clock()).unwrap_err();
-    assert!(matches!(error, SourceError::Sensor { .. }), "{error}");
+    assert!(matches!(error, SourceError::Taxels { .. }), "{error}");
 }
 
 #[test]

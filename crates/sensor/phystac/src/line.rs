@@ -52,6 +52,16 @@ impl<'a, I: I2c, D: DelayNs> Line<'a, I, D> {
         Ok(bytes)
     }
 
+    /// That the chip is the one it should be, by its register of identity.
+    pub(crate) async fn identify(&mut self, register: u8, identity: u8) -> Result<(), Error<I::Error>> {
+        let [found] = self.read(register).await?;
+        if found == identity {
+            Ok(())
+        } else {
+            Err(Error::WrongChip { found })
+        }
+    }
+
     /// Time that the chip needs.
     pub(crate) async fn pause_us(&mut self, us: u32) {
         self.delay.delay_us(us).await;

@@ -10,6 +10,8 @@ pub use serial::SerialLine;
 use std::collections::VecDeque;
 use std::fmt;
 use std::io::{self, ErrorKind};
+use std::net::UdpSocket;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use twintac_line::{Decoder, Description, Heard, LineFrame, Tally};
@@ -50,12 +52,7 @@ impl LineSource {
         n_taxels: usize,
         clock: BoxedClock,
     ) -> Result<Self, SourceError> {
-        let n = description.n_pressures();
-        if n != n_taxels {
-            let problem = format!("has {n_taxels} taxels; frames on the line have {n} pressures");
-            let sensor = "of this line".to_owned();
-            return Err(SourceError::Sensor { sensor, problem });
-        }
+        check(description, n_taxels)?;
         Ok(Self {
             wire: Box::new(wire),
             decoder: Decoder::new(description, n_taxels),
@@ -66,6 +63,34 @@ impl LineSource {
             is_over: false,
             bytes: vec![0; 1 << 16],
         })
+    }
+
+    /// What comes over a serial port, as a file describes it (TOML).
+    ///
+    /// # Errors
+    /// A file that is wrong, or of another number of taxels; a port that cannot be opened.
+    pub fn serial(port: &str, line: &Path, n_taxels: usize, clock: BoxedClock) -> Result<Self, SourceError> {
+        let description = Description::read(line)?;
+        check(&description, n_taxels)?;
+        Self::new(
+            SerialLine::open(port, &description)?,
+            &description,
+            n_taxels,
+            clock,
+        )
+    }
+
+    /// What comes as datagrams to an address of this computer, as a file describes it (TOML).
+    ///
+    /// # Errors
+    /// A file that is wrong, or of another number of taxels; an address that cannot be listened at.
+    pub fn udp(address: &str, line: &Path, n_taxels: usize, clock: BoxedClock) -> Result<Self, SourceError> {
+        let description = Description::read(line)?;
+        let socket = UdpSocket::bind(address).map_err(|error| SourceError::Open {
+            wire: address.to_owned(),
+            problem: error.to_string(),
+        })?;
+        Self::new(socket, &description, n_taxels, clock)
     }
 
     /// What was on the line so far.
@@ -122,6 +147,18 @@ impl LineSource {
             },
         }
     }
+}
+
+/// That frames have a pressure of each taxel.
+fn check(description: &Description, n_taxels: usize) -> Result<(), SourceError> {
+    let n_pressures = description.n_pressures();
+    if n_pressures == n_taxels {
+        return Ok(());
+    }
+    Err(SourceError::Taxels {
+        n_taxels,
+        n_pressures,
+    })
 }
 
 impl TactileSource for LineSource {

@@ -81,10 +81,7 @@ impl Driver for Bmp5 {
         speed: Option<Speed>,
         line: &mut Line<'_, I, D>,
     ) -> Result<Self, Error<I::Error>> {
-        let [found] = line.read(IDENTITY).await?;
-        if found != data.identity {
-            return Err(Error::WrongChip { found });
-        }
+        line.identify(IDENTITY, data.identity).await?;
         line.reset(&[COMMAND, RESET]).await?; // not acknowledged
         line.pause_us(RESET_US).await;
         let [interrupts, status] = line.read(INTERRUPT_STATUS).await?;

@@ -97,10 +97,7 @@ impl Driver for Dps310 {
         speed: Option<Speed>,
         line: &mut Line<'_, I, D>,
     ) -> Result<Self, Error<I::Error>> {
-        let [found] = line.read(IDENTITY).await?;
-        if found != data.identity {
-            return Err(Error::WrongChip { found });
-        }
+        line.identify(IDENTITY, data.identity).await?;
         line.reset(&[RESET_REGISTER, RESET]).await?;
         line.pause_us(RESET_US).await;
         let [woke_up] = line.read(MEASURE).await?;

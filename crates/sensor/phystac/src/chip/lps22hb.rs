@@ -58,10 +58,7 @@ impl Driver for Lps22hb {
         speed: Option<Speed>,
         line: &mut Line<'_, I, D>,
     ) -> Result<Self, Error<I::Error>> {
-        let [found] = line.read(WHO_AM_I).await?;
-        if found != data.identity {
-            return Err(Error::WrongChip { found });
-        }
+        line.identify(WHO_AM_I, data.identity).await?;
         line.reset(&[CONTROL_2, RESET]).await?;
         line.pause_us(RESET_US).await;
         Ok(Self {

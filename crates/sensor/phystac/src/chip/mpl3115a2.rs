@@ -67,10 +67,7 @@ impl Driver for Mpl3115a2 {
         speed: Option<Speed>,
         line: &mut Line<'_, I, D>,
     ) -> Result<Self, Error<I::Error>> {
-        let [found] = line.read(WHO_AM_I).await?;
-        if found != data.identity {
-            return Err(Error::WrongChip { found });
-        }
+        line.identify(WHO_AM_I, data.identity).await?;
         line.reset(&[CONTROL, RESET]).await?; // it resets its side of the bus, and acknowledges nothing more
         line.pause_us(RESET_US).await;
         line.write(&[DATA_EVENTS, ALL_EVENTS]).await?;
