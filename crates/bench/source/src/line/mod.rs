@@ -3,13 +3,15 @@
 mod device_clock;
 mod serial;
 mod udp;
+mod wire;
 
 use device_clock::DeviceClock;
 pub use serial::SerialLine;
+pub use wire::Wire;
 
 use std::collections::VecDeque;
 use std::fmt;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::net::UdpSocket;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -18,15 +20,6 @@ use twintac_line::{Decoder, Description, Heard, LineFrame, Tally};
 use twintac_log::{TactileFrame, TaxelReading, TaxelState};
 
 use crate::{BoxedClock, Reading, SourceError, TactileSource};
-
-/// Bytes as they come, from whatever.
-pub trait Wire: Send {
-    /// Waits for bytes, for so long at most, and says how many came; 0: none did.
-    ///
-    /// # Errors
-    /// What the operating system says; the end of what there is, as [`ErrorKind::UnexpectedEof`].
-    fn read(&mut self, bytes: &mut [u8], patience: Duration) -> io::Result<usize>;
-}
 
 /// Reads what a [`Description`] describes, from any wire.
 pub struct LineSource {

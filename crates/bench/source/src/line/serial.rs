@@ -6,7 +6,7 @@ use std::time::Duration;
 use serialport::SerialPort;
 use twintac_line::Description;
 
-use super::Wire;
+use super::wire::Wire;
 use crate::SourceError;
 
 /// A serial port that was opened.

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::net::UdpSocket;
 use std::time::Duration;
 
-use super::Wire;
+use super::wire::Wire;
 
 /// A socket that hears datagrams. One that ends in the middle of a line ends that line.
 impl Wire for UdpSocket {
