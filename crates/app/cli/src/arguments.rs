@@ -169,7 +169,7 @@ pub(crate) struct Start {
 /// Recordings and how to read them.
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: two to three hours.
+    /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: some hours.
     #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
