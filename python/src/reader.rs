@@ -142,6 +142,30 @@ impl Reader {
         })
     }
 
+    /// Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile: the next
+    /// frames make a new tare.
+    ///
+    /// Raises `Error` for a file that is wrong, or of another sensor, and for a reader that is closed.
+    fn compensate(&self, py: Python<'_>, temperature: PathBuf) -> PyResult<()> {
+        let compensated = py.detach(|| {
+            let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
+            reader.as_mut().map(|reader| reader.compensate(temperature))
+        });
+        match compensated {
+            Some(compensated) => compensated.or_raise(py),
+            None => Err(unusable(py, "reader", "is closed")),
+        }
+    }
+
+    /// How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures, and of a reader that is closed. Zeros
+    /// move with it.
+    fn warmer_k(&self, py: Python<'_>) -> Option<f64> {
+        py.detach(|| {
+            let reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
+            reader.as_ref().and_then(twintac::Reader::warmer_k)
+        })
+    }
+
     /// The next frame.
     ///
     /// Raises `Error` for a sensor that has failed for 2 s on end or was silent for 3 s, and for a reader that is closed.

@@ -37,6 +37,7 @@ const TABLE: &str = "imperfection";
 /// - `offset_deviation_kpa`: of each taxel's zero, kPa.
 /// - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: how much all taxels drift with temperature, and the deviation of each beyond that, kPa/K.
 /// - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the tare, K, and the time in which it forgets what it was, s.
+/// - `cross_talk`, `cross_talk_deviation`: part of what each other taxel feels that a taxel reads as well, beyond what the gel spreads, and its deviation from pair to pair.
 /// - `noise_deviation_kpa`: of each reading's noise, kPa.
 /// - `quantum_kpa`: distance of the values that are told apart, kPa.
 /// - `hysteresis`: half of the gap between loading and unloading, as part of the reading, 0 to 1.

@@ -4,6 +4,7 @@ import os
 import signal
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -77,3 +78,27 @@ def test_ctrl_c_ends_the_reading() -> None:
 def test_a_bus_that_is_not_there_is_named() -> None:
     with pytest.raises(Error, match="/dev/i2c-nowhere"):
         Reader.open("/dev/i2c-nowhere", Sensor.phystac())
+
+
+TEMPERATURE = """
+sensor = "phystac"
+provenance = "emulated"
+taxels = [
+"""
+
+
+def test_zeros_are_compensated_for_temperature(tmp_path: Path) -> None:
+    file = tmp_path / "temperature.toml"
+    taxels = [f'{{ name = "{name}", kpa_per_k = 0.3, between_c = [20.0, 30.0], remaining_kpa = 0.01 }},' for name in Sensor.phystac().taxels]
+    with Reader.emulated(Sensor.phystac()) as reader:
+        assert abs(reader.warmer_k() or 0.0) < 1.0
+        file.write_text(TEMPERATURE + "\n".join(taxels) + "\n]\n")
+        reader.compensate(file)
+        assert np.all(np.abs(reader.read().readings_kpa) < 200.0)
+        file.write_text(TEMPERATURE + "\n".join(taxels[1:]) + "\n]\n")
+        with pytest.raises(Error, match="no taxel `t0`"):
+            reader.compensate(file)
+        with pytest.raises(Error, match="nowhere"):
+            reader.compensate("nowhere.toml")
+    with pytest.raises(Error, match="closed"):
+        reader.compensate(file)

@@ -388,6 +388,16 @@ class Reader:
         """What was odd when the sensor was switched on, a sentence each."""
     def remarks(self) -> list[str]:
         """What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing. Empty if all was well, and of a reader that is closed."""
+    def compensate(self, temperature: _Path) -> None:
+        """Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile: the next
+        frames make a new tare.
+
+        Raises `Error` for a file that is wrong, or of another sensor, and for a reader that is closed.
+        """
+    def warmer_k(self) -> float | None:
+        """How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures, and of a reader that is closed. Zeros
+        move with it.
+        """
     def read(self) -> Reading:
         """The next frame.
 
@@ -921,6 +931,7 @@ class Imperfection:
     - `offset_deviation_kpa`: of each taxel's zero, kPa.
     - `drift_kpa_per_k`, `drift_deviation_kpa_per_k`: how much all taxels drift with temperature, and the deviation of each beyond that, kPa/K.
     - `temperature_deviation_k`, `temperature_time_s`: deviation of the temperature from that of the tare, K, and the time in which it forgets what it was, s.
+    - `cross_talk`, `cross_talk_deviation`: part of what each other taxel feels that a taxel reads as well, beyond what the gel spreads, and its deviation from pair to pair.
     - `noise_deviation_kpa`: of each reading's noise, kPa.
     - `quantum_kpa`: distance of the values that are told apart, kPa.
     - `hysteresis`: half of the gap between loading and unloading, as part of the reading, 0 to 1.

@@ -161,6 +161,9 @@ pub(crate) struct Start {
     /// Settings (TOML) that differ from the defaults: any of those in a run's run.json, in tables like [simulate] and [train].
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
+    /// How zeros move with temperature (TOML), as `twintac characterize` found it: recordings with temperatures are compensated, and the model keeps it.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) temperature: Option<PathBuf>,
     /// Seed of all random choices.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
@@ -170,10 +173,10 @@ pub(crate) struct Start {
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
     /// Make the TwinTac paper's experiments on the emulated bench instead, from nothing: some hours.
-    #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
+    #[arg(long, conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) paper: bool,
     /// With --paper: few presses of a simple bench, to see that all of it runs: minutes.
-    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) quick: bool,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE", required_unless_present = "paper")]
@@ -188,7 +191,7 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the figures of --paper as JSON.
-    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings"])]
+    #[arg(long, requires = "paper", conflicts_with_all = ["sensor", "recordings", "import", "settings", "temperature"])]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) start: Start,
@@ -316,10 +319,13 @@ pub(crate) struct Characterize {
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: PathBuf,
-    /// Recordings: presses.parquet files, MCAP logs, also cut ones (`.mcap.partial`), or patterns of them.
+    /// Recordings: Parquet files of presses or frames, MCAP logs, also cut ones (`.mcap.partial`), logs of others, or patterns of them.
     #[arg(long, value_name = "FILES", num_args = 1.., required = true)]
     pub(crate) recordings: Vec<String>,
-    /// Folder to write characterization.json, report.html and datasheet.html to.
+    /// What the columns of logs of others mean (TOML); with `presses = { split = "none" }` they have readings alone.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) import: Option<PathBuf>,
+    /// Folder to write characterization.json, report.html, datasheet.html and temperature.toml to.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print everything as JSON instead of a table.
@@ -378,6 +384,14 @@ pub(crate) struct Export {
     /// Folder of the tables [default: beside the logs].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Write each log as a bag of ROS 2 (MCAP) with standard messages alone into this folder: all pressures in Pa as one Float32MultiArray, FluidPressure and
+    /// Temperature of each taxel, WrenchStamped, PoseStamped.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "lerobot"])]
+    pub(crate) ros: Option<PathBuf>,
+    /// Call a topic of --ros otherwise, such as tactile=/finger/touch: tactile [default: /tactile], pressure [default: /tactile/{taxel}/pressure], temperature
+    /// [default: /tactile/{taxel}/temperature], wrench [default: /wrench], pose [default: /robot/pose], events [default: /events].
+    #[arg(long, value_name = "TOPIC=NAME", requires = "ros", conflicts_with_all = ["out", "lerobot"], value_parser = topic_name)]
+    pub(crate) topic: Vec<(String, String)>,
     /// Write recorded presses, of presses.parquet files or of logs, as one data set of LeRobot (version 3.0) into this folder, which must not be there yet.
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     pub(crate) lerobot: Option<PathBuf>,
@@ -388,13 +402,13 @@ pub(crate) struct Export {
 
 #[derive(Args, Debug)]
 pub(crate) struct Import {
-    /// Print a first description of a CSV file's columns instead, with a comment on each guess.
+    /// Print a first description of the columns of a CSV file or a bag of ROS 2 (MCAP) instead, with a comment on each guess.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["sensor", "recordings", "import", "out", "settings"])]
     pub(crate) guess: Option<PathBuf>,
     /// Sensor description (TOML).
     #[arg(long, value_name = "FILE", required_unless_present = "guess")]
     pub(crate) sensor: Option<PathBuf>,
-    /// Recordings: CSV files or patterns like 'data/*.csv'.
+    /// Recordings: CSV files, bags of ROS 2 (MCAP), or patterns like 'data/*.csv'.
     #[arg(long, value_name = "FILES", num_args = 1.., required_unless_present = "guess")]
     pub(crate) recordings: Vec<String>,
     /// How to read the recordings (TOML) [default: the file that the sensor description names].
@@ -527,6 +541,9 @@ pub(crate) struct Predict {
     /// Seed of the protocol's random places.
     #[arg(long, default_value_t = 1, conflicts_with = "path")]
     pub(crate) seed: u64,
+    /// How much warmer than at their zero the chips are, K, where the model knows what that does [default: 0].
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = warmer_k)]
+    pub(crate) warmer_k: Option<f64>,
     /// Draw depth, force and readings over time into this PNG or SVG file.
     #[arg(long, value_name = "FILE", value_parser = picture)]
     pub(crate) plot: Option<PathBuf>,
@@ -563,6 +580,22 @@ pub(crate) struct Locate {
     /// Print as JSON how far off places and depths are, without the frames.
     #[arg(long, conflicts_with = "json")]
     pub(crate) errors: bool,
+}
+
+/// What a topic holds, and its name.
+fn topic_name(text: &str) -> Result<(String, String), String> {
+    let pair = text
+        .split_once('=')
+        .map(|(topic, name)| (topic.to_owned(), name.to_owned()));
+    pair.ok_or_else(|| "expected what it holds and its name, such as tactile=/finger/touch".to_owned())
+}
+
+/// A difference of temperature, K.
+fn warmer_k(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(warmer_k) if f64::abs(warmer_k) <= 200.0 => Ok(warmer_k),
+        _ => Err("expected kelvins, a number from -200 to 200".to_owned()),
+    }
 }
 
 /// A file for a picture.

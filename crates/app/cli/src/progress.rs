@@ -1,10 +1,11 @@
 //! Progress on standard error: a bar with an estimate on a terminal, and elsewhere a line a minute, and what must be known.
 
+use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use twintac_store::Outcome;
 use twintac_text::visible;
 use twintac_work::Progress;
@@ -92,8 +93,15 @@ impl Progress for Bars {
 
 /// A bar draws nothing where standard error is not a terminal.
 fn bar(work: &str, n_steps: usize) -> ProgressBar {
-    let template = "{prefix:>10} [{bar:30}] {pos}/{len} {msg} {elapsed}, {eta} left";
+    let template = "{prefix:>10} [{bar:30}] {pos}/{len} {msg} {elapsed}, {left} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = style.with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
+        let left = left(state.elapsed(), state.pos(), state.len().unwrap_or(0));
+        let _ = match left {
+            Some(left) => write!(out, "{}", HumanDuration(left)),
+            None => write!(out, "?"),
+        };
+    });
     let bar = ProgressBar::new(n_steps as u64).with_style(style.progress_chars("=> "));
     bar.set_prefix(work.to_owned());
     bar.enable_steady_tick(Duration::from_millis(500));
@@ -104,8 +112,17 @@ fn bar(work: &str, n_steps: usize) -> ProgressBar {
 fn line(bar: &ProgressBar) -> String {
     let minutes = |time: Duration| time.as_secs().div_ceil(60);
     let (done, all) = (bar.position(), bar.length().unwrap_or(0));
-    let (work, after, left) = (bar.prefix(), minutes(bar.elapsed()), minutes(bar.eta()));
-    format!("{work}: {done} of {all} after {after} min, about {left} min left")
+    let (work, after) = (bar.prefix(), minutes(bar.elapsed()));
+    let left = left(bar.elapsed(), done, all);
+    let left = left.map_or(String::new(), |left| {
+        format!(", about {} min left", minutes(left))
+    });
+    format!("{work}: {done} of {all} after {after} min{left}")
+}
+
+/// What is left to do, if each step takes as long as those before did on average.
+fn left(elapsed: Duration, done: u64, all: u64) -> Option<Duration> {
+    (done > 0).then(|| elapsed.mul_f64(all.saturating_sub(done) as f64 / done as f64))
 }
 
 /// A line on standard error, wherever that goes.
@@ -125,10 +142,10 @@ mod tests {
         };
         shown.bar.inc(70);
         let line = line(&shown.bar);
-        assert!(
-            line.starts_with("recording: 70 of 280 after 3 min, about "),
-            "{line}"
-        );
+        // Steps that came all at once, or long ago, change nothing about it.
+        assert_eq!(line, "recording: 70 of 280 after 3 min, about 8 min left");
+        let begun = bar("fitting", 30);
+        assert_eq!(super::line(&begun), "fitting: 0 of 30 after 0 min");
         let before = shown.told;
         shown.tell();
         assert_ne!(shown.told, before);

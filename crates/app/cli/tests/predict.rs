@@ -56,6 +56,18 @@ poses = [
 ]
 "#;
 
+/// How its zeros move with temperature: taxel t3's most.
+fn temperature() -> String {
+    let taxel = |taxel: usize| {
+        let kpa_per_k = if taxel == 3 { 0.75 } else { 0.0 };
+        format!(
+            "[[taxels]]\nname = \"t{taxel}\"\nkpa_per_k = {kpa_per_k:?}\nbetween_c = [20.0, 30.0]\nremaining_kpa = 0.01\n"
+        )
+    };
+    let taxels: String = (0..8).map(taxel).collect();
+    format!("sensor = \"phystac\"\nprovenance = \"emulated\"\n{taxels}")
+}
+
 const BALL: &str = "name = \"ball-8\"\nshape = { kind = \"sphere\", radius_mm = 4.0 }\n";
 
 struct Files {
@@ -83,6 +95,8 @@ impl Files {
         let run = files.folder.path().join("run");
         let run = run.to_str().unwrap();
         let record = ["record", "--at-once", "--lab", &reality, "--protocol", &protocol];
+        let temperature = files.write("temperature.toml", &temperature());
+        let record = [&record[..], &["--temperature", &temperature]].concat();
         done(&[&record[..], &["--settings", &settings, "--out", run]].concat());
         done(&["align", "--run", run]);
         done(&["train", "--run", run]);
@@ -398,6 +412,23 @@ fn a_twin_reads_along_paths_protocols_and_with_shapes_of_ones_own() {
         smaller_n < 0.9 * force_n && (ball_n / smaller_n - 1.0).abs() < 0.3,
         "{smaller_n} {ball_n}"
     );
+
+    // Chips that are warmer than at the zero.
+    let readings = |arguments: &[&str]| -> Vec<Vec<f64>> {
+        let output = files.predict(&[&["--path", &path, "--json"], arguments].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let predicted: Value = serde_json::from_slice(&output.stdout).unwrap();
+        serde_json::from_value(predicted["presses"][0]["readings_kpa"].clone()).unwrap()
+    };
+    let (as_zeroed, warmer) = (readings(&[]), readings(&["--warmer-k", "-2"]));
+    assert_eq!(as_zeroed.len(), warmer.len());
+    for (row, warmer) in as_zeroed.iter().zip(&warmer) {
+        for (taxel, (reading_kpa, warmer_kpa)) in row.iter().zip(warmer).enumerate() {
+            let expected_kpa = if taxel == 3 { -1.5 } else { 0.0 };
+            assert!((warmer_kpa - reading_kpa - expected_kpa).abs() < 1e-9, "t{taxel}");
+        }
+    }
 
     // What is wrong is said, and nothing else.
     let refused = |arguments: &[&str], words: &[&str]| {

@@ -108,6 +108,7 @@ pub fn adapt_model(plan: &AdaptationPlan<'_>, caller: &Caller) -> Result<Adapted
             test: rest.clone(),
         },
         certainty: None,
+        temperature: None,
     };
     let definition = taught.twin.definition.clone();
     Model::new(adapted.twin.clone(), origin, taught.twin, judged.as_ref()).save(&folder)?;

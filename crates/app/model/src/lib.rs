@@ -10,6 +10,7 @@ mod new_gel;
 mod predict;
 mod press_checksum;
 mod taxels;
+mod temperature;
 mod unseen;
 
 pub use adapt::{AdaptationPlan, AdaptedModel, adapt_model};
@@ -21,4 +22,5 @@ pub use new_gel::NewGel;
 pub use predict::{Predicted, Predictor};
 pub use press_checksum::press_checksum;
 pub use taxels::{left_out, ports_mm, taxels};
+pub use temperature::compensate;
 pub use unseen::{UnseenEvaluation, evaluate_elsewhere};

@@ -27,6 +27,8 @@ pub struct Predictor {
     gel: Gel,
     /// The indenter that was added.
     added: Option<String>,
+    /// What temperature adds to each taxel's readings, kPa; empty for nothing.
+    drift_kpa: Vec<f64>,
 }
 
 /// What a twin would read.
@@ -66,6 +68,7 @@ impl Predictor {
             model,
             gel,
             added: added.map(|added| added.indenter.name),
+            drift_kpa: Vec::new(),
         })
     }
 
@@ -76,7 +79,29 @@ impl Predictor {
             model,
             gel,
             added: None,
+            drift_kpa: Vec::new(),
         }
+    }
+
+    /// What a sensor reads whose chips are so much warmer than when its zero was taken, K; below zero if they are colder.
+    ///
+    /// # Errors
+    /// A model that does not know how its zeros move with temperature.
+    pub fn warmer(mut self, warmer_k: f64) -> Result<Self, WorkError> {
+        let record = &self.model.record;
+        let Some(temperature) = &record.temperature else {
+            return Err(WorkError::Input(
+                "the model does not know how its zeros move with temperature; train it with `--temperature`, which has what `twintac characterize` found"
+                    .to_owned(),
+            ));
+        };
+        let kpa_per_k = temperature.coefficients(&self.gel.sensor().name, &record.taxels);
+        let kpa_per_k = kpa_per_k.map_err(|error| WorkError::Input(error.to_string()))?;
+        self.drift_kpa = kpa_per_k
+            .into_iter()
+            .map(|kpa_per_k| kpa_per_k * warmer_k)
+            .collect();
+        Ok(self)
     }
 
     /// Takes the twin along the path that a TOML file describes, as [`along`](Self::along).
@@ -265,8 +290,13 @@ impl Predictor {
         }
     }
 
-    fn predicted(&self, presses: Vec<Prediction>, failure: Option<String>) -> Predicted {
+    fn predicted(&self, mut presses: Vec<Prediction>, failure: Option<String>) -> Predicted {
         let record = &self.model.record;
+        for row in presses.iter_mut().flat_map(|press| &mut press.readings_kpa) {
+            for (reading_kpa, drift_kpa) in row.iter_mut().zip(&self.drift_kpa) {
+                *reading_kpa += drift_kpa;
+            }
+        }
         Predicted {
             provenance: Provenance::Simulated,
             sensor: self.gel.sensor().name.clone(),

@@ -18,6 +18,7 @@ use crate::figures::{BaselineFigures, Figures, TwinFigures, names};
 use crate::gel::gel_of;
 use crate::press_checksum::press_checksum;
 use crate::taxels::left_out;
+use crate::temperature::as_taught;
 
 /// Largest correction of an unseen file's contact height, mm.
 const CONTACT_LIMIT_MM: f64 = 0.3;
@@ -64,6 +65,7 @@ pub fn evaluate_elsewhere(
     let gel = gel_of(&model, model_folder)?;
     refuse_other_sensor(recording, gel.sensor())?;
     refuse_known(recording, record)?;
+    let recording = &*as_taught(recording, record, progress)?;
     let left_out = left_out(gel.sensor());
     let store = DepthTableStore::of(gel.clone(), progress)?;
     let (places, tables) = simulate(&store, recording, &record.bench, progress)?;

@@ -50,6 +50,7 @@ fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Reco
             gel_from_indenter: Vec::new(),
             force_n: Some(Vec::new()),
             taxels_kpa: Vec::new(),
+            temperature_c: None,
             taxels_raw: Vec::new(),
             valid: Vec::new(),
         };
@@ -89,7 +90,7 @@ fn recorded(imperfection: &Imperfection, sensor: &SensorFile, seed: u64) -> Reco
     };
     Recorded {
         recording,
-        unloaded: Vec::new(),
+        logs: Vec::new(),
     }
 }
 
@@ -171,7 +172,7 @@ fn known_imperfections_are_found_again() {
             found.text
         );
     }
-    assert_eq!(found.found.len() + found.left_out.len(), 19);
+    assert_eq!(found.found.len() + found.left_out.len(), 21);
 }
 
 #[test]
@@ -192,7 +193,7 @@ fn nothing_to_find_from_and_another_sensor_are_refused() {
             taxels: vec!["a".into()],
             presses: Vec::new(),
         },
-        unloaded: Vec::new(),
+        logs: Vec::new(),
     };
     let sources = ImperfectionSources {
         recorded: Some(&other),

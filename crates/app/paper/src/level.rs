@@ -175,6 +175,7 @@ mod tests {
                 gel_from_indenter: depths.clone().map(pose).collect(),
                 force_n: Some(depths.map(|depth_mm| 0.5 * depth_mm.max(0.0).powf(1.5)).collect()),
                 taxels_kpa: vec![vec![0.0; 8]; n as usize],
+                temperature_c: None,
                 taxels_raw: vec![vec![0.0; 8]; n as usize],
                 valid: vec![vec![true; 8]; n as usize],
             }

@@ -1,9 +1,9 @@
-//! Frames of logs as tables.
+//! Frames of logs as tables, and logs for others.
 
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use twintac_log::{Ending, LogError, export_frames, recover};
+use twintac_log::{Ending, LogError, TopicNames, export_bag, export_frames, recover};
 use twintac_recording::LeRobotSummary;
 use twintac_text::{fenced, markdown};
 use twintac_work::{Progress, WorkError, read_text};
@@ -44,22 +44,69 @@ pub fn export(log: &Path, folder: Option<&Path>) -> Result<Exported, WorkError> 
         None => name,
     };
     let exported = export_frames(log, &table)?;
-    let problem = match exported.ending {
-        Ending::Whole => None,
-        Ending::Damaged => Some("is damaged: its bytes have changed since it was written"),
-        Ending::Cut => Some("was cut"),
-    };
     Ok(Exported {
         log: log.to_owned(),
         table,
         frames: exported.frames,
         gaps: exported.gaps,
         last_s: exported.last_s,
-        is_whole: problem.is_none(),
-        recovered: problem
-            .map(|problem| Ok::<_, WorkError>(format!("{problem}; {}", make_whole(log)?)))
-            .transpose()?,
+        is_whole: exported.ending == Ending::Whole,
+        recovered: recovered(log, exported.ending)?,
     })
+}
+
+/// What was written of a log for ROS 2.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExportedBag {
+    /// The log.
+    pub log: PathBuf,
+    /// The bag (MCAP).
+    pub bag: PathBuf,
+    /// Tactile frames in it.
+    pub frames: u64,
+    /// Gaps in them, marked by the recorder or left by damage.
+    pub gaps: u64,
+    /// Time of the last frame, s.
+    pub last_s: f64,
+    /// Whether the log was whole and as it was written.
+    pub is_whole: bool,
+    /// What is wrong with a log that was cut or damaged, and what became of it, in words.
+    #[serde(skip)]
+    pub recovered: Option<String>,
+}
+
+/// Writes a log as a bag of ROS 2 with standard messages alone (MCAP), of the log's name, into `folder`. `topics` are what a topic holds and what it is to be
+/// called, as for [`TopicNames::rename`]. A log that was cut or damaged is made whole, in a file beside it.
+///
+/// # Errors
+/// A file that is no log; a bag that is there already or cannot be written; names that ROS does not take, or two topics of one.
+pub fn export_ros(log: &Path, folder: &Path, topics: &[(String, String)]) -> Result<ExportedBag, WorkError> {
+    let mut names = TopicNames::default();
+    for (topic, name) in topics {
+        names.rename(topic, name)?;
+    }
+    std::fs::create_dir_all(folder).map_err(WorkError::file("creating", folder))?;
+    let bag = folder.join(whole_name(log).file_name().unwrap_or_default());
+    let exported = export_bag(log, &bag, &names)?;
+    Ok(ExportedBag {
+        log: log.to_owned(),
+        bag,
+        frames: exported.frames,
+        gaps: exported.gaps,
+        last_s: exported.last_s,
+        is_whole: exported.ending == Ending::Whole,
+        recovered: recovered(log, exported.ending)?,
+    })
+}
+
+/// What is wrong with a log by its ending, and what becomes of it.
+fn recovered(log: &Path, ending: Ending) -> Result<Option<String>, WorkError> {
+    let problem = match ending {
+        Ending::Whole => return Ok(None),
+        Ending::Damaged => "is damaged: its bytes have changed since it was written",
+        Ending::Cut => "was cut",
+    };
+    Ok(Some(format!("{problem}; {}", make_whole(log)?)))
 }
 
 /// A cut log's name when it is whole.
@@ -92,7 +139,7 @@ pub fn export_lerobot(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<LeRobotSummary, WorkError> {
-    let recording = Recorded::read(files, progress)?.recording;
+    let recording = Recorded::read(files, None, progress)?.recording;
     let mut how_made = String::from("Written by `twintac export --lerobot` from:\n\n");
     for file in files {
         let name = file.file_name().unwrap_or_default();

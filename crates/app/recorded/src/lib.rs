@@ -1,7 +1,8 @@
-//! What recordings and logs of a bench tell: what a sensor does ([`Recorded::characterize`]), and frames as tables ([`export`], [`export_lerobot`]).
+//! What recordings and logs of a bench tell: what a sensor does ([`Recorded::characterize`]), and frames as tables ([`export`]), for ROS 2 ([`export_ros`]) and
+//! for LeRobot ([`export_lerobot`]).
 
 mod export;
 mod recorded;
 
-pub use export::{Exported, export, export_lerobot};
-pub use recorded::Recorded;
+pub use export::{Exported, ExportedBag, export, export_lerobot, export_ros};
+pub use recorded::{COMPENSATION, Recorded};

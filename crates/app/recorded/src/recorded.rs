@@ -1,41 +1,55 @@
-//! Recorded presses of a sensor, read to characterize it.
+//! Recordings of a sensor, read to characterize it.
 
 use std::path::{Path, PathBuf};
 
-use twintac_characterize::{
-    Characterization, CharacterizeOptions, UnloadedCourse, characterize, write_pages,
-};
-use twintac_log::{Body, Event, LogReader, ReadBack, ReadOptions, TaxelState, read_presses};
-use twintac_recording::Recording;
+use twintac_characterize::{Characterization, CharacterizeOptions, characterize, write_pages};
+use twintac_log::{Body, Event, LogReader, ReadBack, ReadOptions, TactileFrame, TaxelState, read_presses};
+use twintac_recording::{Frames, Import, Recording, Stored};
 use twintac_sensor::Sensor;
-use twintac_store::write_json;
+use twintac_store::{write_file, write_json};
 use twintac_work::{At, Progress, WorkError};
 
-/// Recorded presses, and what logs say of temperatures.
+/// The file of coefficients that readings are compensated with.
+pub const COMPENSATION: &str = "temperature.toml";
+
+/// Recorded presses, and frames outside of presses.
 #[derive(Clone, Debug)]
 pub struct Recorded {
-    /// The presses of all files.
+    /// The presses of all files; there may be none.
     pub recording: Recording,
-    /// Temperature and pressure of each taxel outside of presses; `[n_taxels]`.
-    pub unloaded: Vec<UnloadedCourse>,
+    /// Frames outside of presses, each log on a clock of its own.
+    pub logs: Vec<Frames>,
 }
 
 impl Recorded {
-    /// Reads `presses.parquet` files and MCAP logs, also cut ones. Logs that were set aside, cut ones beside what was recovered of them,
-    /// and presses in which the bench stopped are left out, and `progress` is told.
+    /// Reads Parquet files of presses or of frames; MCAP logs, also cut ones; and, with an import description, logs of others. Logs that were set aside,
+    /// cut ones beside what was recovered of them, and presses in which the bench stopped are left out, and `progress` is told.
     ///
     /// # Errors
-    /// A file that is neither, or cannot be read; recordings that do not belong together; none that is left.
-    pub fn read(files: &[PathBuf], progress: &dyn Progress) -> Result<Self, WorkError> {
+    /// A file that is none of these, or cannot be read; recordings that do not belong together; none that is left.
+    pub fn read(
+        files: &[PathBuf],
+        import: Option<&Import>,
+        progress: &dyn Progress,
+    ) -> Result<Self, WorkError> {
         let mut all: Option<Recording> = None;
-        let mut unloaded: Vec<UnloadedCourse> = Vec::new();
-        for file in to_read(files, progress)? {
-            let next = if is_log(&file) {
-                let log = Log::read(&file, progress)?;
-                unloaded.extend(log.unloaded);
-                log.recording
-            } else {
-                Recording::read_parquet(&file)?
+        let mut logs: Vec<Frames> = Vec::new();
+        for file in to_read(files, import.is_some(), progress)? {
+            let next = match import {
+                _ if is_log(&file) && (import.is_none() || LogReader::open(&file).is_ok()) => {
+                    let Log { recording, alone } = Log::read(&file, progress)?;
+                    logs.push(alone);
+                    recording
+                }
+                Some(import) if !is_parquet(&file) => imported(&file, import, &mut logs, progress)?,
+                _ => match Stored::read_parquet(&file)? {
+                    Stored::Presses(recording) => recording,
+                    Stored::Frames(frames) => {
+                        let recording = without_presses(&frames);
+                        logs.push(frames);
+                        recording
+                    }
+                },
             };
             match &mut all {
                 None => all = Some(next),
@@ -46,17 +60,7 @@ impl Recorded {
             let problem = "every log given was set aside by `record`, as its press was not finished";
             WorkError::Input(problem.to_owned())
         })?;
-        let courses = recording.taxels.iter().map(|taxel| {
-            let of_taxel = unloaded.iter().filter(|course| course.taxel == *taxel);
-            UnloadedCourse {
-                taxel: taxel.clone(),
-                readings: of_taxel
-                    .flat_map(|course| course.readings.iter().copied())
-                    .collect(),
-            }
-        });
-        let unloaded = courses.collect();
-        Ok(Self { recording, unloaded })
+        Ok(Self { recording, logs })
     }
 
     /// What the sensor does, as far as the presses tell.
@@ -66,44 +70,78 @@ impl Recorded {
     pub fn characterize(&self, sensor: &Sensor) -> Result<Characterization, WorkError> {
         Ok(characterize(
             &self.recording,
-            &self.unloaded,
+            &self.logs,
             sensor,
             &CharacterizeOptions::default(),
         )?)
     }
 
-    /// Writes `report.html`, `datasheet.html` and `characterization.json` of what was found.
+    /// Writes `report.html`, `datasheet.html` and `characterization.json` of what was found; and `temperature.toml`, which readings are compensated with,
+    /// if the logs tell how zeros move with temperature.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, found: &Characterization, sensor: &Sensor, folder: &Path) -> Result<(), WorkError> {
         write_pages(folder, found, &self.recording, sensor)?;
-        Ok(write_json(&folder.join("characterization.json"), found)?)
+        write_json(&folder.join("characterization.json"), found)?;
+        if let Some(compensation) = found.compensation() {
+            write_file(&folder.join(COMPENSATION), compensation.to_toml().as_bytes())?;
+        }
+        Ok(())
     }
 }
 
 impl From<Recording> for Recorded {
-    /// Presses without temperatures.
+    /// Presses alone.
     fn from(recording: Recording) -> Self {
-        let unloaded = recording.taxels.iter().map(|taxel| UnloadedCourse {
-            taxel: taxel.clone(),
-            readings: Vec::new(),
-        });
         Self {
-            unloaded: unloaded.collect(),
             recording,
+            logs: Vec::new(),
         }
     }
 }
 
+/// A recording without presses, of the sensor that some frames are of.
+fn without_presses(frames: &Frames) -> Recording {
+    Recording {
+        sensor: frames.sensor.clone(),
+        provenance: frames.provenance,
+        taxels: frames.taxels.clone(),
+        presses: Vec::new(),
+    }
+}
+
+/// A log of others: its presses, or its frames, which are added to `logs`.
+fn imported(
+    file: &Path,
+    import: &Import,
+    logs: &mut Vec<Frames>,
+    progress: &dyn Progress,
+) -> Result<Recording, WorkError> {
+    let (recording, summaries) = if import.has_presses() {
+        let (recording, summary) = import.read_csv(file)?;
+        (recording, summary.files)
+    } else {
+        let (frames, summary) = import.read_frames(file)?;
+        let recording = without_presses(&frames);
+        logs.push(frames);
+        (recording, vec![summary])
+    };
+    for summary in summaries.iter().filter(|summary| summary.is_notable()) {
+        summary.to_string().lines().for_each(|line| progress.note(line));
+    }
+    Ok(recording)
+}
+
 /// The files to read: without logs that were set aside, and without cut ones beside what was recovered of them.
-fn to_read(files: &[PathBuf], progress: &dyn Progress) -> Result<Vec<PathBuf>, WorkError> {
+fn to_read(files: &[PathBuf], imports: bool, progress: &dyn Progress) -> Result<Vec<PathBuf>, WorkError> {
     let mut kept = Vec::new();
     for file in files {
         let ends_with = |end: &str| file.extension().is_some_and(|extension| extension == end);
-        if !is_log(file) && !ends_with("parquet") {
+        if !is_log(file) && !is_parquet(file) && !imports {
             return Err(WorkError::Input(format!(
-                "{} is no Parquet file and no MCAP log; `twintac import` makes Parquet files of others",
+                "{} is no Parquet file and no MCAP log; others need a description of their columns, `--import`, of which `twintac import --guess` \
+                 makes a first one",
                 file.display()
             )));
         }
@@ -119,6 +157,10 @@ fn to_read(files: &[PathBuf], progress: &dyn Progress) -> Result<Vec<PathBuf>, W
     Ok(kept)
 }
 
+fn is_parquet(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension == "parquet")
+}
+
 fn is_log(file: &Path) -> bool {
     let name = file.to_string_lossy();
     name.ends_with(".mcap") || name.ends_with(".mcap.partial")
@@ -127,22 +169,19 @@ fn is_log(file: &Path) -> bool {
 /// What a log tells.
 struct Log {
     recording: Recording,
-    /// Temperature and pressure of the taxels outside of presses.
-    unloaded: Vec<UnloadedCourse>,
+    /// Its frames outside of presses.
+    alone: Frames,
 }
 
 impl Log {
     /// Reads a log, without the press in which the bench stopped. What is odd about it is noted.
     fn read(file: &Path, progress: &dyn Progress) -> Result<Self, WorkError> {
         let reader = LogReader::open(file)?;
-        let course = |taxel: &String| UnloadedCourse {
-            taxel: taxel.clone(),
-            readings: Vec::new(),
-        };
-        let mut unloaded: Vec<UnloadedCourse> = reader.description().taxels.iter().map(course).collect();
+        let description = reader.description();
+        let mut alone = Frames::new(&description.sensor, description.provenance, &description.taxels);
         let mut messages = reader.collect::<Result<Vec<_>, _>>()?;
         messages.sort_by_key(|message| message.bench_ns);
-        let mut begun_ns = None;
+        let (mut begun_ns, mut was_pressed) = (None, false);
         let mut unfinished_ns = None;
         for message in messages {
             match message.body {
@@ -150,15 +189,10 @@ impl Log {
                 Body::Event(Event::PressEnded { .. }) => begun_ns = None,
                 Body::Event(Event::Stopped { .. }) => unfinished_ns = begun_ns,
                 Body::Tactile(frame) if begun_ns.is_none() => {
-                    for (course, taxel) in unloaded.iter_mut().zip(&frame.taxels) {
-                        let reading = taxel.temperature_c.zip(taxel.pressure_pa);
-                        let is_good = |(c, pa): &(f64, f64)| {
-                            taxel.state == TaxelState::Good && c.is_finite() && pa.is_finite()
-                        };
-                        let good = reading.filter(is_good);
-                        course.readings.extend(good.map(|(c, pa)| [c, pa / 1000.0]));
-                    }
+                    push_frame(&mut alone, message.bench_ns, &frame, was_pressed);
+                    was_pressed = false;
                 }
+                Body::Tactile(_) => was_pressed = true,
                 _ => {}
             }
         }
@@ -183,6 +217,26 @@ impl Log {
                 is_finished
             });
         }
-        Ok(Self { recording, unloaded })
+        Ok(Self { recording, alone })
     }
+}
+
+/// Adds a frame of a log, unless it is no later than the last one.
+fn push_frame(frames: &mut Frames, bench_ns: u64, frame: &TactileFrame, gap_before: bool) {
+    let time_s = bench_ns as f64 * 1e-9;
+    if frames.time_s.last().is_some_and(|last_s| time_s <= *last_s) {
+        return;
+    }
+    let known = |number: Option<f64>| number.filter(|number| number.is_finite()).unwrap_or(f64::NAN);
+    let taxels = || frame.taxels.iter();
+    let readings_kpa = taxels().map(|taxel| match taxel.state {
+        TaxelState::Good => known(taxel.pressure_pa) / 1000.0,
+        _ => f64::NAN,
+    });
+    frames.time_s.push(time_s);
+    frames.gap_before.push(gap_before);
+    frames.readings_kpa.push(readings_kpa.collect());
+    frames
+        .temperature_c
+        .push(taxels().map(|taxel| known(taxel.temperature_c)).collect());
 }

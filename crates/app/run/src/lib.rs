@@ -61,6 +61,8 @@ pub use metrics::Metrics;
 pub use run::{Run, RunRecord};
 pub use settings::RunSettings;
 pub use stages::pairs::read_pairs;
-pub use stages::recordings::{Change, import_files, read_recording, read_recordings};
+pub use stages::recordings::{
+    Change, guess_import, import_files, read_import, read_recording, read_recordings,
+};
 pub use stages::simulation::Simulation;
 pub use stages::training::COMPLETE;

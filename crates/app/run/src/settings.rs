@@ -10,6 +10,7 @@ use twintac_recording::Recording;
 use twintac_sensor::Sensor;
 use twintac_shape::Shape;
 use twintac_simulate::SimulateSettings;
+use twintac_temperature::Compensation;
 use twintac_work::WorkError;
 
 /// What is no setting though it sounds like one, and what decides it.
@@ -35,6 +36,9 @@ pub struct RunSettings {
     /// A fast gel's file, made by `twintac fast train`: tables are then its answers, and nothing is solved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fast_gel: Option<PathBuf>,
+    /// How zeros move with temperature, as `twintac characterize` found it in a log: recordings with temperatures are compensated, and the model keeps it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<Compensation>,
     /// How deep places are simulated.
     pub places: PlaceSettings,
     /// What is fitted about the bench.
@@ -52,12 +56,16 @@ impl Checked for RunSettings {
         let Self {
             simulate,
             fast_gel: _,
+            temperature,
             places,
             bench,
             split,
             pair,
             train,
         } = self;
+        if let Some(temperature) = temperature {
+            ranges.inside("temperature", temperature);
+        }
         ranges.inside("simulate", simulate);
         ranges.inside("places", places);
         ranges.inside("bench", bench);
@@ -116,8 +124,9 @@ impl RunSettings {
     ) -> Result<ResolvedSettings, Problem> {
         self.checked()?;
         let Self {
-            simulate: _, // as it is
-            fast_gel: _, // it has its own input
+            simulate: _,    // as it is
+            fast_gel: _,    // it has its own input
+            temperature: _, // recordings are read with it
             places,
             mut bench,
             split,

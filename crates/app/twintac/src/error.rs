@@ -175,11 +175,13 @@ fn of_recording(error: &twintac_recording::RecordingError) -> ErrorPlace {
     let (file, line, field) = match error {
         Wrong::Description(error) => return of_description(error),
         Wrong::MissingColumn { file, column, .. } => (file, Some(1), Some(column)),
+        Wrong::BagColumn { file, column, .. } => (file, None, Some(column)),
         Wrong::Line { file, line, .. } => (file, Some(*line), None),
         Wrong::Cell {
             file, line, column, ..
         } => (file, Some(*line), Some(column)),
         Wrong::Read { file, .. }
+        | Wrong::Bag { file, .. }
         | Wrong::Write { file, .. }
         | Wrong::NoPresses { file, .. }
         | Wrong::Damaged { file, .. } => (file, None, None),

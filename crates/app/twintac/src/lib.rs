@@ -210,12 +210,12 @@ pub use twintac_model::{Locator, LocatorTracker, Predicted};
 pub use twintac_protocol::{PathError, Point, PressPath, Waypoint, Zero};
 #[cfg(feature = "run")]
 pub use twintac_recorded::Recorded;
+#[cfg(all(feature = "recording", not(feature = "run")))]
+pub use twintac_recording::guess_import;
 #[cfg(feature = "recording")]
-pub use twintac_recording::{
-    Column, FileSummary, Import, ImportSummary, Provenance, Recording, guess_import,
-};
+pub use twintac_recording::{Column, FileSummary, Import, ImportSummary, Provenance, Recording};
 #[cfg(feature = "run")]
-pub use twintac_run::{Metrics, Run, RunSettings, import_files, read_recordings};
+pub use twintac_run::{Metrics, Run, RunSettings, guess_import, import_files, read_recordings};
 pub use twintac_sensor::SensorFile;
 #[cfg(feature = "sensors")]
 pub use twintac_sensors::{

@@ -89,18 +89,25 @@ impl Reader {
     }
 
     fn of(mut live: Live) -> Result<Self, Error> {
-        let mut taring = Taring::default();
-        loop {
-            let next = live
-                .source
-                .next(PATIENCE)
-                .map_err(twintac_live::LiveError::from)?;
-            if let Some(reading) = next
-                && let Some(tare) = taring.push(&reading.frame)
-            {
-                return Ok(Self { live, tare });
-            }
-        }
+        let tare = tare(&mut live)?;
+        Ok(Self { live, tare })
+    }
+
+    /// Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile:
+    /// the next frames make a new tare.
+    ///
+    /// # Errors
+    /// A file that is wrong, or of another sensor; those of [`read`](Self::read).
+    pub fn compensate(&mut self, temperature: impl AsRef<Path>) -> Result<(), Error> {
+        self.live.compensate(temperature.as_ref())?;
+        self.tare = tare(&mut self.live)?;
+        Ok(())
+    }
+
+    /// How much warmer than at the tare the chip is that changed most, K; below zero if it is colder; `None` without temperatures. Zeros move with it.
+    #[must_use]
+    pub fn warmer_k(&self) -> Option<f64> {
+        self.tare.warmer_k()
     }
 
     /// Where the readings come from: `real` or `emulated`.
@@ -146,13 +153,30 @@ impl Reader {
         let Some(reading) = next else {
             return Ok(None);
         };
+        let readings_kpa = self.tare.above_kpa(&reading);
         let taxels = &reading.frame.taxels;
         Ok(Some(Reading {
             sequence: reading.sequence,
             time_s: reading.bench_s,
-            readings_kpa: self.tare.above_kpa(&reading.frame),
+            readings_kpa,
             faults: taxels.iter().map(|taxel| taxel.state.fault()).collect(),
             temperatures_c: taxels.iter().map(|taxel| taxel.temperature_c).collect(),
         }))
+    }
+}
+
+/// What the taxels of a sensor read untouched: of its next frames.
+fn tare(live: &mut Live) -> Result<Tare, Error> {
+    let mut taring = Taring::new(live.about.kpa_per_k.clone());
+    loop {
+        let next = live
+            .source
+            .next(PATIENCE)
+            .map_err(twintac_live::LiveError::from)?;
+        if let Some(reading) = next
+            && let Some(tare) = taring.push(&reading)
+        {
+            return Ok(tare);
+        }
     }
 }

@@ -59,6 +59,7 @@ impl Frames {
                 .iter()
                 .map(|m| m.raw_kpa.iter().map(|raw| range.contains(raw)).collect())
                 .collect(),
+            temperature_c: None,
             taxels_raw: self.0.into_iter().map(|m| m.raw_kpa).collect(),
         }
     }

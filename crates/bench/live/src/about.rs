@@ -23,6 +23,8 @@ pub struct About {
     pub provenance: Provenance,
     /// What counts stand for, confirmed, where chips do not say it themselves.
     pub transfer: Option<Transfer>,
+    /// By how much each taxel's zero moves with temperature, kPa/K; empty where nobody said.
+    pub kpa_per_k: Vec<f64>,
     /// When the bench's clock started: wall-clock time, ns since 1970-01-01 UTC.
     pub start_unix_ns: u64,
 }
@@ -45,6 +47,7 @@ impl About {
             places_mm: sensor.taxels.iter().map(place).collect(),
             provenance,
             transfer,
+            kpa_per_k: Vec::new(),
             start_unix_ns,
         }
     }

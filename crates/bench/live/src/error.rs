@@ -23,6 +23,17 @@ pub enum LiveError {
     /// A recording could not be written.
     #[error(transparent)]
     Log(#[from] LogError),
+    /// A file that says how zeros move with temperature is wrong.
+    #[error(transparent)]
+    Compensation(#[from] twintac_config::ConfigError),
+    /// Such a file is of no use for this sensor.
+    #[error("{file}: {problem}")]
+    OtherCompensation {
+        /// The file as it was named.
+        file: String,
+        /// Why.
+        problem: twintac_temperature::TemperatureError,
+    },
     /// A map could not be prepared.
     #[error(transparent)]
     Map(#[from] MapError),

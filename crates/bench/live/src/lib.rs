@@ -1,7 +1,7 @@
 //! Frames of a sensor as they come: as rows of text, or as a dashboard on the terminal.
 //!
 //! A [`FrameSource`](twintac_source::FrameSource) reads a sensor on a thread of its own. The sensor is on a wire of its own, or an emulated one
-//! ([`emulated_phystac`]). [`stream_rows`] writes rows, [`dashboard::run`] draws.
+//! ([`emulated_phystac`]). [`stream_rows`] writes rows, [`record_frames`] a log, [`dashboard::run`] draws.
 //!
 //! ```
 //! use twintac_emulate::LabClock;
@@ -28,11 +28,13 @@ mod live;
 mod rows;
 mod stream;
 mod tare;
+mod touch_recording;
 
 pub use about::About;
 pub use emulated::{EmulatedPhysTac, emulated_board, emulated_phystac};
 pub use error::LiveError;
 pub use live::{Live, Origin};
 pub use rows::{Format, RowWriter};
-pub use stream::{StopAfter, Streamed, stream_rows};
+pub use stream::{StopAfter, Streamed, record_frames, stream_rows};
 pub use tare::{Tare, Taring};
+pub use touch_recording::TouchRecording;

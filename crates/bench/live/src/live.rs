@@ -1,6 +1,6 @@
 //! A sensor that is switched on, checked and read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use embedded_hal::delay::DelayNs;
@@ -12,6 +12,7 @@ use twintac_sensor::Sensor;
 use twintac_source::{
     BoxedClock, FrameReader, FrameSource, Known, LineSource, ReplaySource, SourceError, TAXELS, power_on,
 };
+use twintac_temperature::Compensation;
 
 use crate::{About, LiveError, emulated_phystac};
 
@@ -105,6 +106,20 @@ impl Live {
                 Self::of(source, about, Vec::new())
             }
         }
+    }
+
+    /// Takes off readings what temperature does to the zeros, as a file says (TOML), for tares that are taken from now on.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is wrong, or is of another sensor or lacks a taxel. Nothing is changed then.
+    pub fn compensate(&mut self, file: &Path) -> Result<(), LiveError> {
+        let about = &mut self.about;
+        let coefficients = Compensation::read(file)?.coefficients(&about.sensor, &about.taxels);
+        about.kpa_per_k = coefficients.map_err(|problem| LiveError::OtherCompensation {
+            file: file.display().to_string(),
+            problem,
+        })?;
+        Ok(())
     }
 
     fn on_bus<I2C: I2c + Send + 'static, D: DelayNs + Send + 'static>(

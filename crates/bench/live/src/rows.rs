@@ -69,8 +69,8 @@ impl<W: Write> RowWriter<W> {
     ///
     /// # Errors
     /// What the writer says.
-    pub fn write(&mut self, reading: &Reading, tare: &Tare) -> io::Result<()> {
-        let above_kpa = tare.above_kpa(&reading.frame);
+    pub fn write(&mut self, reading: &Reading, tare: &mut Tare) -> io::Result<()> {
+        let above_kpa = tare.above_kpa(reading);
         let taxels = self.taxels.iter().zip(&reading.frame.taxels).zip(above_kpa);
         let row = Row {
             seq: reading.sequence,

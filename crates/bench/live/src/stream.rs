@@ -1,47 +1,134 @@
-//! From a source to rows, until enough.
+//! From a source to rows or a log, until enough.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use twintac_log::LogError;
 use twintac_source::{FrameSource, Reading, SourceError, Tally};
 
-use crate::{About, Format, LiveError, RowWriter, Tare, Taring};
+use crate::{About, Format, LiveError, RowWriter, Tare, Taring, TouchRecording};
+
+/// Longest time that a frame is waited for before the end is thought of.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// When to end by oneself.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct StopAfter {
     /// After so many frames.
     pub frames: Option<u64>,
     /// After so long, s of the bench's clock, from the first frame on.
     pub seconds: Option<f64>,
+    /// When this is set.
+    pub asked: Option<&'static AtomicBool>,
+}
+
+impl StopAfter {
+    /// Whether so many frames, which take so long, are enough.
+    fn is_enough(&self, frames: u64, seconds: f64) -> bool {
+        self.frames.is_some_and(|most| frames >= most) || self.seconds.is_some_and(|most| seconds >= most)
+    }
 }
 
 /// What became of the frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Streamed {
-    /// Rows that were written.
+    /// Rows that were written, or frames that were handed to the log.
     pub rows: u64,
     /// From the first of them to the last, s of the bench's clock.
     pub seconds: f64,
+    /// What to tell a person of temperatures, if anything.
+    pub remark: Option<String>,
     /// What the source counted meanwhile.
     pub tally: Tally,
 }
 
 /// Writes rows until a limit is reached or nobody reads them any more: a pipe whose reader has gone is no error.
 ///
-/// The first [`Taring::FRAMES`] frames make the tare, so nothing may touch the sensor; they are rows as well.
+/// The first [`Taring::FRAMES`] frames make the tare, so nothing may touch the sensor; they are rows as well. With a log, frames of rows are recorded too.
 ///
 /// # Errors
-/// Those of [`FrameSource::next`]; [`LiveError::Write`].
+/// Those of [`FrameSource::next`]; [`LiveError::Write`]; [`LiveError::Log`].
 pub fn stream_rows(
     source: &mut FrameSource,
     about: &About,
     format: Format,
     limits: StopAfter,
     out: impl Write,
+    log: Option<&mut TouchRecording>,
+) -> Result<Streamed, LiveError> {
+    let writer = RowWriter::new(out, format, about).map_err(LiveError::Write);
+    let mut streamed = Streamed::default();
+    let result = writer.and_then(|writer| {
+        let rows = Rows {
+            writer,
+            log,
+            limits,
+            first_s: 0.0,
+            streamed: &mut streamed,
+        };
+        rows.write_all(source, Taring::new(about.kpa_per_k.clone()))
+    });
+    ended(result, streamed, source)
+}
+
+/// Records frames, and writes no rows, until a limit is reached. No tare is taken: a log has what the sensor gave.
+///
+/// # Errors
+/// Those of [`FrameSource::next`]; [`LiveError::Log`]: the log cannot be written. Frames that the disk did not keep up with are marked in it.
+pub fn record_frames(
+    source: &mut FrameSource,
+    log: &mut TouchRecording,
+    limits: StopAfter,
 ) -> Result<Streamed, LiveError> {
     let mut streamed = Streamed::default();
-    let result = write_rows(source, about, format, limits, out, &mut streamed);
+    let result = record_all(source, log, limits, &mut streamed);
+    ended(result, streamed, source)
+}
+
+fn record_all(
+    source: &mut FrameSource,
+    log: &mut TouchRecording,
+    limits: StopAfter,
+    streamed: &mut Streamed,
+) -> Result<(), LiveError> {
+    let mut first_s = None;
+    while let Some(reading) = next(source, limits)? {
+        let seconds = reading.bench_s - *first_s.get_or_insert(reading.bench_s);
+        if limits.is_enough(streamed.rows, seconds) {
+            break;
+        }
+        record(log, &reading)?;
+        (streamed.rows, streamed.seconds) = (streamed.rows + 1, seconds);
+    }
+    Ok(())
+}
+
+/// The next frame, unless the end is asked for before it comes.
+fn next(source: &mut FrameSource, limits: StopAfter) -> Result<Option<Reading>, LiveError> {
+    let is_asked = || limits.asked.is_some_and(|asked| asked.load(Ordering::Relaxed));
+    while !is_asked() {
+        if let Some(reading) = source.next(PATIENCE)? {
+            return Ok(Some(reading));
+        }
+    }
+    Ok(None)
+}
+
+/// Hands a frame to the log. One that the disk has no time for is marked there, and the next may be taken.
+fn record(log: &mut TouchRecording, reading: &Reading) -> Result<(), LiveError> {
+    match log.push(reading) {
+        Err(LiveError::Log(LogError::Behind { .. })) => Ok(()),
+        result => result,
+    }
+}
+
+/// What became of the frames; that there are no more is no error.
+fn ended(
+    result: Result<(), LiveError>,
+    mut streamed: Streamed,
+    source: &FrameSource,
+) -> Result<Streamed, LiveError> {
     streamed.tally = source.tally();
     match result {
         Err(LiveError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(streamed),
@@ -50,50 +137,58 @@ pub fn stream_rows(
     }
 }
 
-fn write_rows(
-    source: &mut FrameSource,
-    about: &About,
-    format: Format,
+/// Rows in the making.
+struct Rows<'a, W> {
+    writer: RowWriter<W>,
+    log: Option<&'a mut TouchRecording>,
     limits: StopAfter,
-    out: impl Write,
-    streamed: &mut Streamed,
-) -> Result<(), LiveError> {
-    const PATIENCE: Duration = Duration::from_secs(1);
-    let mut writer = RowWriter::new(out, format, about).map_err(LiveError::Write)?;
-    let (mut taring, mut waiting) = (Taring::default(), Vec::new());
-    let tare = loop {
-        let Some(reading) = source.next(PATIENCE)? else {
-            continue;
+    /// Time of the first row.
+    first_s: f64,
+    streamed: &'a mut Streamed,
+}
+
+impl<W: Write> Rows<'_, W> {
+    fn write_all(mut self, source: &mut FrameSource, mut taring: Taring) -> Result<(), LiveError> {
+        let mut waiting = Vec::new();
+        let mut tare = loop {
+            let Some(reading) = next(source, self.limits)? else {
+                return Ok(());
+            };
+            let tare = taring.push(&reading);
+            waiting.push(reading);
+            if let Some(tare) = tare {
+                break tare;
+            }
         };
-        let tare = taring.push(&reading.frame);
-        waiting.push(reading);
-        if let Some(tare) = tare {
-            break tare;
+        self.first_s = waiting[0].bench_s;
+        for reading in &waiting {
+            if self.write(reading, &mut tare)? {
+                return Ok(());
+            }
         }
-    };
-    let first_s = waiting[0].bench_s;
-    let mut write = |reading: &Reading, tare: &Tare| -> io::Result<bool> {
-        let seconds = reading.bench_s - first_s;
-        let is_enough = limits.frames.is_some_and(|most| streamed.rows >= most)
-            || limits.seconds.is_some_and(|most| seconds >= most);
+        while let Some(reading) = next(source, self.limits)? {
+            if self.write(&reading, &mut tare)? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a row, unless there are enough.
+    fn write(&mut self, reading: &Reading, tare: &mut Tare) -> Result<bool, LiveError> {
+        let seconds = reading.bench_s - self.first_s;
+        let is_enough = self.limits.is_enough(self.streamed.rows, seconds);
         if !is_enough {
-            writer.write(reading, tare)?;
-            streamed.rows += 1;
-            streamed.seconds = seconds;
+            if let Some(log) = &mut self.log {
+                record(log, reading)?;
+            }
+            self.writer.write(reading, tare).map_err(LiveError::Write)?;
+            self.streamed.rows += 1;
+            self.streamed.seconds = seconds;
+            if self.streamed.remark.is_none() {
+                self.streamed.remark = tare.remark();
+            }
         }
         Ok(is_enough)
-    };
-    for reading in &waiting {
-        if write(reading, &tare).map_err(LiveError::Write)? {
-            return Ok(());
-        }
-    }
-    loop {
-        let Some(reading) = source.next(PATIENCE)? else {
-            continue;
-        };
-        if write(&reading, &tare).map_err(LiveError::Write)? {
-            return Ok(());
-        }
     }
 }

@@ -10,7 +10,8 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::Color;
 use twintac_emulate::ScheduledFault;
-use twintac_live::dashboard::{DashboardState, RecordingStatus, TouchRecording, draw};
+use twintac_live::TouchRecording;
+use twintac_live::dashboard::{DashboardState, RecordingStatus, draw};
 use twintac_log::{Body, Event, LogReader};
 
 /// The state after so many frames.

@@ -28,8 +28,8 @@ fn rows(format: Format, frames: usize, faults: &[ScheduledFault]) -> String {
     let (mut taring, mut tare) = (Taring::default(), None);
     for _ in 0..frames {
         let reading = reader.read().unwrap();
-        tare = taring.push(&reading.frame).or(tare);
-        if let Some(tare) = &tare {
+        tare = taring.push(&reading).or(tare);
+        if let Some(tare) = &mut tare {
             writer.write(&reading, tare).unwrap();
         }
     }
@@ -154,19 +154,19 @@ fn a_stream_ends_at_its_limits() {
         let (reader, about) = reader(&[]);
         let mut source = FrameSource::start(reader, 100_000).unwrap();
         let mut out = Vec::new();
-        let streamed = stream_rows(&mut source, &about, Format::Csv, limits, &mut out).unwrap();
+        let streamed = stream_rows(&mut source, &about, Format::Csv, limits, &mut out, None).unwrap();
         (streamed, String::from_utf8(out).unwrap())
     };
     for frames in [0, 5, 200] {
         let (streamed, csv) = run(StopAfter {
             frames: Some(frames),
-            seconds: None,
+            ..StopAfter::default()
         });
         assert_eq!((streamed.rows, csv.lines().count() as u64), (frames, frames + 1));
     }
     let (streamed, _) = run(StopAfter {
-        frames: None,
         seconds: Some(1.5),
+        ..StopAfter::default()
     });
     assert!((1.45..1.5).contains(&streamed.seconds), "{streamed:?}");
 }
@@ -202,6 +202,7 @@ fn a_pipe_whose_reader_goes_ends_quietly_and_a_full_disk_does_not() {
                 format,
                 StopAfter::default(),
                 Ending(20_000, kind, Arc::default()),
+                None,
             )
         };
         let streamed = run(ErrorKind::BrokenPipe).unwrap();

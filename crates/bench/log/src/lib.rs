@@ -4,7 +4,7 @@
 //! and events. Each message has a time of the bench's clock, beside the time of its source's own clock. The file is flushed at least every
 //! second: a log that a power cut ended can be read up to the last flush, and [`recover`] completes it. [`Recorder`] writes a log on a thread
 //! of its own, [`LogReader`] reads it, and [`read_presses`] makes a [`Recording`](twintac_recording::Recording) of it, which can be
-//! stored as Parquet and learned from.
+//! stored as Parquet and learned from. [`read_bag`] reads the ROS 2 recordings of others, for an import description.
 //!
 //! ```
 //! # use std::path::Path;
@@ -26,6 +26,7 @@
 //! ```
 
 mod accepts;
+mod bag;
 mod cdr;
 mod channels;
 mod description;
@@ -43,6 +44,7 @@ mod stream;
 mod table;
 mod writer;
 
+pub use bag::read_bag;
 pub use description::{CountTransfer, Description};
 pub use error::LogError;
 pub use event::Event;
@@ -51,7 +53,8 @@ pub use press::{ReadBack, ReadOptions, presses, read_presses};
 pub use reader::{Ending, LogReader};
 pub use recorder::{LogSender, Recorded, Recorder};
 pub use recover::{Recovered, recover};
+pub use ros::TopicNames;
 pub use sink::{LogFile, Sink};
 pub use stream::Stream;
-pub use table::{Exported, export_frames};
+pub use table::{Exported, export_bag, export_frames};
 pub use writer::LogWriter;

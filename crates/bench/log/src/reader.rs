@@ -77,7 +77,9 @@ impl<R: Read> LogReader<R> {
         let map = loop {
             match scanner.next().map_err(read)? {
                 Found::Metadata { name, map } if name == DESCRIPTION => break map,
-                Found::Channel { id, topic, schema } => channels.note(id, &topic, &schema),
+                Found::Channel {
+                    id, topic, schema, ..
+                } => channels.note(id, &topic, &schema.name),
                 Found::Metadata { .. } => {}
                 Found::Cut => {
                     return Err(not_a_log("it ends before its description".to_owned()));
@@ -141,13 +143,17 @@ impl<R: Read> LogReader<R> {
                         None => self.is_damaged = true,
                     }
                 }
-                Found::Channel { id, topic, schema } => self.channels.note(id, &topic, &schema),
+                Found::Channel {
+                    id, topic, schema, ..
+                } => self.channels.note(id, &topic, &schema.name),
                 Found::Metadata { .. } => {}
                 Found::Damage => self.is_damaged = true,
                 Found::Compressed(how) => {
                     return Err(LogError::NotALog {
                         file: self.file.clone(),
-                        problem: format!("it is compressed with `{how}`; `mcap decompress` undoes that"),
+                        problem: format!(
+                            "it is compressed with `{how}`, expected zstd, lz4 or none; `mcap decompress` undoes that"
+                        ),
                     });
                 }
                 Found::End => self.end(),

@@ -1,15 +1,15 @@
-//! The tactile frames of a log as a table.
+//! The tactile frames of a log as a table, and a log as a bag of standard messages.
 
 use std::path::Path;
 
 use twintac_recording::{FrameTable, TaxelCell};
 
-use crate::{Body, Ending, Event, LogError, LogReader, Stream, TaxelReading};
+use crate::{Body, Ending, Event, LogError, LogFile, LogReader, LogWriter, Stream, TaxelReading, TopicNames};
 
 /// What was exported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exported {
-    /// Frames in the table.
+    /// Frames in the table or the bag.
     pub frames: u64,
     /// Gaps in them: that the log marks, or that damage has left.
     pub gaps: u64,
@@ -45,6 +45,34 @@ pub fn export_frames(log: &Path, table: &Path) -> Result<Exported, LogError> {
     Ok(Exported {
         frames: table.finish()?,
         gaps: gaps + u64::from(is_gap), // one behind the last frame
+        last_s,
+        ending: reader.ending().unwrap_or(Ending::Cut),
+    })
+}
+
+/// Writes a log, whole or cut, as a bag of ROS 2 with standard messages alone (MCAP), in little memory: the pressures of all taxels, Pa
+/// (`std_msgs/msg/Float32MultiArray`), of each taxel pressure (`sensor_msgs/msg/FluidPressure`) and temperature (`sensor_msgs/msg/Temperature`), the wrench
+/// (`geometry_msgs/msg/WrenchStamped`, N and N m, no tare taken off), the robot's pose (`geometry_msgs/msg/PoseStamped`, m), and events (`std_msgs/msg/String`).
+///
+/// # Errors
+/// A log that cannot be read; two topics of one name; a bag that is there already or cannot be written.
+pub fn export_bag(log: &Path, bag: &Path, names: &TopicNames) -> Result<Exported, LogError> {
+    let mut reader = LogReader::open(log)?;
+    let mut writer = LogWriter::standard(LogFile::remake(bag)?, reader.description(), names)?;
+    let (mut frames, mut gaps, mut last_s) = (0, 0, 0.0);
+    for message in &mut reader {
+        let message = message?;
+        match &message.body {
+            Body::Event(Event::Gap { .. }) => gaps += 1,
+            Body::Tactile(_) => (frames, last_s) = (frames + 1, message.bench_ns as f64 * 1e-9),
+            _ => {}
+        }
+        writer.write(&message)?;
+    }
+    writer.finish()?;
+    Ok(Exported {
+        frames,
+        gaps,
         last_s,
         ending: reader.ending().unwrap_or(Ending::Cut),
     })

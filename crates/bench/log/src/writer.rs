@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::accepts::Accepts;
 use crate::cdr::Encoder;
 use crate::mcap::{Chunk, MAGIC, Records, Summary, number, op};
-use crate::ros::{DEFINITIONS, MESSAGE_ENCODING, SCHEMA_ENCODING, Topics};
+use crate::ros::{MESSAGE_ENCODING, SCHEMA_ENCODING, TopicNames, Topics};
 use crate::{Description, LogError, Message, Sink};
 
 /// Longest time of the bench that a message waits for being flushed, ns, while others follow it.
@@ -14,6 +14,8 @@ pub(crate) const FLUSH_NS: u64 = 500_000_000;
 const CHUNK_BYTES: usize = 1 << 20;
 /// Name of the metadata that hold the description.
 pub(crate) const DESCRIPTION: &str = "twintac";
+/// Name of the metadata that say where the numbers of an exported bag come from.
+pub(crate) const EXPORTED: &str = "twintac_export";
 
 /// Writes a log. What was flushed stays readable whatever happens later, also without [`finish`](Self::finish).
 ///
@@ -43,13 +45,32 @@ impl<S: Sink> LogWriter<S> {
     pub fn new(sink: S, description: &Description) -> Result<Self, LogError> {
         let metadata = description.to_map()?;
         let topics = Topics::new(&description.taxels);
+        Self::begin(sink, description, topics, DESCRIPTION, &metadata)
+    }
+
+    /// Begins a bag with standard messages alone, which is no log: what is needed to read it as one is left out.
+    pub(crate) fn standard(sink: S, description: &Description, names: &TopicNames) -> Result<Self, LogError> {
+        names.check()?;
+        let mut metadata = description.to_map()?;
+        metadata.retain(|field, _| ["sensor", "provenance", "taxels"].contains(&&**field));
+        let topics = Topics::standard(&description.taxels, names);
+        Self::begin(sink, description, topics, EXPORTED, &metadata)
+    }
+
+    fn begin(
+        sink: S,
+        description: &Description,
+        topics: Topics,
+        name: &str,
+        metadata: &BTreeMap<String, String>,
+    ) -> Result<Self, LogError> {
         let channels = topics.channels.len();
         let mut writer = Self {
             sink,
             accepts: Accepts::new(description),
             chunk: Chunk::new(channels),
             sequences: vec![0; channels],
-            summary: Summary::new(channels, DEFINITIONS.len()),
+            summary: Summary::new(channels, topics.definitions.len()),
             written: 0,
             checksum: crc32fast::Hasher::new(),
             failure: None,
@@ -63,11 +84,9 @@ impl<S: Sink> LogWriter<S> {
             out.bytes.extend(records.bytes);
         }
         let start = out.bytes.len();
-        out.metadata(DESCRIPTION, &metadata);
+        out.metadata(name, metadata);
         let length = out.bytes.len() - start;
-        writer
-            .summary
-            .add_metadata(DESCRIPTION, start as u64, length as u64);
+        writer.summary.add_metadata(name, start as u64, length as u64);
         writer.append()?;
         Ok(writer)
     }
@@ -170,7 +189,7 @@ impl<S: Sink> LogWriter<S> {
 /// Schemas and channels: at a file's start and in its summary.
 fn declarations(topics: &Topics) -> [(u8, Records); 2] {
     let mut schemas = Records::default();
-    for (place, definition) in DEFINITIONS.iter().enumerate() {
+    for (place, definition) in topics.definitions.iter().enumerate() {
         schemas.schema(number(place), definition.name, SCHEMA_ENCODING, definition.text);
     }
     // What players of ROS look for: no quality of service was offered, as nobody published.

@@ -6,7 +6,7 @@
 //! that gives nothing in some frames. What a taxel does is told from the frames in which it gave something.
 
 use serde::Serialize;
-use twintac_recording::{Press, Recording};
+use twintac_recording::{Frames, Press, Recording};
 
 /// Fewest frames of a press that tell whether a taxel is late, and of all presses whether it is stuck.
 const FEWEST: usize = 10;
@@ -47,7 +47,8 @@ pub struct Condition {
     pub n_timed: usize,
 }
 
-pub(crate) fn conditions(recording: &Recording) -> Vec<Condition> {
+/// From the presses; without any, from the logs, which do not tell whether a taxel is late.
+pub(crate) fn conditions(recording: &Recording, logs: &[Frames]) -> Vec<Condition> {
     let taxels = recording.taxels.iter().enumerate();
     taxels
         .map(|(taxel, name)| {
@@ -60,6 +61,12 @@ pub(crate) fn conditions(recording: &Recording) -> Vec<Condition> {
                 n_frames += 1;
                 n_valid += usize::from(valid[taxel]);
                 given.extend(Some(raw[taxel]).filter(|raw| !raw.is_nan()));
+            }
+            let logs = logs.iter().filter(|_| recording.presses.is_empty());
+            for row in logs.flat_map(|log| &log.readings_kpa) {
+                n_frames += 1;
+                n_valid += usize::from(!row[taxel].is_nan());
+                given.extend(Some(row[taxel]).filter(|kpa| !kpa.is_nan()));
             }
             let n_missing = n_frames - given.len();
             let lags: Vec<bool> = recording
@@ -155,7 +162,7 @@ mod tests {
         change(&mut three);
         let mut recording = recording(vec![three]);
         recording.taxels.push("c".to_owned());
-        conditions(&recording).remove(2)
+        conditions(&recording, &[]).remove(2)
     }
 
     #[test]
@@ -214,6 +221,6 @@ mod tests {
             noise_kpa: 0.02,
             ..Shape::default()
         });
-        assert_eq!(conditions(&recording(vec![slow]))[0].n_timed, 0);
+        assert_eq!(conditions(&recording(vec![slow]), &[])[0].n_timed, 0);
     }
 }

@@ -129,7 +129,7 @@ mod tests {
 
     fn all_steps(presses: &[Press]) -> Vec<KnownStep> {
         let (all, names) = (all(presses), ["a".to_owned(), "b".to_owned()]);
-        let noise = noise(&rests(presses), &names, &CharacterizeOptions::default());
+        let noise = noise(&rests(presses), &[], &names, &CharacterizeOptions::default());
         let steps = steps(&all, &names, &noise, &CharacterizeOptions::default());
         steps.found().unwrap().clone()
     }

@@ -23,10 +23,8 @@ pub enum CharacterizeError {
         expected_taxels: String,
     },
     /// There is nothing to characterize.
-    #[error(
-        "the recordings hold no presses: `twintac record` makes some with presses, those of `twintac stream` have none"
-    )]
-    NoPresses,
+    #[error("the recordings hold neither presses nor frames outside of presses")]
+    NothingRecorded,
     /// A folder could not be made.
     #[error("{path} could not be made: {source}")]
     Folder {

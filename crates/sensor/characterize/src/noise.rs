@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::rest::Rest;
 use crate::statistics::{deviation, mean};
+use crate::untouched::Untouched;
 use crate::{CharacterizeOptions, Finding};
 
 /// Fewest unloaded frames of a press that count.
@@ -14,7 +15,8 @@ const FEWEST_FRAMES: usize = 8;
 pub struct Noise {
     /// The taxel's name.
     pub taxel: String,
-    /// Noise floor: standard deviation of unloaded readings about the mean of their press, all presses pooled, kPa.
+    /// Noise floor: standard deviation of unloaded readings about the mean of their press, all presses pooled, kPa. Without presses, about the
+    /// mean of their five seconds.
     pub deviation_kpa: f64,
     /// Standard deviation of the change of the mean from one averaging window to the next, unloaded, kPa: noise that averaging leaves, and drift.
     pub window_deviation_kpa: Option<f64>,
@@ -24,8 +26,10 @@ pub struct Noise {
     pub n_readings: usize,
 }
 
+/// From the frames before presses; of a log without presses, from windows in which nothing touches.
 pub(crate) fn noise(
     rests: &[Rest<'_>],
+    untouched: &[Untouched],
     taxels: &[String],
     options: &CharacterizeOptions,
 ) -> Finding<Vec<Noise>> {
@@ -41,6 +45,18 @@ pub(crate) fn noise(
             }
             changes_kpa.extend(window_changes_kpa(press, taxel, options.window_s));
         }
+        if rests.is_empty() {
+            for window in untouched
+                .iter()
+                .skip(taxel)
+                .take(1)
+                .flat_map(|of_taxel| &of_taxel.windows)
+            {
+                squares += window.deviation_kpa.powi(2) * (window.n_readings - 1) as f64;
+                freedom += window.n_readings - 1;
+                n_readings += window.n_readings;
+            }
+        }
         (freedom > 0).then(|| Noise {
             taxel: name.clone(),
             deviation_kpa: (squares / freedom as f64).sqrt(),
@@ -52,7 +68,7 @@ pub(crate) fn noise(
     });
     Finding::of_list(
         found.collect(),
-        "no press begins with eight or more unloaded frames",
+        "no press begins with eight or more unloaded frames, and no log without presses has enough",
     )
 }
 
@@ -86,7 +102,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Shape, press, rests};
+    use crate::synthetic::{Shape, press, rests, untouched};
 
     #[test]
     fn known_noise_is_found() {
@@ -97,11 +113,28 @@ mod tests {
         };
         let presses = [press(&shape), press(&shape)];
         let names = ["a".to_owned(), "b".to_owned()];
-        let finding = noise(&rests(&presses), &names, &CharacterizeOptions::default());
+        let finding = noise(&rests(&presses), &[], &names, &CharacterizeOptions::default());
         let found = finding.found().unwrap();
         assert_eq!(found.len(), 2);
         assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
         assert_eq!(found[0].n_readings, 2 * 250);
+    }
+
+    #[test]
+    fn a_log_without_presses_tells_it_too() {
+        let names = ["a".to_owned(), "b".to_owned()];
+        let reads_kpa = |at_s: f64| {
+            [
+                100.0 + 0.02 * super::super::synthetic::noise(0.3, (50.0 * at_s) as usize),
+                99.0,
+            ]
+        };
+        let log = untouched(60.0, reads_kpa, |_| f64::NAN);
+        let windows = Untouched::all(&[log], 2);
+        let finding = noise(&[], &windows, &names, &CharacterizeOptions::default());
+        let found = finding.found().unwrap();
+        assert!((found[0].deviation_kpa / 0.02 - 1.0).abs() < 0.02, "{found:?}");
+        assert_eq!((found[0].n_readings, found[0].n_windows), (3000, 0));
     }
 
     #[test]
@@ -113,6 +146,7 @@ mod tests {
         let presses = [press(&shape)];
         let finding = noise(
             &rests(&presses),
+            &[],
             &["a".to_owned(), "b".to_owned()],
             &CharacterizeOptions::default(),
         );

@@ -4,7 +4,7 @@
 //! nearly all other differences of neighbours are multiples of it.
 
 use serde::Serialize;
-use twintac_recording::Recording;
+use twintac_recording::{Frames, Recording};
 
 use crate::Finding;
 
@@ -32,18 +32,23 @@ pub struct Quantum {
     pub n_differences: usize,
 }
 
-pub(crate) fn quantum(recording: &Recording) -> Finding<Quantum> {
+/// Of the presses; without any, of the logs.
+pub(crate) fn quantum(recording: &Recording, logs: &[Frames]) -> Finding<Quantum> {
     let mut differences_kpa = Vec::new();
-    for press in &recording.presses {
-        for taxel in 0..recording.taxels.len() {
+    let mut add = |mut readings_kpa: Vec<f64>| {
+        readings_kpa.sort_by(f64::total_cmp);
+        let steps = readings_kpa.windows(2).map(|pair| pair[1] - pair[0]);
+        differences_kpa.extend(steps.filter(|step_kpa| *step_kpa > ROUNDING_KPA));
+    };
+    for taxel in 0..recording.taxels.len() {
+        for press in &recording.presses {
             let valid = press.taxels_kpa.iter().zip(&press.valid);
-            let mut sorted: Vec<f64> = valid
-                .filter(|(_, valid)| valid[taxel])
-                .map(|(readings_kpa, _)| readings_kpa[taxel])
-                .collect();
-            sorted.sort_by(f64::total_cmp);
-            let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
-            differences_kpa.extend(steps.filter(|step_kpa| *step_kpa > ROUNDING_KPA));
+            let valid = valid.filter(|(_, valid)| valid[taxel]);
+            add(valid.map(|(readings_kpa, _)| readings_kpa[taxel]).collect());
+        }
+        for log in logs.iter().filter(|_| recording.presses.is_empty()) {
+            let readings_kpa = log.readings_kpa.iter().map(|row| row[taxel]);
+            add(readings_kpa.filter(|kpa| !kpa.is_nan()).collect());
         }
     }
     let step_kpa = differences_kpa.iter().copied().fold(f64::INFINITY, f64::min);
@@ -80,11 +85,11 @@ mod tests {
         for reading_kpa in stepped.taxels_kpa.iter_mut().flatten() {
             *reading_kpa = 0.01 * (*reading_kpa / 0.01).round() - 0.0037;
         }
-        let finding = quantum(&recording(vec![stepped]));
+        let finding = quantum(&recording(vec![stepped]), &[]);
         assert!(
             (finding.found().unwrap().step_kpa - 0.01).abs() < 1e-9,
             "{finding:?}"
         );
-        assert!(quantum(&recording(vec![smooth])).why_not().is_some());
+        assert!(quantum(&recording(vec![smooth]), &[]).why_not().is_some());
     }
 }

@@ -1,7 +1,7 @@
 //! Presses of known answer, for tests.
 
 use glam::DVec3;
-use twintac_recording::{Control, Press, Provenance, Recording};
+use twintac_recording::{Control, Frames, Press, Provenance, Recording};
 use twintac_shape::Pose;
 
 use crate::phases::Phases;
@@ -54,6 +54,7 @@ pub(crate) fn press(shape: &Shape) -> Press {
         gel_from_indenter: Vec::new(),
         force_n: Some(Vec::new()),
         taxels_kpa: Vec::new(),
+        temperature_c: None,
         taxels_raw: Vec::new(),
         valid: vec![vec![true; 2]; n],
     };
@@ -128,4 +129,21 @@ pub(crate) fn recording(presses: Vec<Press>) -> Recording {
         taxels: vec!["a".into(), "b".into()],
         presses,
     }
+}
+
+/// A log of two taxels that nothing touches, at 50 Hz: what they read, kPa, and how warm both are, °C, at a time, s.
+pub(crate) fn untouched(
+    seconds: f64,
+    reads_kpa: impl Fn(f64) -> [f64; 2],
+    is_c: impl Fn(f64) -> f64,
+) -> Frames {
+    let mut frames = Frames::new("pair", Provenance::Real, &["a".to_owned(), "b".to_owned()]);
+    for frame in 0..(50.0 * seconds) as u32 {
+        let at_s = f64::from(frame) / 50.0;
+        frames.time_s.push(at_s);
+        frames.gap_before.push(false);
+        frames.readings_kpa.push(reads_kpa(at_s).to_vec());
+        frames.temperature_c.push(vec![is_c(at_s); 2]);
+    }
+    frames
 }

@@ -1,7 +1,7 @@
 //! How often frames come, and how evenly.
 
 use serde::Serialize;
-use twintac_recording::Recording;
+use twintac_recording::{Frames, Recording};
 
 use crate::Finding;
 use crate::statistics::{deviation, mean, median};
@@ -25,10 +25,13 @@ pub struct FrameTiming {
     pub n_gaps: usize,
 }
 
-pub(crate) fn timing(recording: &Recording) -> Finding<FrameTiming> {
-    let presses = recording.presses.iter();
-    let all_s: Vec<f64> = presses
-        .flat_map(|press| press.time_s.windows(2).map(|pair| pair[1] - pair[0]))
+/// Of the presses; without any, of the logs.
+pub(crate) fn timing(recording: &Recording, logs: &[Frames]) -> Finding<FrameTiming> {
+    let logs = logs.iter().filter(|_| recording.presses.is_empty());
+    let courses = recording.presses.iter().map(|press| &press.time_s);
+    let all_s: Vec<f64> = courses
+        .chain(logs.map(|frames| &frames.time_s))
+        .flat_map(|time_s| time_s.windows(2).map(|pair| pair[1] - pair[0]))
         .collect();
     let usual_s = median(&all_s).unwrap_or(0.0);
     let neighbours_s: Vec<f64> = all_s
@@ -44,7 +47,7 @@ pub(crate) fn timing(recording: &Recording) -> Finding<FrameTiming> {
             n_gaps: all_s.len() - neighbours_s.len(),
         }),
         _ => Finding::NotGiven(format!(
-            "presses have {} times between frames in all, and it takes {FEWEST}",
+            "there are {} times between frames in all, and it takes {FEWEST}",
             all_s.len()
         )),
     }
@@ -66,7 +69,7 @@ mod tests {
             time_s += 0.02 * (1.0 + 0.05 * noise(0.0, frame)) + if frame == 500 { 0.2 } else { 0.0 };
             *stamp_s = time_s;
         }
-        let finding = timing(&recording(vec![shaken]));
+        let finding = timing(&recording(vec![shaken]), &[]);
         let found = finding.found().unwrap();
         assert!((found.rate_hz - 50.0).abs() < 0.1, "{found:?}");
         assert!((found.jitter - 0.05).abs() < 0.001, "{found:?}");
@@ -75,6 +78,6 @@ mod tests {
             rate_hz: 2.0,
             ..Shape::default()
         });
-        assert!(timing(&recording(vec![few])).why_not().is_some());
+        assert!(timing(&recording(vec![few]), &[]).why_not().is_some());
     }
 }

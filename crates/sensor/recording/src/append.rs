@@ -65,6 +65,7 @@ mod tests {
             force_n: None,
             taxels_kpa: Vec::new(),
             taxels_raw: Vec::new(),
+            temperature_c: None,
             valid: Vec::new(),
         };
         Recording {

@@ -10,6 +10,9 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 /// Farthest from the gel's origin that an indenter can be, mm: ten times the reach of a robot's arm.
 const FARTHEST_MM: f64 = 10_000.0;
 
+/// Largest temperature of a chip, °C, of either sign: solder melts before.
+const HOTTEST_C: f64 = 300.0;
+
 impl Recording {
     /// Checks that names are unique, vectors have their documented shapes, numbers are finite but for readings that are missing, which are
     /// not valid, indenters within ten metres of the gel, rotations unit quaternions, and that times increase in every press. Writing and reading
@@ -46,6 +49,10 @@ impl Press {
             ("force_n", self.force_n.as_ref().map_or(frames, Vec::len)),
             ("taxels_kpa", self.taxels_kpa.len()),
             ("taxels_raw", self.taxels_raw.len()),
+            (
+                "temperature_c",
+                self.temperature_c.as_ref().map_or(frames, Vec::len),
+            ),
             ("valid", self.valid.len()),
         ];
         let press = || format!("press `{}`", self.name);
@@ -72,6 +79,15 @@ impl Press {
         expect(widths == [n_taxels; 3], place, || {
             format!("expected {n_taxels} taxels, found {widths:?} (kPa, raw, valid)")
         })?;
+        if let Some(temperature_c) = &self.temperature_c {
+            let row = &temperature_c[frame];
+            let is_good = row.len() == n_taxels && row.iter().all(|c| c.is_nan() || c.abs() <= HOTTEST_C);
+            expect(is_good, place, || {
+                format!(
+                    "temperatures are {row:?} °C, expected {n_taxels} within {HOTTEST_C} °C; one that is missing is NaN"
+                )
+            })?;
+        }
         let time_s = self.time_s[frame];
         expect(time_s.is_finite(), place, || {
             format!("`time_s` is {time_s}, expected a finite number")

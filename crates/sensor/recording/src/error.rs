@@ -49,16 +49,34 @@ pub enum RecordingError {
         /// What is wrong with it.
         problem: String,
     },
-    /// A cell of a CSV file cannot be used.
+    /// A cell of a CSV file, or a number of a bag's message, cannot be used.
     #[error("{file}:{line}: column `{column}` {problem}")]
     Cell {
         /// The file as the user named it.
         file: String,
-        /// Line, from 1.
+        /// Line, or number of the topic's message, from 1.
         line: u64,
         /// Name of the column.
         column: String,
         /// What is wrong, read after the column's name.
+        problem: String,
+    },
+    /// A column that the import description names is not in a bag, or is not what it is for.
+    #[error("{file}: column `{column}` {problem}")]
+    BagColumn {
+        /// The file as the user named it.
+        file: String,
+        /// Name of the column, `/topic:field`.
+        column: String,
+        /// What is wrong, and what the bag has; read after the column's name.
+        problem: String,
+    },
+    /// A bag cannot be read as the import description says.
+    #[error("{file}: {problem}")]
+    Bag {
+        /// The file as the user named it.
+        file: String,
+        /// What is wrong with it, and what to do.
         problem: String,
     },
     /// What the file says cannot be, in the sense of the import description.

@@ -5,6 +5,7 @@
 mod append;
 mod check;
 mod error;
+mod frames;
 mod import;
 mod lerobot;
 mod missing;
@@ -13,9 +14,12 @@ mod provenance;
 mod store;
 
 pub use error::RecordingError;
-pub use import::{FileSummary, Import, ImportSummary, guess_import};
+pub use frames::Frames;
+pub use import::{
+    Bag, BagTopic, FileSummary, Import, ImportSummary, ReadBag, guess_bag_import, guess_import,
+};
 pub use lerobot::LeRobotSummary;
 pub use missing::null_as_nan;
 pub use press::{Control, Press, Recording};
 pub use provenance::Provenance;
-pub use store::{Column, FrameTable, RecordingWriter, TaxelCell};
+pub use store::{Column, FrameTable, RecordingWriter, Stored, TaxelCell};

@@ -12,6 +12,13 @@ pub fn null_as_nan<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Vec<f64>>, 
     Ok(rows.into_iter().map(row).collect())
 }
 
+/// The same of rows that may not be there at all.
+pub(crate) fn some_null_as_nan<'de, D: Deserializer<'de>>(
+    from: D,
+) -> Result<Option<Vec<Vec<f64>>>, D::Error> {
+    null_as_nan(from).map(Some)
+}
+
 /// A reading in memory.
 pub(crate) fn known_or_nan(known: Option<f64>) -> f64 {
     known.unwrap_or(f64::NAN)

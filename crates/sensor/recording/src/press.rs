@@ -64,6 +64,13 @@ pub struct Press {
     /// Readings as the source gives them, in its own unit, NaN where it gave none; `[n_frames][n_taxels]`.
     #[serde(deserialize_with = "crate::null_as_nan")]
     pub taxels_raw: Vec<Vec<f64>>,
+    /// Temperatures of the chips, °C, NaN where one is missing; `[n_frames][n_taxels]`, if the source gives any.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "crate::missing::some_null_as_nan"
+    )]
+    pub temperature_c: Option<Vec<Vec<f64>>>,
     /// Whether the reading can be used (not clipped, not missing); `[n_frames][n_taxels]`.
     pub valid: Vec<Vec<bool>>,
 }
@@ -80,6 +87,7 @@ impl PartialEq for Press {
             force_n,
             taxels_kpa,
             taxels_raw,
+            temperature_c,
             valid,
         } = self;
         (name, mounting, indenter) == (&other.name, &other.mounting, &other.indenter)
@@ -88,10 +96,14 @@ impl PartialEq for Press {
             && (force_n, valid) == (&other.force_n, &other.valid)
             && are_same(taxels_kpa, &other.taxels_kpa)
             && are_same(taxels_raw, &other.taxels_raw)
+            && match (temperature_c, &other.temperature_c) {
+                (Some(rows), Some(others)) => are_same(rows, others),
+                (rows, others) => rows.is_none() && others.is_none(),
+            }
     }
 }
 
-/// Whether readings are equal; one that is missing equals another.
+/// Whether numbers of frames are equal; one that is missing equals another.
 fn are_same(readings: &[Vec<f64>], others: &[Vec<f64>]) -> bool {
     let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
     let of_frame =

@@ -33,6 +33,7 @@ fn recording() -> Recording {
             gel_from_indenter: vec![Pose::from_position(DVec3::new(0.0, 0.0, 6.0)); n],
             force_n: None,
             taxels_kpa: (0..n).map(|frame| row(frame, 0.0)).collect(),
+            temperature_c: None,
             taxels_raw: (0..n).map(|frame| row(frame, 101.0)).collect(),
             valid: (0..n).map(|frame| vec![!is_missing(frame), true]).collect(),
         }],
@@ -109,5 +110,80 @@ fn names_are_text_in_the_card() {
     assert!(
         card.contains(r#"LeRobotDataset("twintac/x\"]<script>"#),
         "a literal of Python: {card}"
+    );
+}
+
+/// The recording's numbers of frames, its rate, and its card.
+fn rate(recording: &Recording) -> (twintac_recording::LeRobotSummary, Value, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dataset");
+    let summary = recording.write_lerobot(&path, "By hand.").unwrap();
+    let text = |name: &str| std::fs::read_to_string(path.join(name)).unwrap();
+    let info: Value = serde_json::from_str(&text("meta/info.json")).unwrap();
+    (summary, info["fps"].clone(), text("README.md"))
+}
+
+#[test]
+fn frames_that_come_evenly_at_a_whole_rate_stay() {
+    let (summary, fps, card) = rate(&recording());
+    assert_eq!(
+        (summary.frames, summary.fps, summary.resampled_from_hz),
+        (268, 100, None)
+    );
+    assert!(
+        fps.is_u64() && fps == 100 && !card.contains("resampled"),
+        "{card}"
+    );
+}
+
+#[test]
+fn frames_at_another_rate_are_resampled_and_it_is_said() {
+    // 55.56 Hz with jitter; readings rise evenly with time, and the middle second of the second taxel is missing.
+    let mut uneven = recording();
+    let press = &mut uneven.presses[0];
+    for (frame, time_s) in press.time_s.iter_mut().enumerate() {
+        *time_s = 7.0 + 0.018 * (frame as f64 + if frame % 3 == 1 { 0.2 } else { 0.0 });
+    }
+    for (frame, time_s) in press.time_s.iter().enumerate() {
+        press.taxels_kpa[frame] = vec![10.0 * time_s, 1.0];
+        press.taxels_raw[frame] = vec![101.0; 2];
+        press.valid[frame] = vec![true, !(2.0..3.0).contains(&(time_s - 7.0))];
+    }
+    let (summary, fps, card) = rate(&uneven);
+    assert_eq!((fps, summary.fps), (Value::from(56), 56));
+    assert!(
+        (summary.resampled_from_hz.unwrap() - 1.0 / 0.018).abs() < 0.01,
+        "{summary:?}"
+    );
+    assert_eq!(summary.frames, (0.018 * 267.0 * 56.0) as usize + 1);
+    assert!(
+        card.contains("resampled: they came at 55.56 Hz") && card.contains("at 56 Hz"),
+        "{card}"
+    );
+    // A second of the taxel, and at most one frame more at either end.
+    let unusable = card
+        .split("Taxel S1 has no reading that can be used in ")
+        .nth(1)
+        .unwrap();
+    let unusable: usize = unusable.split(' ').next().unwrap().parse().unwrap();
+    assert!((56..=58).contains(&unusable), "{unusable}");
+    let (stats, _) = written(&uneven);
+    let first = &stats["observation.tactile"];
+    assert!((first["min"][0].as_f64().unwrap() - 70.0).abs() < 1e-9, "{first}");
+    assert!((stats["timestamp"]["max"][0].as_f64().unwrap() - 269.0 / 56.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_hole_between_frames_is_not_filled_with_readings() {
+    let mut holed = recording();
+    let press = &mut holed.presses[0];
+    for time_s in &mut press.time_s[200..] {
+        *time_s += 0.5;
+    }
+    let (summary, _, card) = rate(&holed);
+    assert_eq!((summary.fps, summary.frames), (100, 318));
+    assert!(
+        card.contains("Taxel S1 has no reading that can be used in 50 of 318 frames"),
+        "{card}"
     );
 }

@@ -36,7 +36,7 @@ fn press(taxels: usize) -> impl Strategy<Value = Press> {
     );
     let frames = proptest::collection::vec(frame, 1..30);
     ("\\PC{0,12}", "\\PC{1,8}", any::<bool>(), any::<bool>(), frames).prop_map(
-        |(mounting, indenter, is_force, has_force, frames)| {
+        move |(mounting, indenter, is_force, has_force, frames)| {
             let mut time_s = 0.0;
             let times = frames.iter().map(|frame| {
                 time_s += frame.0;
@@ -58,6 +58,11 @@ fn press(taxels: usize) -> impl Strategy<Value = Press> {
                     .iter()
                     .map(|frame| frame.4.iter().map(|taxel| taxel.0).collect())
                     .collect(),
+                temperature_c: (has_force && taxels > 0).then(|| {
+                    let of_taxel = |taxel: &(f64, f64, bool)| if taxel.2 { 20.0 } else { 25.5 };
+                    let rows = frames.iter().map(|frame| frame.4.iter().map(of_taxel).collect());
+                    rows.collect()
+                }),
                 taxels_raw: frames
                     .iter()
                     .map(|frame| frame.4.iter().map(|taxel| taxel.1).collect())
@@ -108,6 +113,7 @@ fn example() -> Recording {
         gel_from_indenter: vec![Pose::from_position(DVec3::new(1.0, 2.0, 6.0)); 3],
         force_n,
         taxels_kpa: vec![vec![0.0, 0.5], vec![1.5, 2.5], vec![-0.1, 0.0]],
+        temperature_c: None,
         taxels_raw: vec![vec![100.0, 200.0], vec![101.5, 202.0], vec![99.9, 199.5]],
         valid: vec![vec![true, true], vec![true, false], vec![true, true]],
     };

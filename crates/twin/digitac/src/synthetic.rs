@@ -188,6 +188,7 @@ impl Truth {
                 .map(|d| Pose::from_position(DVec3::new(x, 0.0, TOP_MM - d)))
                 .collect(),
             force_n: None,
+            temperature_c: None,
             taxels_raw: taxels_kpa.clone(),
             taxels_kpa,
             valid: vec![vec![true; 4]; n_frames],

@@ -27,6 +27,8 @@ pub fn lines(found: Option<&Characterization>, doubtful: &BTreeSet<usize>, has_m
             "drift_deviation_kpa_per_k",
             "temperature_deviation_k",
             "temperature_time_s",
+            "cross_talk",
+            "cross_talk_deviation",
             "noise_deviation_kpa",
             "quantum_kpa",
             "hysteresis",
@@ -49,6 +51,9 @@ pub fn lines(found: Option<&Characterization>, doubtful: &BTreeSet<usize>, has_m
     lines.extend(told.drift());
     lines.push(Line::left_out("temperature_deviation_k", surroundings));
     lines.push(Line::left_out("temperature_time_s", surroundings));
+    let spread = "what a taxel reads while another is pressed is mostly what the gel spreads, which the gel has by itself";
+    lines.push(Line::left_out("cross_talk", spread));
+    lines.push(Line::left_out("cross_talk_deviation", spread));
     lines.extend(told.noise());
     lines.push(told.hysteresis(has_memory));
     lines.extend(fates(&found.conditions, found.provenance));

@@ -22,6 +22,10 @@ pub struct Imperfection {
     pub temperature_deviation_k: f64,
     /// Time in which the temperature forgets what it was, s.
     pub temperature_time_s: f64,
+    /// Part of what each other taxel feels that a taxel reads as well, beyond what the gel spreads; of either sign.
+    pub cross_talk: f64,
+    /// Deviation of that part from pair to pair.
+    pub cross_talk_deviation: f64,
     /// Deviation of each reading's noise, kPa.
     pub noise_deviation_kpa: f64,
     /// Distance of the values that are told apart, kPa.
@@ -74,6 +78,7 @@ impl Imperfection {
             ("drift_deviation_kpa_per_k", self.drift_deviation_kpa_per_k),
             ("temperature_deviation_k", self.temperature_deviation_k),
             ("temperature_time_s", self.temperature_time_s),
+            ("cross_talk_deviation", self.cross_talk_deviation),
             ("noise_deviation_kpa", self.noise_deviation_kpa),
             ("quantum_kpa", self.quantum_kpa),
             ("rate_hz", self.rate_hz),
@@ -108,6 +113,9 @@ impl Imperfection {
                 self.drift_kpa_per_k,
                 "give a finite number",
             ));
+        }
+        if !self.cross_talk.is_finite() || self.cross_talk.abs() > 1.0 {
+            return Err(wrong("cross_talk", self.cross_talk, "give a part from -1 to 1"));
         }
         let chances = self.dead_chance + self.stuck_chance + self.late_chance;
         if chances > 1.0 {
@@ -147,6 +155,11 @@ mod tests {
                 "noise_deviation_kpa",
             ),
             ("[imperfection]\nhysteresis = 1.5\n", "hysteresis"),
+            ("[imperfection]\ncross_talk = -1.5\n", "cross_talk"),
+            (
+                "[imperfection]\ncross_talk_deviation = -0.1\n",
+                "cross_talk_deviation",
+            ),
             ("[imperfection]\ntilt_deviation_rad = nan\n", "tilt_deviation_rad"),
             ("[imperfection]\ndrift_kpa_per_k = inf\n", "drift_kpa_per_k"),
             (

@@ -15,6 +15,8 @@ const SHORTEST_FRAME: f64 = 0.1;
 pub(crate) struct Sensor {
     random: RandomStream,
     taxels: Vec<Taxel>,
+    /// Part of what each taxel feels that each one reads, `[reads][feels]`; empty without cross-talk.
+    couplings: Vec<f64>,
     /// From where the sensor should be to where it is.
     pub(crate) actual_from_described: Pose,
     temperature_k: f64,
@@ -62,13 +64,15 @@ impl Sensor {
         let taxels = (0..n_taxels)
             .map(|_| Taxel::draw(imperfection, &mut random))
             .collect();
+        let temperature_k = normal(&mut random, imperfection.temperature_deviation_k);
         Self {
             taxels,
+            couplings: couplings(imperfection, n_taxels, &mut random),
             actual_from_described: Pose {
                 position_mm,
                 rotation,
             },
-            temperature_k: normal(&mut random, imperfection.temperature_deviation_k),
+            temperature_k,
             until_frame_s: 0.0,
             since_frame_s: 0.0,
             random,
@@ -98,13 +102,23 @@ impl Sensor {
             self.wander(imperfection);
             self.wait(imperfection);
         }
-        for ((taxel, true_kpa), reading_kpa) in self.taxels.iter_mut().zip(true_kpa).zip(readings_kpa) {
-            let through_kpa = taxel.lag(imperfection.hysteresis, *true_kpa);
-            if is_frame {
-                taxel.deliver(imperfection, through_kpa, self.temperature_k, &mut self.random);
-            }
-            *reading_kpa = taxel.delivered_kpa.unwrap_or(0.0) as f32;
+        for (taxel, true_kpa) in self.taxels.iter_mut().zip(true_kpa) {
+            taxel.lag(imperfection.hysteresis, *true_kpa);
         }
+        for (number, reading_kpa) in readings_kpa.iter_mut().enumerate().take(self.taxels.len()) {
+            if is_frame {
+                let through_kpa = self.taxels[number].behind_kpa + self.cross_talk_kpa(number);
+                self.taxels[number].deliver(imperfection, through_kpa, self.temperature_k, &mut self.random);
+            }
+            *reading_kpa = self.taxels[number].delivered_kpa.unwrap_or(0.0) as f32;
+        }
+    }
+
+    /// What a taxel reads of what the others feel, kPa.
+    fn cross_talk_kpa(&self, number: usize) -> f64 {
+        let of_taxel = self.couplings.chunks_exact(self.taxels.len()).nth(number);
+        let pairs = of_taxel.into_iter().flatten().zip(&self.taxels);
+        pairs.map(|(part, other)| part * other.behind_kpa).sum()
     }
 
     /// The temperature changes: an Ornstein-Uhlenbeck process, exact for any time.
@@ -144,6 +158,24 @@ impl Sensor {
     }
 }
 
+/// Parts for each pair of taxels; nothing without cross-talk, so that other sensors stay what they are.
+fn couplings(imperfection: &Imperfection, n_taxels: usize, random: &mut RandomStream) -> Vec<f64> {
+    let Imperfection {
+        cross_talk,
+        cross_talk_deviation,
+        ..
+    } = *imperfection;
+    if cross_talk == 0.0 && cross_talk_deviation == 0.0 {
+        return Vec::new();
+    }
+    let pairs = (0..n_taxels * n_taxels).map(|pair| {
+        let part = cross_talk + normal(random, cross_talk_deviation);
+        let is_itself = pair / n_taxels == pair % n_taxels;
+        if is_itself { 0.0 } else { part }
+    });
+    pairs.collect()
+}
+
 impl Taxel {
     fn draw(imperfection: &Imperfection, random: &mut RandomStream) -> Self {
         let chance: f64 = random.random();
@@ -178,10 +210,9 @@ impl Taxel {
     }
 
     /// A play as wide as a part of the reading: less on the way up, more on the way down.
-    fn lag(&mut self, hysteresis: f64, true_kpa: f64) -> f64 {
+    fn lag(&mut self, hysteresis: f64, true_kpa: f64) {
         let half_kpa = hysteresis * true_kpa.abs();
         self.behind_kpa = self.behind_kpa.clamp(true_kpa - half_kpa, true_kpa + half_kpa);
-        self.behind_kpa
     }
 
     fn deliver(

@@ -52,6 +52,8 @@ fn all_imperfections() -> Imperfection {
         drift_deviation_kpa_per_k: 0.05,
         temperature_deviation_k: 2.0,
         temperature_time_s: 60.0,
+        cross_talk: 0.01,
+        cross_talk_deviation: 0.005,
         noise_deviation_kpa: 0.05,
         quantum_kpa: 0.01,
         hysteresis: 0.03,
@@ -190,6 +192,44 @@ fn all_taxels_drift_alike_and_grow_in_their_own_way() {
             );
         }
     }
+}
+
+#[test]
+fn a_part_of_what_the_others_feel_is_read_too() {
+    let talking = |cross_talk: f64, cross_talk_deviation: f64| Imperfection {
+        cross_talk,
+        cross_talk_deviation,
+        ..Imperfection::default()
+    };
+    let perfect = &readings(&Imperfection::default(), 1, 1, 3, &[1.5])[0];
+    let all_kpa: f32 = perfect.iter().sum();
+    let found = &readings(&talking(0.1, 0.0), 1, 1, 3, &[1.5])[0];
+    for (found_kpa, perfect_kpa) in found.iter().zip(perfect) {
+        let expected_kpa = perfect_kpa + 0.1 * (all_kpa - perfect_kpa);
+        assert!(
+            (found_kpa - expected_kpa).abs() < 1e-4,
+            "{found_kpa}, not {expected_kpa}"
+        );
+    }
+    // Pairs of their own: over many sensors, parts have no mean, and the deviation that was asked for.
+    let of_sensors = &readings(&talking(0.0, 0.02), 500, 1, 3, &[1.5])[0];
+    let strongest = (0..N_TAXELS)
+        .max_by(|a, b| perfect[*a].total_cmp(&perfect[*b]))
+        .unwrap();
+    let others = perfect
+        .iter()
+        .enumerate()
+        .filter(|(taxel, _)| *taxel != strongest);
+    let expected_kpa = 0.02 * others.map(|(_, kpa)| f64::from(*kpa).powi(2)).sum::<f64>().sqrt();
+    let changes: Vec<f64> = of_sensors
+        .chunks(N_TAXELS)
+        .map(|taxels| f64::from(taxels[strongest] - perfect[strongest]))
+        .collect();
+    let square = changes.iter().map(|change| change.powi(2)).sum::<f64>() / 500.0;
+    assert!(
+        (square.sqrt() / expected_kpa - 1.0).abs() < 0.1,
+        "{square} {expected_kpa}"
+    );
 }
 
 #[test]

@@ -40,6 +40,11 @@ fn no_argument_is_ignored_beside_another() {
         "predict --model m --path p --seed 3",
         "stream --lab --out o --frames 3",
         "stream --lab --out o --seconds 3",
+        "stream --lab --out o --log l.mcap",
+        "stream --lab --log l.txt",
+        "export l.mcap --topic wrench=/w",
+        "export l.mcap --ros r --topic wrench",
+        "export l.mcap --ros r --out o",
     ] {
         assert!(!is_taken(line), "{line}");
     }
@@ -63,6 +68,9 @@ fn what_goes_together_is_taken() {
         "predict --model m --path p",
         "stream --lab --out o",
         "stream --lab --format csv --frames 3 --seconds 2",
+        "stream --lab --log l.mcap --frames 3 --seconds 2",
+        "stream --lab --log l.mcap --format csv",
+        "export l.mcap --ros r --topic wrench=/w --topic pose=/p",
         "dataset --out o --settings t",
     ] {
         assert!(is_taken(line), "{line}");

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
 
-/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` they are a dashboard.
+/// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` and `--log` they are a dashboard.
 #[derive(Args, Debug)]
-#[command(group = ArgGroup::new("source").required(true))]
+#[command(group = ArgGroup::new("source").required(true), group = ArgGroup::new("written").multiple(true))]
 pub(crate) struct Stream {
     /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
     #[arg(long, value_name = "PATH", group = "source")]
@@ -35,17 +35,23 @@ pub(crate) struct Stream {
     /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
     #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
     pub(crate) altitude_m: Option<f32>,
+    /// How zeros move with temperature (TOML), as `twintac characterize` found it: it is taken off the readings.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) temperature: Option<PathBuf>,
     /// Rows on standard output instead of the dashboard.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, group = "written")]
     pub(crate) format: Option<RowFormat>,
-    /// End after so many rows.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "format", conflicts_with = "out")]
+    /// Record all frames as they come into this log (MCAP), beside the rows of --format or alone, until the program is ended.
+    #[arg(long, value_name = "FILE", value_parser = log_file, group = "written")]
+    pub(crate) log: Option<PathBuf>,
+    /// End after so many frames.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "written", conflicts_with = "out")]
     pub(crate) frames: Option<u64>,
     /// End after so long, s.
-    #[arg(long, value_name = "S", value_parser = duration_s, requires = "format", conflicts_with = "out")]
+    #[arg(long, value_name = "S", value_parser = duration_s, requires = "written", conflicts_with = "out")]
     pub(crate) seconds: Option<f64>,
     /// Folder of the dashboard's recordings (MCAP).
-    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "format")]
+    #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "written")]
     pub(crate) out: PathBuf,
 }
 
@@ -70,6 +76,16 @@ pub(crate) enum RowFormat {
     Csv,
     /// A JSON object a line.
     Jsonl,
+}
+
+/// A name of a log.
+fn log_file(name: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    if path.extension().is_some_and(|extension| extension == "mcap") {
+        Ok(path)
+    } else {
+        Err("expected a name that ends in .mcap".to_owned())
+    }
 }
 
 /// A time, s, that passes.

@@ -1,7 +1,8 @@
 //! `twintac characterize`: what a sensor does, from recorded presses.
 
 use anyhow::Result;
-use twintac_recorded::Recorded;
+use twintac_recorded::{COMPENSATION, Recorded};
+use twintac_run::read_import;
 use twintac_sensor::SensorFile;
 
 use super::files::expand;
@@ -12,7 +13,9 @@ use crate::progress::Bars;
 /// Characterizes, and prints or writes what was found.
 pub(crate) fn run(arguments: &Characterize) -> Result<()> {
     let sensor = SensorFile::read(&arguments.sensor)?.sensor;
-    let recorded = Recorded::read(&expand(&arguments.recordings)?, &Bars::default())?;
+    let import = arguments.import.as_deref().map(read_import).transpose()?;
+    let files = expand(&arguments.recordings)?;
+    let recorded = Recorded::read(&files, import.as_ref(), &Bars::default())?;
     let found = recorded.characterize(&sensor)?;
     if let Some(folder) = &arguments.out {
         recorded.write(&found, &sensor, folder)?;
@@ -25,6 +28,12 @@ pub(crate) fn run(arguments: &Characterize) -> Result<()> {
     }
     if let Some(folder) = &arguments.out {
         print(&format!("report  {}", folder.join("report.html").display()))?;
+        if found.compensation().is_some() {
+            print(&format!(
+                "zeros over temperature  {}",
+                folder.join(COMPENSATION).display()
+            ))?;
+        }
     }
     Ok(())
 }

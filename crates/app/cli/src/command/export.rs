@@ -1,7 +1,9 @@
-//! `twintac export`: frames of logs as tables.
+//! `twintac export`: frames of logs as tables, and logs for others.
+
+use std::path::Path;
 
 use anyhow::Result;
-use twintac_recorded::{export, export_lerobot};
+use twintac_recorded::{ExportedBag, export, export_lerobot, export_ros};
 use twintac_recording::LeRobotSummary;
 
 use super::files::expand;
@@ -19,12 +21,20 @@ pub(super) fn run(arguments: &Export) -> Result<()> {
                 episodes,
                 frames,
                 tasks,
+                fps,
+                resampled_from_hz,
             } = written;
+            let resampled = resampled_from_hz.map_or(String::new(), |from_hz| {
+                format!(", resampled from {from_hz:.2} Hz")
+            });
             format!(
-                "{}: {episodes} episodes, {frames} frames, {tasks} tasks",
+                "{}: {episodes} episodes, {frames} frames, {tasks} tasks, {fps} frames a second{resampled}",
                 folder.display()
             )
         });
+    }
+    if let Some(folder) = &arguments.ros {
+        return for_ros(arguments, folder);
     }
     for log in expand(&arguments.logs)? {
         let exported = export(&log, arguments.out.as_deref())?;
@@ -40,6 +50,24 @@ pub(super) fn run(arguments: &Export) -> Result<()> {
                 exported.frames,
                 exported.gaps
             )
+        })?;
+    }
+    Ok(())
+}
+
+fn for_ros(arguments: &Export, folder: &Path) -> Result<()> {
+    for log in expand(&arguments.logs)? {
+        let exported = export_ros(&log, folder, &arguments.topic)?;
+        if let Some(recovered) = &exported.recovered {
+            say(&format!("{} {recovered}", log.display()));
+        }
+        let ExportedBag {
+            bag, frames, gaps, ..
+        } = &exported;
+        print(&if arguments.json {
+            serde_json::to_string(&exported)?
+        } else {
+            format!("{}: {frames} frames, {gaps} marked gaps", bag.display())
         })?;
     }
     Ok(())

@@ -10,12 +10,16 @@ use twintac_work::Progress;
 
 use crate::progress::Bars;
 
-/// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters.
+/// The files that names and patterns stand for, sorted; each must stand for at least one. What is there under its own name is that, whatever its letters; the
+/// folder of a bag of ROS 2 is its files.
 pub(crate) fn expand(patterns: &[String]) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for pattern in patterns {
         if Path::new(pattern).exists() {
-            files.push(PathBuf::from(pattern));
+            match of_bag(Path::new(pattern)) {
+                none if none.is_empty() => files.push(PathBuf::from(pattern)),
+                of_bag => files.extend(of_bag),
+            }
             continue;
         }
         let found = glob::glob(&of_names(pattern)).with_context(|| {
@@ -55,7 +59,19 @@ fn of_names(pattern: &str) -> String {
     escaped + &rest.as_path().to_string_lossy()
 }
 
-/// Reads CSV files as a description says, and says what was found in them and left out.
+/// The files of a recording of ROS 2, if a folder is one.
+fn of_bag(folder: &Path) -> Vec<PathBuf> {
+    if !folder.join("metadata.yaml").is_file() {
+        return Vec::new();
+    }
+    let files = folder.read_dir().into_iter().flatten().flatten();
+    let files = files.map(|file| file.path());
+    files
+        .filter(|file| file.extension().is_some_and(|extension| extension == "mcap"))
+        .collect()
+}
+
+/// Reads files of others as a description says, and says what was found in them and left out.
 pub(crate) fn import_aloud(import: &Path, files: &[PathBuf]) -> Result<Recording> {
     let (recording, summary) = import_files(import, files)?;
     let bars = Bars::default();
@@ -93,6 +109,18 @@ pub(crate) fn sensor_or_phystac(file: Option<&Path>) -> Result<SensorFile> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_folder_of_a_bag_stands_for_its_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        let given = [folder.path().display().to_string()];
+        assert_eq!(expand(&given).unwrap(), [folder.path()]);
+        for name in ["metadata.yaml", "b_1.mcap", "b_0.mcap", "notes.txt"] {
+            std::fs::write(file(name), "").unwrap();
+        }
+        assert_eq!(expand(&given).unwrap(), [file("b_0.mcap"), file("b_1.mcap")]);
+    }
 
     #[test]
     fn names_stand_for_themselves_and_patterns_for_what_matches() {

@@ -47,7 +47,7 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
     let files = expand(&arguments.recordings)?;
     let is_csv = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "csv");
     if !files.iter().any(is_csv) {
-        return Ok(Recorded::read(&files, &Bars::default())?);
+        return Ok(Recorded::read(&files, None, &Bars::default())?);
     }
     if let Some(other) = files.iter().find(|file| !is_csv(file)) {
         bail!(
@@ -64,7 +64,7 @@ fn read(arguments: &FastImperfection, sensor: &SensorFile) -> Result<Recorded> {
     };
     Ok(Recorded {
         recording: import_aloud(&import, &files)?,
-        unloaded: Vec::new(),
+        logs: Vec::new(),
     })
 }
 

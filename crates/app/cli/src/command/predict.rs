@@ -9,7 +9,10 @@ use crate::progress::Bars;
 
 /// Predicts along a path or a protocol, and prints what comes of it.
 pub(crate) fn run(arguments: &Predict) -> Result<()> {
-    let predictor = Predictor::open(&arguments.model, arguments.indenter.as_deref())?;
+    let mut predictor = Predictor::open(&arguments.model, arguments.indenter.as_deref())?;
+    if let Some(warmer_k) = arguments.warmer_k {
+        predictor = predictor.warmer(warmer_k)?;
+    }
     let bars = Bars::default();
     let predicted = match (&arguments.path, &arguments.protocol) {
         (Some(path), _) => predictor.follow(path, &bars)?,

@@ -11,13 +11,14 @@ use twintac_press::{Mounting, PressSettings, RunSummary, check_folder, sensor_li
 use twintac_protocol::PressPlan;
 use twintac_recording::Provenance;
 use twintac_run::built_in::{LAB_RIG, reality};
-use twintac_run::{Run, RunSettings, check_logs};
+use twintac_run::{Run, check_logs};
 use twintac_sensor::SensorFile;
 use twintac_source::Known;
 use twintac_station::{OpenBench, preview, read_faults};
 use twintac_work::{Caller, Planned, Progress};
 
 use super::files::sensor_or_phystac;
+use super::reproduce::settings;
 use crate::Program;
 use crate::arguments::Record;
 use crate::output::print;
@@ -77,7 +78,7 @@ fn out(arguments: &Record) -> PathBuf {
 }
 
 fn start(arguments: &Record, sensor: SensorFile, source: &str, caller: Caller) -> Result<Run> {
-    let settings = RunSettings::read(arguments.start.settings.as_deref())?;
+    let settings = settings(&arguments.start)?;
     let seed = arguments.start.seed;
     Ok(Run::start(
         &out(arguments),

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use twintac_recording::guess_import;
-use twintac_run::{Run, RunSettings};
+use twintac_run::{Run, RunSettings, guess_import};
 use twintac_sensor::SensorFile;
+use twintac_temperature::Compensation;
 
 use super::files::expand;
 use crate::Program;
@@ -49,9 +49,18 @@ pub(crate) fn import(arguments: &Import, program: &Program) -> Result<()> {
     start(&recorded, &arguments.start, arguments.out.as_deref(), program).map(drop)
 }
 
+/// The settings of a run, with what is known of temperature.
+pub(super) fn settings(start: &Start) -> Result<RunSettings> {
+    let mut settings = RunSettings::read(start.settings.as_deref())?;
+    if let Some(file) = &start.temperature {
+        settings.temperature = Some(Compensation::read(file)?);
+    }
+    Ok(settings)
+}
+
 fn start(recorded: &Recorded, start: &Start, out: Option<&Path>, program: &Program) -> Result<Run> {
     let sensor = SensorFile::read(recorded.sensor)?;
-    let settings = RunSettings::read(start.settings.as_deref())?;
+    let settings = settings(start)?;
     let files = expand(recorded.recordings)?;
     let import = recorded
         .import

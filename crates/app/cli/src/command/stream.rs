@@ -2,8 +2,10 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Context, Result};
-use twintac_live::{Format, Live, Origin, StopAfter, dashboard, stream_rows};
+use anyhow::{Context, Result, bail};
+use twintac_live::{
+    About, Format, Live, Origin, StopAfter, TouchRecording, dashboard, record_frames, stream_rows,
+};
 use twintac_source::{Known, Tally};
 
 use super::files::sensor_or_phystac;
@@ -11,6 +13,11 @@ use crate::arguments::{RowFormat, Stream};
 use crate::progress::say;
 
 pub(super) fn run(arguments: &Stream) -> Result<()> {
+    if arguments.temperature.is_some() && arguments.format.is_none() && arguments.log.is_some() {
+        bail!(
+            "--temperature is for rows and the dashboard: a log has what the sensor gave; leave it out, or add --format"
+        );
+    }
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
     let known = Known {
         counts_per_pa: arguments.scale,
@@ -20,26 +27,79 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
     for note in &live.notes {
         say(note);
     }
-    let format = match arguments.format {
-        None => {
-            // A terminal that is closed and a program that is ended leave the terminal as it was.
-            static STOP: AtomicBool = AtomicBool::new(false);
-            ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed)).context("listening to signals")?;
-            return dashboard::run(&mut live.source, live.about, &arguments.out, &STOP)
-                .map(|tally| sum_up(&tally))
-                .map_err(Into::into);
-        }
-        Some(RowFormat::Csv) => Format::Csv,
-        Some(RowFormat::Jsonl) => Format::JsonLines,
+    if let Some(file) = &arguments.temperature {
+        live.compensate(file)?;
+    }
+    let Some(written) = Written::of(arguments, &live.about)? else {
+        let tally = dashboard::run(&mut live.source, live.about, &arguments.out, ended()?)?;
+        sum_up(&tally);
+        return Ok(());
     };
     let limits = StopAfter {
         frames: arguments.frames,
         seconds: arguments.seconds,
+        asked: written.log().is_some().then(ended).transpose()?,
     };
-    let out = std::io::stdout().lock();
-    let streamed = stream_rows(&mut live.source, &live.about, format, limits, out)?;
+    let (source, about) = (&mut live.source, &live.about);
+    let (streamed, log) = match written {
+        Written::Log(mut log) => (record_frames(source, &mut log, limits), Some(log)),
+        Written::Rows(format, mut log) => {
+            let out = std::io::stdout().lock();
+            (stream_rows(source, about, format, limits, out, log.as_mut()), log)
+        }
+    };
+    // Whatever ended the stream, what was recorded is finished.
+    let n_recorded = log.as_ref().map(TouchRecording::frames);
+    if let Some(log) = log {
+        let path = log.path().display().to_string();
+        say(&format!("{path} has {} frames", log.finish()?));
+    }
+    let streamed = streamed?;
+    let n_lost = n_recorded.map_or(0, |n_recorded| streamed.rows.saturating_sub(n_recorded));
+    if n_lost > 0 {
+        say(&format!(
+            "{n_lost} frames are not in the log: the disk did not keep up"
+        ));
+    }
     sum_up(&streamed.tally);
+    streamed.remark.iter().for_each(|remark| say(remark));
     Ok(())
+}
+
+/// What is written of a stream.
+enum Written {
+    Log(TouchRecording),
+    Rows(Format, Option<TouchRecording>),
+}
+
+impl Written {
+    /// What was asked for; none: the dashboard.
+    fn of(arguments: &Stream, about: &About) -> Result<Option<Self>> {
+        let log = arguments.log.as_deref();
+        let log = log.map(|path| TouchRecording::create(path, about)).transpose()?;
+        let format = arguments.format.map(|format| match format {
+            RowFormat::Csv => Format::Csv,
+            RowFormat::Jsonl => Format::JsonLines,
+        });
+        Ok(match (format, log) {
+            (Some(format), log) => Some(Self::Rows(format, log)),
+            (None, log) => log.map(Self::Log),
+        })
+    }
+
+    fn log(&self) -> Option<&TouchRecording> {
+        match self {
+            Self::Log(log) => Some(log),
+            Self::Rows(_, log) => log.as_ref(),
+        }
+    }
+}
+
+/// Set when the program is to end: a terminal stays as it was, and a log is finished.
+fn ended() -> Result<&'static AtomicBool> {
+    static ENDED: AtomicBool = AtomicBool::new(false);
+    ctrlc::set_handler(|| ENDED.store(true, Ordering::Relaxed)).context("listening to signals")?;
+    Ok(&ENDED)
 }
 
 /// Where the frames come from.

@@ -201,6 +201,7 @@ fn of_recording(
     } else {
         let import = import.ok_or_else(|| wrong(path, "nothing says how to read it; give `import`"))?;
         Import::parse(&import.display().to_string(), &read_text(import)?)?
+            .with_bags(twintac_log::read_bag)
             .read_csv(path)?
             .0
     };

@@ -19,11 +19,12 @@ use twintac_inverse::{
 };
 use twintac_recording::{Control, Press, Provenance, Recording};
 use twintac_simulate::Gel;
-use twintac_work::{Progress, WorkError};
+use twintac_work::{Progress, Silent, WorkError};
 
 use crate::gel::gel_of;
 use crate::press_checksum::press_checksum;
 use crate::taxels::left_out;
+use crate::temperature::as_taught;
 use crate::unseen::refuse_other_sensor;
 
 pub use errors::LocationErrors;
@@ -134,6 +135,7 @@ impl Locator {
     pub fn locate(&self, recording: &Recording) -> Result<Located, WorkError> {
         let record = &self.model.record;
         refuse_other_sensor(recording, self.gel.sensor())?;
+        let recording = &*as_taught(recording, record, &Silent)?;
         let taught: Vec<bool> = recording
             .presses
             .iter()

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde::Serialize;
 use twintac_lab::{Lab, LiveTable, Reality};
-use twintac_log::ReadOptions;
+use twintac_log::{ReadOptions, read_bag};
 use twintac_protocol::{LoadPlan, PressPlan};
-use twintac_recording::{Import, ImportSummary, Press, Recording};
+use twintac_recording::{Import, ImportSummary, Press, Recording, guess_bag_import};
 use twintac_sensor::{Sensor, SensorFile};
 use twintac_store::{Digest, Finished, Keyed, Recipe, Stage, Store, StoreError, read_json, write_json};
+use twintac_temperature::Compensation;
 use twintac_work::{At, Planned, Progress, Work, WorkError, read_text};
 
 use crate::Run;
@@ -44,6 +45,8 @@ struct Importing<'a> {
     sensor: &'a Keyed<SensorFile>,
     import: Keyed<Import>,
     files: Vec<LabFile<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    temperature: Option<&'a Compensation>,
 }
 
 impl Stage for Importing<'_> {
@@ -54,9 +57,10 @@ impl Stage for Importing<'_> {
 
     fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let files: Vec<PathBuf> = self.files.iter().map(|file| file.path.clone()).collect();
-        let (recording, summary) = self.import.read_all(&files)?;
+        let (mut recording, summary) = self.import.read_all(&files)?;
         tell(&summary, progress);
         check_sensor(&self.sensor.sensor, &recording)?;
+        compensate(&mut recording, self.temperature, progress)?;
         recording.write_parquet(&folder.join(PRESSES))?;
         Ok(write_json(&folder.join("summary.json"), &summary)?)
     }
@@ -67,6 +71,18 @@ fn tell(summary: &ImportSummary, progress: &dyn Progress) {
     for file in summary.files.iter().filter(|file| file.is_notable()) {
         file.to_string().lines().for_each(|line| progress.note(line));
     }
+}
+
+/// Takes off what temperature did to the zeros, where it is known how they move with it, and says so.
+fn compensate(
+    recording: &mut Recording,
+    temperature: Option<&Compensation>,
+    progress: &dyn Progress,
+) -> Result<(), WorkError> {
+    if let Some(temperature) = temperature {
+        twintac_model::compensate(recording, temperature, progress)?;
+    }
+    Ok(())
 }
 
 /// Presses and weights on the emulated bench at once.
@@ -200,6 +216,8 @@ struct Collecting<'a> {
     sensor: &'a Keyed<SensorFile>,
     plans: &'a [PressPlan],
     logs: Vec<LabFile<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    temperature: Option<&'a Compensation>,
 }
 
 impl Stage for Collecting<'_> {
@@ -208,7 +226,7 @@ impl Stage for Collecting<'_> {
     type Follower = dyn Progress;
     type Error = WorkError;
 
-    fn make(&self, folder: &Path, _: &dyn Progress) -> Result<(), WorkError> {
+    fn make(&self, folder: &Path, progress: &dyn Progress) -> Result<(), WorkError> {
         let mut recording: Option<Recording> = None;
         let mut remarks = Vec::new();
         for LabFile { path, name, .. } in &self.logs {
@@ -225,8 +243,9 @@ impl Stage for Collecting<'_> {
                     .at(|| path.display().to_string())?,
             }
         }
-        let recording = recording.ok_or_else(|| WorkError::Input("no press is done".to_owned()))?;
+        let mut recording = recording.ok_or_else(|| WorkError::Input("no press is done".to_owned()))?;
         check_sensor(&self.sensor.sensor, &recording)?;
+        compensate(&mut recording, self.temperature, progress)?;
         recording.write_parquet(&folder.join(PRESSES))?;
         write_json(&folder.join("plans.json"), &self.plans)?;
         Ok(write_json(&folder.join("remarks.json"), &remarks)?)
@@ -274,12 +293,12 @@ impl Run {
     /// # Errors
     /// A file that cannot be read as described, or that is of another sensor.
     pub fn import(&self, import: &Path, files: &[PathBuf]) -> Result<(), WorkError> {
-        let text = read_text(import)?;
-        let description = Import::parse(&import.display().to_string(), &text)?;
+        let (description, text) = read_import_text(import)?;
         self.run_stage(&Importing {
             sensor: self.keyed_sensor(),
             import: Keyed::of_bytes(description, text.as_bytes()),
             files: lab_files(files)?,
+            temperature: self.settings().temperature.as_ref(),
         })
         .map(drop)
     }
@@ -336,6 +355,7 @@ impl Run {
             sensor: self.keyed_sensor(),
             plans,
             logs: lab_files(&files)?,
+            temperature: self.settings().temperature.as_ref(),
         })
         .map(drop)
     }
@@ -421,8 +441,30 @@ where
 /// # Errors
 /// A file that cannot be read as described.
 pub fn import_files(import: &Path, files: &[PathBuf]) -> Result<(Recording, ImportSummary), WorkError> {
-    let import = Import::parse(&import.display().to_string(), &read_text(import)?)?;
-    Ok(import.read_all(files)?)
+    Ok(read_import(import)?.read_all(files)?)
+}
+
+/// Reads a description of columns, of CSV files or of bags of ROS 2.
+///
+/// # Errors
+/// A file that cannot be read, or is wrong.
+pub fn read_import(import: &Path) -> Result<Import, WorkError> {
+    read_import_text(import).map(|(import, _)| import)
+}
+
+fn read_import_text(import: &Path) -> Result<(Import, String), WorkError> {
+    let text = read_text(import)?;
+    let description = Import::parse(&import.display().to_string(), &text)?;
+    Ok((description.with_bags(read_bag), text))
+}
+
+/// The text of a first import description of a CSV file or a bag of ROS 2, to be checked. What is not in the file is marked with TODO.
+///
+/// # Errors
+/// A file that cannot be read, or in which nothing looks like readings.
+pub fn guess_import(file: &Path) -> Result<String, WorkError> {
+    let guess = guess_bag_import(file, read_bag);
+    Ok(guess.unwrap_or_else(|| twintac_recording::guess_import(file))?)
 }
 
 /// Reads `presses.parquet` files of runs as one recording.

@@ -303,6 +303,7 @@ impl<'a> Training<'a> {
                 .chain(&split.validation)
                 .map(|&press| press_checksum(&self.recording.presses[press]))
                 .collect(),
+            temperature: settings.temperature.clone(),
             split,
             certainty,
         };

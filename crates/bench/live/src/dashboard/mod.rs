@@ -6,9 +6,7 @@ mod draw;
 mod map;
 mod state;
 mod terminal;
-mod touch_recording;
 
 pub use draw::draw;
 pub use state::{DashboardState, RecordingStatus};
 pub use terminal::run;
-pub use touch_recording::TouchRecording;

@@ -37,6 +37,8 @@ pub struct DashboardState {
     pub prepared: PreparedMap,
     tare: Tare,
     taring: Option<Taring>,
+    /// Whether it was said that chips have another temperature than at the tare.
+    was_warned: bool,
     /// Times of the frames that traces go back, s.
     times_s: VecDeque<f64>,
     strongest_kpa: f64,
@@ -58,7 +60,7 @@ impl DashboardState {
     /// [`LiveError::Map`]: taxels share a place.
     pub fn new(about: About) -> Result<Self, LiveError> {
         let prepared = prepare(&about, &[])?;
-        let n = about.taxels.len();
+        let (n, kpa_per_k) = (about.taxels.len(), about.kpa_per_k.clone());
         Ok(Self {
             about,
             latest: None,
@@ -68,10 +70,9 @@ impl DashboardState {
             message: TARING.to_owned(),
             map_kpa: vec![0.0; GRID[0] * GRID[1]],
             prepared,
-            tare: Tare {
-                baseline_kpa: vec![None; n],
-            },
-            taring: Some(Taring::default()),
+            tare: Tare::default(),
+            taring: Some(Taring::new(kpa_per_k)),
+            was_warned: false,
             times_s: VecDeque::with_capacity(HISTORY),
             strongest_kpa: 0.0,
         })
@@ -79,20 +80,19 @@ impl DashboardState {
 
     /// Takes the next frame.
     pub fn push(&mut self, reading: Reading) {
-        if let Some(tare) = self
-            .taring
-            .as_mut()
-            .and_then(|taring| taring.push(&reading.frame))
-        {
+        if let Some(tare) = self.taring.as_mut().and_then(|taring| taring.push(&reading)) {
             (self.tare, self.taring) = (tare, None);
             self.message = "tare taken".to_owned();
         }
-        for (trace, above_kpa) in self
-            .traces_kpa
-            .iter_mut()
-            .zip(self.tare.above_kpa(&reading.frame))
-        {
+        let mut above_kpa = self.tare.above_kpa(&reading);
+        above_kpa.resize(self.traces_kpa.len(), None); // before the first tare
+        for (trace, above_kpa) in self.traces_kpa.iter_mut().zip(above_kpa) {
             keep(trace, above_kpa);
+        }
+        if !self.was_warned
+            && let Some(remark) = self.tare.remark()
+        {
+            (self.message, self.was_warned) = (remark, true);
         }
         keep(&mut self.times_s, reading.bench_s);
         self.latest = Some(reading);
@@ -117,7 +117,8 @@ impl DashboardState {
 
     /// Takes a tare of the next frames.
     pub fn tare(&mut self) {
-        self.taring = Some(Taring::default());
+        self.taring = Some(Taring::new(self.about.kpa_per_k.clone()));
+        self.was_warned = false;
         self.message = TARING.to_owned();
     }
 

@@ -9,8 +9,8 @@ use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use twintac_source::{FrameSource, Tally};
 
-use super::{DashboardState, RecordingStatus, TouchRecording, draw};
-use crate::{About, LiveError};
+use super::{DashboardState, RecordingStatus, draw};
+use crate::{About, LiveError, TouchRecording};
 
 /// Time between two pictures: 15 a second.
 const PICTURE: Duration = Duration::from_millis(66);

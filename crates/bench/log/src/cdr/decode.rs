@@ -14,6 +14,15 @@ impl<'a> Decoder<'a> {
         Some(Self { bytes, at: 0 })
     }
 
+    /// Of programs that set options in the message's first bytes: they say nothing that is needed to read it.
+    pub(crate) fn of_others(message: &'a [u8]) -> Option<Self> {
+        let [first, second, _, _] = ENCAPSULATION;
+        match message.split_first_chunk()? {
+            ([one, other, _, _], bytes) if [*one, *other] == [first, second] => Some(Self { bytes, at: 0 }),
+            _ => None,
+        }
+    }
+
     fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
         self.at = self.at.next_multiple_of(N);
         let number = self.bytes.get(self.at..)?.first_chunk()?;
@@ -23,6 +32,22 @@ impl<'a> Decoder<'a> {
 
     pub(crate) fn u8(&mut self) -> Option<u8> {
         self.take().map(u8::from_le_bytes)
+    }
+
+    pub(crate) fn i8(&mut self) -> Option<i8> {
+        self.take().map(i8::from_le_bytes)
+    }
+
+    pub(crate) fn i16(&mut self) -> Option<i16> {
+        self.take().map(i16::from_le_bytes)
+    }
+
+    pub(crate) fn u16(&mut self) -> Option<u16> {
+        self.take().map(u16::from_le_bytes)
+    }
+
+    pub(crate) fn f32(&mut self) -> Option<f32> {
+        self.take().map(f32::from_le_bytes)
     }
 
     pub(crate) fn i32(&mut self) -> Option<i32> {
@@ -50,6 +75,24 @@ impl<'a> Decoder<'a> {
         let text = self.bytes.get(self.at..)?.get(..length)?;
         self.at += length;
         std::str::from_utf8(text.strip_suffix(&[0])?).ok()
+    }
+
+    /// Passes over a text, whatever is in it.
+    pub(crate) fn skip_text(&mut self) -> Option<()> {
+        let length = usize::try_from(self.u32()?).ok()?;
+        self.skip(length, 1)
+    }
+
+    /// Passes over so many numbers of a size.
+    pub(crate) fn skip(&mut self, length: usize, size: usize) -> Option<()> {
+        if length > 0 {
+            let end = self
+                .at
+                .next_multiple_of(size)
+                .checked_add(length.checked_mul(size)?)?;
+            self.at = (end <= self.bytes.len()).then_some(end)?;
+        }
+        Some(())
     }
 
     /// A sequence as long as it says, or none: memory grows with the bytes that are there.

@@ -39,6 +39,10 @@ impl<'a> Encoder<'a> {
         self.put(number.to_le_bytes());
     }
 
+    pub(crate) fn f32(&mut self, number: f32) {
+        self.put(number.to_le_bytes());
+    }
+
     pub(crate) fn f64(&mut self, number: f64) {
         self.put(number.to_le_bytes());
     }

@@ -1,4 +1,4 @@
-//! The container: MCAP, without compression.
+//! The container: MCAP. It is written without compression, and read with that of others.
 //!
 //! Source: the MCAP format specification, <https://mcap.dev/spec>. A file is `magic | records | magic`, a record its kind, its
 //! length and its content. Messages stand in chunks, whose checksum tells whether they are whole.
@@ -12,10 +12,11 @@ mod scan;
 mod source;
 mod summary;
 mod take;
+mod unpack;
 
 pub(crate) use chunk::{Chunk, number};
 pub(crate) use record::{Records, op};
-pub(crate) use scan::{Found, Scanner, Statistics};
+pub(crate) use scan::{Found, Scanner, Schema, Statistics};
 pub(crate) use summary::Summary;
 
 /// First and last bytes of a file.

@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::ops::Range;
+use std::sync::Arc;
 
 use crc32fast::Hasher;
 
 use super::source::Source;
 use super::take::Take;
+use super::unpack::{Unpacked, unpack};
 use super::{MAGIC, op};
 
 /// Largest record that is read; longer ones are damage. Chunks of common writers have a few MB.
@@ -20,8 +22,13 @@ const HEADER_BYTES: usize = 44;
 /// Something in a file.
 #[derive(Debug)]
 pub(crate) enum Found<'a> {
-    /// A channel, with the name of its schema.
-    Channel { id: u16, topic: String, schema: String },
+    /// A channel, how its messages are written, and what they are.
+    Channel {
+        id: u16,
+        topic: String,
+        encoding: String,
+        schema: Arc<Schema>,
+    },
     /// Texts about the file.
     Metadata {
         name: String,
@@ -36,7 +43,7 @@ pub(crate) enum Found<'a> {
     },
     /// Something that is not what was written; reading goes on behind it.
     Damage,
-    /// A chunk that is compressed, and how.
+    /// A chunk that is compressed in a way that is not known, and how.
     Compressed(String),
     /// The end, with footer and last magic.
     End,
@@ -49,7 +56,8 @@ enum Step {
     Channel {
         id: u16,
         topic: String,
-        schema: String,
+        encoding: String,
+        schema: Arc<Schema>,
     },
     Metadata {
         name: String,
@@ -64,6 +72,16 @@ enum Step {
     Nothing,
 }
 
+/// What the messages of a channel are.
+#[derive(Debug, Default)]
+pub(crate) struct Schema {
+    pub(crate) name: String,
+    /// How `text` is written.
+    pub(crate) encoding: String,
+    /// Empty if it is no text.
+    pub(crate) text: String,
+}
+
 /// What a file says of its messages as a whole.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Statistics {
@@ -73,7 +91,7 @@ pub(crate) struct Statistics {
     pub(crate) counts: BTreeMap<u16, u64>,
 }
 
-/// Reads a file once, from its start. Its memory is bounded by its largest record and the names of its schemas.
+/// Reads a file once, from its start. Its memory is bounded by its largest record and its schemas.
 #[derive(Debug)]
 pub(crate) struct Scanner<R> {
     source: Source<R>,
@@ -81,7 +99,7 @@ pub(crate) struct Scanner<R> {
     buffer: Vec<u8>,
     /// The part of it that is still to be read.
     rest: Range<usize>,
-    schemas: BTreeMap<u16, String>,
+    schemas: BTreeMap<u16, Arc<Schema>>,
     /// Whether the data have ended and the summary is read.
     is_in_summary: bool,
     /// Whether a checksum of the file says that its bytes have changed, wherever that is.
@@ -127,7 +145,19 @@ impl<R: Read> Scanner<R> {
             }
             match self.step() {
                 Some(Step::Nothing) => {}
-                Some(Step::Channel { id, topic, schema }) => return Ok(Found::Channel { id, topic, schema }),
+                Some(Step::Channel {
+                    id,
+                    topic,
+                    encoding,
+                    schema,
+                }) => {
+                    return Ok(Found::Channel {
+                        id,
+                        topic,
+                        encoding,
+                        schema,
+                    });
+                }
                 Some(Step::Metadata { name, map }) => return Ok(Found::Metadata { name, map }),
                 Some(Step::Message {
                     channel,
@@ -221,21 +251,27 @@ impl<R: Read> Scanner<R> {
     /// Lets the messages of the chunk in the buffer be the rest; `None` if it is damaged.
     fn open_chunk(&mut self) -> Option<Option<Found<'static>>> {
         let mut chunk = Take(self.buffer.get(FRAMING_BYTES..)?);
-        let (_earliest_ns, _latest_ns, _length) = (chunk.u64()?, chunk.u64()?, chunk.u64()?);
+        let (_earliest_ns, _latest_ns, unpacked_bytes) = (chunk.u64()?, chunk.u64()?, chunk.u64()?);
         let checksum = chunk.u32()?;
         let compression = chunk.string()?;
         let length = chunk.u64()?;
         let records = chunk.bytes(length)?;
-        if !compression.is_empty() {
-            return Some(Some(Found::Compressed(compression.to_owned())));
-        }
         // A checksum of 0 stands for none.
-        if checksum != 0 && checksum != crc32fast::hash(records) {
-            return None;
+        let is_whole = |records: &[u8]| checksum == 0 || checksum == crc32fast::hash(records);
+        if compression.is_empty() {
+            let end = self.buffer.len() - chunk.0.len();
+            self.rest = is_whole(records).then(|| end - records.len()..end)?;
+            return Some(None);
         }
-        let end = self.buffer.len() - chunk.0.len();
-        self.rest = end - records.len()..end;
-        Some(None)
+        match unpack(compression, records, unpacked_bytes) {
+            Unpacked::Whole(records) if is_whole(&records) => {
+                self.rest = 0..records.len();
+                self.buffer = records;
+                Some(None)
+            }
+            Unpacked::Whole(_) | Unpacked::Damaged => None,
+            Unpacked::Unknown => Some(Some(Found::Compressed(compression.to_owned()))),
+        }
     }
 
     /// Takes one record off the rest; `None` if it is damaged.
@@ -247,8 +283,15 @@ impl<R: Read> Scanner<R> {
         self.rest.start = self.rest.end - rest.0.len();
         Some(match kind {
             op::SCHEMA => {
-                let (id, name) = (content.u16()?, content.string()?.to_owned());
-                self.schemas.insert(id, name);
+                let (id, name, encoding) = (content.u16()?, content.string()?, content.string()?);
+                let length = content.u32()?;
+                let text = String::from_utf8(content.bytes(length.into())?.to_owned());
+                let schema = Schema {
+                    name: name.to_owned(),
+                    encoding: encoding.to_owned(),
+                    text: text.unwrap_or_default(),
+                };
+                self.schemas.insert(id, Arc::new(schema));
                 Step::Nothing
             }
             op::CHANNEL => {
@@ -256,6 +299,7 @@ impl<R: Read> Scanner<R> {
                 Step::Channel {
                     id,
                     topic: content.string()?.to_owned(),
+                    encoding: content.string()?.to_owned(),
                     schema: self.schemas.get(&schema).cloned().unwrap_or_default(),
                 }
             }

@@ -5,7 +5,7 @@ use twintac_recording::Press;
 use super::ReadOptions;
 use super::baseline::{baseline_pa, pressure_pa};
 use super::collect::Collected;
-use crate::{Description, TaxelReading};
+use crate::{Description, TactileFrame, TaxelReading};
 
 /// The press at a place of the log's spans; none if no frame is in it.
 pub(super) fn press(
@@ -54,6 +54,7 @@ pub(super) fn press(
         force_n: has_force.then(|| Vec::with_capacity(frames.len())),
         taxels_kpa: Vec::with_capacity(frames.len()),
         taxels_raw: Vec::with_capacity(frames.len()),
+        temperature_c: temperatures_c(frames),
         valid: Vec::with_capacity(frames.len()),
     };
     for (time_ns, frame) in frames {
@@ -95,6 +96,16 @@ pub(super) fn press(
         }
     }
     Some(press)
+}
+
+/// Temperatures of the taxels in each frame, if any gave one.
+fn temperatures_c(frames: &[(u64, TactileFrame)]) -> Option<Vec<Vec<f64>>> {
+    let known = |taxel: &TaxelReading| known_or_nan(taxel.temperature_c.filter(|c| c.is_finite()));
+    let rows = frames
+        .iter()
+        .map(|(_, frame)| frame.taxels.iter().map(known).collect());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    rows.iter().flatten().any(|c| !c.is_nan()).then_some(rows)
 }
 
 /// What the taxel gave, in its own unit; NaN if it gave nothing.

@@ -1,6 +1,7 @@
 //! Message definitions as ROS writes them, each with those that it is made of.
 
 /// A schema of the file. Its number there is its place in [`DEFINITIONS`], from 1.
+#[derive(Debug)]
 pub(crate) struct Definition {
     /// Such as `std_msgs/msg/String`.
     pub(crate) name: &'static str,
@@ -54,9 +55,13 @@ pub(super) const WRENCH_STAMPED: usize = 4;
 pub(super) const POSE_STAMPED: usize = 5;
 pub(super) const FLUID_PRESSURE: usize = 6;
 pub(super) const TEMPERATURE: usize = 7;
+pub(super) const FLOAT32_MULTI_ARRAY: usize = 8;
 
-/// All schemas of a file.
-pub(crate) const DEFINITIONS: [Definition; 8] = [
+/// How many of [`DEFINITIONS`], from the first on, are those of a log.
+pub(super) const OF_LOGS: usize = 8;
+
+/// All schemas of files.
+pub(crate) const DEFINITIONS: [Definition; 9] = [
     Definition {
         name: "std_msgs/msg/String",
         text: "string data\n",
@@ -132,5 +137,13 @@ pub(crate) const DEFINITIONS: [Definition; 8] = [
     Definition {
         name: "sensor_msgs/msg/Temperature",
         text: with_header!("std_msgs/Header header\nfloat64 temperature\nfloat64 variance\n"),
+    },
+    Definition {
+        name: "std_msgs/msg/Float32MultiArray",
+        text: with_parts!(
+            "std_msgs/MultiArrayLayout layout\nfloat32[] data\n",
+            "std_msgs/MultiArrayLayout": "std_msgs/MultiArrayDimension[] dim\nuint32 data_offset\n",
+            "std_msgs/MultiArrayDimension": "string label\nuint32 size\nuint32 stride\n"
+        ),
     },
 ];

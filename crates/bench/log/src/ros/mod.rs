@@ -5,13 +5,17 @@
 
 mod definition;
 mod header;
+mod names;
 mod sample;
 mod standard;
 #[cfg(test)]
 mod tests;
 mod topics;
 
-pub(crate) use definition::{DEFINITIONS, SCHEMA_ENCODING};
+#[cfg(test)]
+pub(crate) use definition::DEFINITIONS;
+pub(crate) use definition::SCHEMA_ENCODING;
+pub use names::TopicNames;
 pub(crate) use topics::{MESSAGE_ENCODING, Topics, stream_of};
 
 use crate::cdr::Decoder;

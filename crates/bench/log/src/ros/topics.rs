@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::definition::{
-    DEFINITIONS, FLUID_PRESSURE, POSE_SAMPLE, POSE_STAMPED, STRING, TACTILE_FRAME, TEMPERATURE,
-    WRENCH_SAMPLE, WRENCH_STAMPED,
+    DEFINITIONS, Definition, FLOAT32_MULTI_ARRAY, FLUID_PRESSURE, OF_LOGS, POSE_SAMPLE, POSE_STAMPED, STRING,
+    TACTILE_FRAME, TEMPERATURE, WRENCH_SAMPLE, WRENCH_STAMPED,
 };
+use super::names::TopicNames;
 use super::{sample, standard};
 use crate::cdr::Encoder;
 use crate::{Body, Stream};
@@ -48,7 +49,11 @@ pub(crate) fn stream_of(topic: &str, schema: &str) -> Option<Stream> {
 pub(crate) struct Topics {
     /// Name and place of the schema in [`DEFINITIONS`].
     pub(crate) channels: Vec<(String, usize)>,
+    /// Schemas that the file has.
+    pub(crate) definitions: &'static [Definition],
     taxels: Vec<String>,
+    /// Of a file with standard messages alone: what the array of all pressures is called.
+    label: Option<String>,
 }
 
 impl Topics {
@@ -62,7 +67,39 @@ impl Topics {
             channels.push((format!("/tactile/{taxel}/pressure"), FLUID_PRESSURE));
             channels.push((format!("/tactile/{taxel}/temperature"), TEMPERATURE));
         }
-        Self { channels, taxels }
+        Self {
+            channels,
+            definitions: &DEFINITIONS[..OF_LOGS],
+            taxels,
+            label: None,
+        }
+    }
+
+    /// Those of a file with standard messages alone.
+    pub(crate) fn standard(taxels: &[String], names: &TopicNames) -> Self {
+        let label = format!("pressure_pa: {}", taxels.join(", "));
+        let taxels = ros_names(taxels);
+        let mut channels = vec![
+            (names.events.clone(), STRING),
+            (names.tactile.clone(), FLOAT32_MULTI_ARRAY),
+            (names.wrench.clone(), WRENCH_STAMPED),
+            (names.pose.clone(), POSE_STAMPED),
+        ];
+        for taxel in &taxels {
+            channels.push((names.pressure_of(taxel), FLUID_PRESSURE));
+            channels.push((names.temperature_of(taxel), TEMPERATURE));
+        }
+        Self {
+            channels,
+            definitions: &DEFINITIONS,
+            taxels,
+            label: Some(label),
+        }
+    }
+
+    /// The place of a taxel's pressure, behind which its temperature is.
+    fn of_taxel(&self, index: usize) -> usize {
+        self.channels.len() - 2 * (self.taxels.len() - index)
     }
 
     /// Hands each message that is to be written to `put`: the place of its channel, and what encodes it.
@@ -74,9 +111,12 @@ impl Topics {
     ) {
         match body {
             Body::Tactile(frame) => {
-                put(TACTILE, &|e| sample::put_tactile(e, unix_ns, frame));
+                put(TACTILE, &|e| match &self.label {
+                    None => sample::put_tactile(e, unix_ns, frame),
+                    Some(label) => standard::put_pressures(e, label, frame),
+                });
                 for (index, (taxel, name)) in frame.taxels.iter().zip(&self.taxels).enumerate() {
-                    let pressure = FIRST_TAXEL + 2 * index;
+                    let pressure = self.of_taxel(index);
                     for (channel, number) in
                         [(pressure, taxel.pressure_pa), (pressure + 1, taxel.temperature_c)]
                     {
@@ -87,12 +127,24 @@ impl Topics {
                 }
             }
             Body::Wrench(reading) => {
-                put(WRENCH, &|e| sample::put_wrench(e, unix_ns, reading));
-                put(WRENCH_STANDARD, &|e| standard::put_wrench(e, unix_ns, reading));
+                let standard = match self.label {
+                    None => {
+                        put(WRENCH, &|e| sample::put_wrench(e, unix_ns, reading));
+                        WRENCH_STANDARD
+                    }
+                    Some(_) => WRENCH,
+                };
+                put(standard, &|e| standard::put_wrench(e, unix_ns, reading));
             }
             Body::Pose(reading) => {
-                put(POSE, &|e| sample::put_pose(e, unix_ns, reading));
-                put(POSE_STANDARD, &|e| standard::put_pose(e, unix_ns, reading));
+                let standard = match self.label {
+                    None => {
+                        put(POSE, &|e| sample::put_pose(e, unix_ns, reading));
+                        POSE_STANDARD
+                    }
+                    Some(_) => POSE,
+                };
+                put(standard, &|e| standard::put_pose(e, unix_ns, reading));
             }
             Body::Event(event) => {
                 // Finite numbers and texts are always JSON.

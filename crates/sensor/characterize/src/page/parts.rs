@@ -44,6 +44,12 @@ pub(super) fn warnings(found: &Characterization) -> Vec<String> {
             found.provenance
         ));
     }
+    if found.n_leaps > 0 {
+        warnings.push(format!(
+            "{} times five seconds of a taxel are left out of its noise, zero and temperature: its readings leap there, as if something touched it.",
+            found.n_leaps
+        ));
+    }
     let n_left_out = found.n_presses - found.n_used;
     if n_left_out > 0 {
         warnings.push(format!(

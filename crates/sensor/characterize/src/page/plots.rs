@@ -92,7 +92,8 @@ pub(super) fn over_time(recording: &Recording, recorded: &[Recorded<'_>]) -> Opt
     let of_taxel = |taxel: usize| above(recorded, taxel).filter(is_shown);
     let taxel = (0..recording.taxels.len())
         .rev()
-        .max_by_key(|&taxel| of_taxel(taxel).count())?;
+        .max_by_key(|&taxel| of_taxel(taxel).count())
+        .filter(|&taxel| of_taxel(taxel).next().is_some())?;
     // The most different: evenly chosen by how fast they load, shown as they were recorded.
     let mut order: Vec<(usize, &Recorded<'_>)> = of_taxel(taxel).enumerate().collect();
     let rate =

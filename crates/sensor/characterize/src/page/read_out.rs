@@ -18,7 +18,10 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
         row(
             "Frames",
             or_not(&found.timing, |timing| {
-                let (rate_hz, jitter) = (number(timing.rate_hz, 3), number(100.0 * timing.jitter, 2));
+                let (rate_hz, jitter) = (
+                    number(timing.rate_hz, 3),
+                    number(100.0 * above_rounding(timing.jitter), 2),
+                );
                 format!("{rate_hz} Hz, jitter {jitter} %")
             }),
             if_found(&found.timing, |timing| {
@@ -52,4 +55,9 @@ pub(super) fn rows(found: &Characterization) -> Vec<[String; 3]> {
             },
         ),
     ]
+}
+
+/// A jitter that is more than the rounding of times.
+fn above_rounding(jitter: f64) -> f64 {
+    if jitter < 1e-9 { 0.0 } else { jitter }
 }

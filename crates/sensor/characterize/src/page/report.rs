@@ -27,31 +27,34 @@ pub fn report(found: &Characterization, recording: &Recording, sensor: &Sensor) 
     ]);
     let cross_talk = figures(vec![found.cross_talk.found().map(plots::cross_talk)]);
     let noise = figures(vec![noise_bars(found), plots::drift(found)]);
+    let mut sections = vec![
+        section("result", "Result", result(found, sensor)),
+        section("time", "Over time", time),
+        section(
+            "range",
+            "Range and sensitivity",
+            range(found, recording, sensor, &recorded),
+        ),
+        section(
+            "repeats",
+            "Hysteresis and repeatability",
+            figures(repeat_plots(found)),
+        ),
+        section("speed", "Rise and creep", speed),
+        section("cross-talk", "Cross-talk", cross_talk),
+        section("noise", "Noise and drift", noise),
+        section("missing", "Not given by these recordings", missing(found)),
+        section("definitions", "Definitions", definitions(found)),
+    ];
+    let is_empty = |block: &Block| matches!(block, Block::Figures(figures) if figures.is_empty());
+    sections.retain(|section| !section.blocks.iter().all(is_empty));
     Page {
         kind: "Characterization".into(),
         title: found.sensor.clone(),
         badge: badge(found.provenance),
         lead: vec![lead(found).into()],
         warnings: parts::warnings(found),
-        sections: vec![
-            section("result", "Result", result(found, sensor)),
-            section("time", "Over time", time),
-            section(
-                "range",
-                "Range and sensitivity",
-                range(found, recording, sensor, &recorded),
-            ),
-            section(
-                "repeats",
-                "Hysteresis and repeatability",
-                figures(repeat_plots(found)),
-            ),
-            section("speed", "Rise and creep", speed),
-            section("cross-talk", "Cross-talk", cross_talk),
-            section("noise", "Noise and drift", noise),
-            section("missing", "Not given by these recordings", missing(found)),
-            section("definitions", "Definitions", definitions(found)),
-        ],
+        sections,
         is_sheet: false,
     }
 }
@@ -112,6 +115,12 @@ fn noise_bars(found: &Characterization) -> Option<Plot> {
 }
 
 fn lead(found: &Characterization) -> String {
+    if found.n_presses == 0 {
+        return format!(
+            "{} frames of readings alone, in which nothing should touch the sensor: what takes a press is not given.",
+            found.n_frames_alone
+        );
+    }
     let sensitivity = or_not(&found.overall, |overall| {
         format!(
             "{} kPa/N on average over {} taxels, linear to {} N",
@@ -237,6 +246,7 @@ fn missing(found: &Characterization) -> Vec<Block> {
         why("creep", &found.creep),
         why("cross-talk", &found.cross_talk),
         why("return to zero", &found.zero_return),
+        why("zero over time", &found.zero),
         why("drift with temperature", &found.temperature_drift),
     ]
     .into_iter()
@@ -283,6 +293,8 @@ fn definitions(found: &Characterization) -> Vec<Block> {
         row("creep", "change of reading over force in a hold (ISA-37.1, for a load that a robot cannot keep constant)".into()),
         row("cross-talk", "reading of another taxel over that of the pressed one, at the same force".into()),
         row("return to zero", "unloaded reading after a press, less that before".into()),
+        row("zero over time", "slope of the least-squares line of unloaded readings over time, averaged over five seconds, in the longest log".into()),
+        row("drift with temperature", "slope of the least-squares line of unloaded readings over the chips’ temperature, both averaged over five seconds".into()),
     ];
     vec![table("", ["figure", "definition"], rows)]
 }

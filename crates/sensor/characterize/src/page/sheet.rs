@@ -67,7 +67,10 @@ fn described(found: &Characterization, sensor: &Sensor) -> Vec<[String; 3]> {
         row(
             "Taxels",
             sensor.taxels.len().to_string(),
-            format!("indenters: {}", found.indenters.join(", ")),
+            match &found.indenters[..] {
+                [] => format!("{} frames of readings alone, no presses", found.n_frames_alone),
+                indenters => format!("indenters: {}", indenters.join(", ")),
+            },
         ),
         row(
             "Barometers’ range",
@@ -257,6 +260,21 @@ fn beside(found: &Characterization) -> Vec<[String; 3]> {
             "root mean square over presses, by taxel".into(),
         ),
         row(
+            "Zero over time",
+            or_not(&found.zero, |taxels| {
+                format!(
+                    "{} kPa/h",
+                    span(taxels.iter().map(|taxel| taxel.drift_kpa_per_h), 2)
+                )
+            }),
+            if_found(&found.zero, |taxels| {
+                format!(
+                    "slope over {} h, by taxel; weather and temperature are in it",
+                    number(taxels[0].hours, 2)
+                )
+            }),
+        ),
+        row(
             "Drift with temperature",
             or_not(&found.temperature_drift, |taxels| {
                 format!(
@@ -264,10 +282,10 @@ fn beside(found: &Characterization) -> Vec<[String; 3]> {
                     span(taxels.iter().map(|taxel| taxel.coefficient_kpa_per_k), 2)
                 )
             }),
-            found
-                .temperature_drift
-                .found()
-                .map_or(String::new(), |_| "unloaded, by taxel".into()),
+            if_found(&found.temperature_drift, |taxels| {
+                let left = taxels.iter().map(|taxel| taxel.remaining_kpa);
+                format!("unloaded, by taxel; {} kPa are left without it", span(left, 2))
+            }),
         ),
     ]
 }

@@ -43,6 +43,7 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
     }
     let pick = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
     Track {
+        row_name: track.row_name,
         lines: rows.iter().map(|&row| track.lines[row]).collect(),
         time_s: pick(&track.time_s),
         x_mm: pick(&track.x_mm),
@@ -60,6 +61,7 @@ pub(crate) fn onto_pose_clock(track: Track, description: &Description) -> Track 
         } else {
             pick(&track.press)
         },
+        temperature_c: track.temperature_c.iter().map(|column| pick(column)).collect(),
         raw,
         usable,
     }

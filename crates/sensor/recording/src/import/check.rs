@@ -174,6 +174,12 @@ fn check_readings(d: &Description) -> Result<(), Problem> {
         "give a finite number that is not 0",
     )?;
     require(
+        d.temperatures.scale.is_normal(),
+        "temperatures.scale",
+        format!("is {}", d.temperatures.scale),
+        "give a scale that is not 0",
+    )?;
+    require(
         d.readings.usable[0] < d.readings.usable[1],
         "readings.usable",
         "is empty",
@@ -197,6 +203,12 @@ fn check_taxels(d: &Description) -> Result<(), Problem> {
             field("column"),
             format!("`{}` is another taxel's, too", taxel.column),
             "give each taxel a column of its own",
+        )?;
+        require(
+            taxel.temperature.as_ref() != Some(&taxel.column),
+            field("temperature"),
+            format!("`{}` is its readings, too", taxel.column),
+            "give the column of its temperature",
         )?;
         require(
             !taxel.name.is_empty(),
@@ -258,12 +270,15 @@ fn check_times(d: &Description, is_static: bool) -> Result<(), Problem> {
             "give a rate above 0 Hz",
         )?;
     }
-    let has_time = d.time.as_ref().is_some_and(|time| time.column.is_some());
+    let has_time = match &d.time {
+        Some(time) => time.column.is_some(),
+        None => d.is_of_bag(),
+    };
     require(
         is_static || has_time,
         "time",
         "has no column",
-        "name the column of the time, or split presses by row",
+        "name the column of the time, or split presses by row; only columns `/topic:field` of a bag have a time of their own",
     )?;
     let lagging = d.taxels.iter().any(|taxel| taxel.lag_s != 0.0);
     require(
@@ -283,10 +298,10 @@ fn check_times(d: &Description, is_static: bool) -> Result<(), Problem> {
 
 fn check_load(d: &Description) -> Result<(), Problem> {
     require(
-        d.z.is_some() || d.weight_n.is_some(),
+        d.z.is_some() || d.weight_n.is_some() || matches!(d.presses, Split::None),
         "z",
         "is missing",
-        "give z, or weight_n for a dead weight",
+        "give z, weight_n for a dead weight, or presses = { split = \"none\" } for a log of readings alone",
     )?;
     let both = d.force.is_some() && d.weight_n.is_some();
     require(
@@ -306,6 +321,12 @@ fn check_load(d: &Description) -> Result<(), Problem> {
 }
 
 fn check_presses(d: &Description) -> Result<(), Problem> {
+    require(
+        !(matches!(d.presses, Split::None) && d.zero.is_some()),
+        "zero",
+        "stands where there are no presses",
+        "leave it out: a log of readings alone keeps them as they are",
+    )?;
     if let Split::ReturnToRest {
         rest_mm,
         tolerance_mm,

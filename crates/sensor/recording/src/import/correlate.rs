@@ -1,5 +1,7 @@
 //! The clock of one file on that of another, found from what both saw: presses.
 
+use std::collections::BTreeSet;
+
 /// What a clock's times are on another: `offset_s + rate · time_s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
@@ -35,6 +37,8 @@ const MOST_DRIFT: f64 = 0.01;
 const BINS: usize = 1500;
 /// How much better than any other offset the best one must be.
 const CLEARLY: f64 = 0.93;
+/// Bins around the best offset that may be lower and still belong to its peak.
+const PEAK_GAP: i64 = 4;
 /// The least correlation that is a match.
 const MATCHES: f64 = 0.6;
 
@@ -100,16 +104,29 @@ fn look(main: &Activity, other: &Activity, bin_s: f64) -> Result<Clock, String> 
         return Err("nothing is alike in the two; are there presses in both?".to_owned());
     };
     let middle_s = clock.convert(0.5 * (other.time_s[0] + other.time_s[other.time_s.len() - 1]));
-    let rival = scores
-        .iter()
-        .find(|(at_s, score)| (at_s - middle_s).abs() > 4.0 * bin_s && *score > CLEARLY * most);
-    match rival {
-        Some((at_s, _)) => Err(format!(
-            "an offset that is {:.2} s larger fits as well: the presses are all alike; give the clock",
-            at_s - middle_s
+    match rival(&scores, middle_s, CLEARLY * most, bin_s) {
+        Some(later_s) => Err(format!(
+            "an offset that is {later_s:.2} s larger fits as well: the presses are all alike; give the clock"
         )),
         None => Ok(clock),
     }
+}
+
+/// How much later than `best_s` another offset is at which a score is as high, apart from those around the best one, s. Scores have their offsets, s.
+fn rival(scores: &[(f64, f64)], best_s: f64, high: f64, bin_s: f64) -> Option<f64> {
+    let bin = |(at_s, _): &(f64, f64)| ((at_s - best_s) / bin_s).round() as i64;
+    let as_high = scores.iter().filter(|(_, score)| *score > high);
+    let bins: BTreeSet<i64> = as_high.map(bin).collect();
+    // The top of the peak: what is as high without a gap that counts.
+    let goes_on = |edge: i64, step: i64| {
+        (1..=PEAK_GAP)
+            .map(|gap| edge + step * gap)
+            .find(|bin| bins.contains(bin))
+    };
+    let edge = |step: i64| std::iter::successors(Some(0), |edge| goes_on(*edge, step)).last();
+    let (first, last) = (edge(-1)?, edge(1)?);
+    let apart = bins.into_iter().find(|bin| !(first..=last).contains(bin))?;
+    Some(apart as f64 * bin_s)
 }
 
 /// Means over bins of time, from the first time on, at a rate.
@@ -130,7 +147,7 @@ fn binned(activity: &Activity, bin_s: f64, rate: f64) -> Vec<f64> {
     sums
 }
 
-/// How alike two are with one shifted by so many bins, from 0 to 1: their correlation where both are, and all touch of both elsewhere counts against it.
+/// How alike two are with one shifted by so many bins, up to 1: their correlation where both are, and all touch of both elsewhere counts against it.
 fn likeness(main: &[f64], other: &[f64], shift: i64) -> f64 {
     let from = shift.max(0) as usize;
     let to = (main.len() as i64).min(shift + other.len() as i64) as usize;
@@ -138,21 +155,30 @@ fn likeness(main: &[f64], other: &[f64], shift: i64) -> f64 {
         return 0.0;
     }
     let skipped = (from as i64 - shift) as usize;
-    let product: f64 = main[from..to]
-        .iter()
-        .zip(&other[skipped..])
-        .map(|(one, two)| one * two)
-        .sum();
+    let both = main[from..to].iter().zip(&other[skipped..]);
+    let [
+        mut one_sum,
+        mut two_sum,
+        mut one_power,
+        mut two_power,
+        mut product,
+    ] = [0.0; 5];
+    for (one, two) in both {
+        one_sum += one;
+        two_sum += two;
+        one_power += one * one;
+        two_power += two * two;
+        product += one * two;
+    }
     let power = |signal: &[f64]| signal.iter().map(|value| value * value).sum::<f64>();
     // A file that was begun later or ended earlier has not all presses: only the shorter one's must be there.
-    let (overlap_main, overlap_other) = (
-        power(&main[from..to]),
-        power(&other[skipped..skipped + to - from]),
-    );
-    let (all_main, all_other) = (power(main), power(other));
-    let kept = (overlap_main / all_main.max(f64::MIN_POSITIVE))
-        .max(overlap_other / all_other.max(f64::MIN_POSITIVE));
-    kept * product / (overlap_main * overlap_other).sqrt().max(f64::MIN_POSITIVE)
+    let kept =
+        (one_power / power(main).max(f64::MIN_POSITIVE)).max(two_power / power(other).max(f64::MIN_POSITIVE));
+    // About the means: presses that follow each other closely are half alike wherever they lie.
+    let n = (to - from) as f64;
+    let variances = (one_power - one_sum * one_sum / n) * (two_power - two_sum * two_sum / n);
+    let covariance = product - one_sum * two_sum / n;
+    kept * covariance / variances.max(f64::MIN_POSITIVE).sqrt()
 }
 
 /// How much later the other's touch comes than the main one's, in stretches of time: when, s, and how much, s.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::check::check;
-use super::description::Description;
+use super::description::{Description, Split};
 use crate::RecordingError;
 
 /// Fields that hold for files whose names match.
@@ -51,6 +51,11 @@ impl Descriptions {
             overrides,
             table,
         })
+    }
+
+    /// Whether files hold presses, unless an override says otherwise.
+    pub(super) fn has_presses(&self) -> bool {
+        !matches!(self.base.presses, Split::None)
     }
 
     /// The description with all overrides that match the file's name, later ones last.

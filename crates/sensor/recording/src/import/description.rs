@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use serde::Deserialize;
 
+use super::bag::is_bag_column;
 use super::cell::Kind;
-use super::unit::{Force, Length, Pressure, Time, Unit};
+use super::unit::{Force, Length, Pressure, Temperature, Time, Unit};
 use crate::Provenance;
 
 /// One import description, after the overrides for a file were merged in. [`Import`](super::Import) documents it for users.
@@ -45,7 +46,7 @@ pub(crate) struct Description {
     pub(crate) drop_buffered: bool,
     /// Height of the unloaded gel above the board, mm.
     pub(crate) gel_top_mm: f64,
-    /// Time; without it each row stands for itself.
+    /// Time; without it each row stands for itself, and messages of a bag have their own.
     pub(crate) time: Option<TimeColumn>,
     /// Place along the gel's x axis.
     #[serde(default)]
@@ -66,6 +67,9 @@ pub(crate) struct Description {
     pub(crate) weight_n: Option<f64>,
     /// What holds for the readings of all taxels.
     pub(crate) readings: Readings,
+    /// What holds for the temperatures of all taxels.
+    #[serde(default)]
+    pub(crate) temperatures: Temperatures,
     /// Which column is which taxel.
     pub(crate) taxels: Vec<Taxel>,
     /// How presses are told apart.
@@ -308,6 +312,28 @@ fn everything() -> [f64; 2] {
     [f64::NEG_INFINITY, f64::INFINITY]
 }
 
+/// What holds for the temperatures of all taxels.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Temperatures {
+    /// The column of a thermometer that stands for all taxels that have no column of their own.
+    pub(crate) column: Option<String>,
+    /// Unit of all temperatures: `C`, `K` or `F`.
+    pub(crate) unit: Temperature,
+    /// What their numbers are multiplied with.
+    pub(crate) scale: f64,
+}
+
+impl Default for Temperatures {
+    fn default() -> Self {
+        Self {
+            column: None,
+            unit: Temperature::default(),
+            scale: 1.0,
+        }
+    }
+}
+
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Taxel {
@@ -315,6 +341,8 @@ pub(crate) struct Taxel {
     pub(crate) name: String,
     /// Its column.
     pub(crate) column: String,
+    /// The column of its temperature.
+    pub(crate) temperature: Option<String>,
     /// What its numbers are multiplied with.
     #[serde(default = "one")]
     pub(crate) scale: f64,
@@ -349,6 +377,8 @@ pub(crate) enum Split {
     },
     /// Every row is a press of its own, static.
     Row,
+    /// There are none: the log has readings alone.
+    None,
 }
 
 fn tolerance_mm() -> f64 {
@@ -384,6 +414,17 @@ impl Readings {
 }
 
 impl Description {
+    /// Whether its columns are those of a bag, whose messages have times of their own.
+    pub(crate) fn is_of_bag(&self) -> bool {
+        self.taxels.iter().all(|taxel| is_bag_column(&taxel.column))
+    }
+
+    /// The column of a taxel's temperature.
+    pub(crate) fn temperature_column(&self, taxel: usize) -> Option<&str> {
+        let own = self.taxels[taxel].temperature.as_deref();
+        own.or(self.temperatures.column.as_deref())
+    }
+
     /// All columns that are read, and as what.
     pub(crate) fn wanted(&self) -> BTreeSet<(&str, Kind)> {
         let readings = self
@@ -391,6 +432,8 @@ impl Description {
             .iter()
             .map(|taxel| (taxel.column.as_str(), Kind::Reading));
         let mut wanted: BTreeSet<(&str, Kind)> = readings.collect();
+        let temperatures = (0..self.taxels.len()).filter_map(|taxel| self.temperature_column(taxel));
+        wanted.extend(temperatures.map(|name| (name, Kind::Reading)));
         wanted.extend(self.time.as_ref().and_then(TimeColumn::wanted));
         let places = [self.x.column.as_deref(), self.y.column.as_deref()];
         let height = self.z.as_ref().and_then(|z| z.column.as_deref());

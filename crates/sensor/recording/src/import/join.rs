@@ -3,10 +3,12 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use super::bag::ReadBag;
 use super::cell::Kind;
 use super::clock;
 use super::correlate::{Activity, Clock, Found, find};
 use super::description::{Column, Description, Direction, Join, JoinClock};
+use super::open::open;
 use super::table::Table;
 use super::unit::Unit;
 use crate::RecordingError;
@@ -18,15 +20,13 @@ pub(crate) fn join(
     table: &mut Table,
     times_s: &mut Vec<f64>,
     description: &Description,
+    read_bag: Option<ReadBag>,
 ) -> Result<Vec<String>, RecordingError> {
     let mut notes = Vec::new();
     for join in &description.joins {
         let beside = beside(path, join);
-        let other = Table::read(
-            &beside,
-            &join.layout(description),
-            &description.wanted_of(Some(join)),
-        )?;
+        let (layout, wanted) = (join.layout(description), description.wanted_of(Some(join)));
+        let other = open(&beside, &layout, &wanted, Some(&join.time), read_bag)?;
         let other_times_s = clock::times_s(&other, Some(&join.time));
         increases(&other, &other_times_s, join)?;
         let found = match join.clock {
@@ -149,7 +149,7 @@ fn nearest(times_s: &[f64], time_s: f64, within_s: f64) -> Option<usize> {
 fn touch(table: &Table, description: &Description) -> Vec<f64> {
     let mut touch = vec![0.0; table.rows()];
     let mut add = |numbers: &[f64]| {
-        let rest = median(numbers);
+        let rest = at_rest(numbers);
         for (touch, number) in touch.iter_mut().zip(numbers) {
             *touch += if number.is_nan() {
                 0.0
@@ -188,14 +188,19 @@ fn numbers<U: Unit>(table: &Table, column: &Column<U>) -> Option<Vec<f64>> {
     (!numbers.is_empty()).then(|| numbers.iter().map(|number| column.convert(*number)).collect())
 }
 
-fn median(numbers: &[f64]) -> f64 {
+/// What a sensor says at rest: the middle of the shortest range with a quarter of its numbers. A median is none where it is pressed half of the time.
+fn at_rest(numbers: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = numbers
         .iter()
         .copied()
         .filter(|number| !number.is_nan())
         .collect();
     sorted.sort_unstable_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    let ranges = sorted
+        .windows(sorted.len() / 4 + 1)
+        .map(|range| [range[0], range[range.len() - 1]]);
+    let shortest = ranges.min_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    shortest.map_or(0.0, |[low, high]| 0.5 * (low + high))
 }
 
 impl Description {

@@ -1,6 +1,7 @@
-//! Reads the CSV files of any bench through a description of what their columns mean.
+//! Reads the CSV files and bags of any bench through a description of what their columns mean.
 
 mod align;
+mod bag;
 mod buffered;
 mod cell;
 mod check;
@@ -11,6 +12,7 @@ mod description;
 mod guess;
 mod header;
 mod join;
+mod open;
 mod outliers;
 mod plausible;
 mod split;
@@ -23,16 +25,17 @@ mod zero;
 
 use std::path::Path;
 
+pub use bag::{Bag, BagTopic, ReadBag};
 use describe::Descriptions;
-use description::Description;
-pub use guess::guess_import;
+use description::{Description, Split};
+pub use guess::{guess_bag_import, guess_import};
 pub use summary::{FileSummary, ImportSummary};
 
-use crate::{Control, Press, Recording, RecordingError};
-use table::Table;
+use crate::{Control, Frames, Press, Recording, RecordingError};
+use open::open;
 use track::Track;
 
-/// How to read the CSV files of one bench: which column means what, in which unit, and how presses are told apart.
+/// How to read the CSV files and bags of one bench: which column means what, in which unit, and how presses are told apart.
 ///
 /// ```
 /// let text = r##"
@@ -61,12 +64,13 @@ use track::Track;
 /// ## force = { column = "f", unit = "N" }          # measured, or `weight_n = 0.98` for a dead weight
 ///
 /// readings = { unit = "Pa", usable = [0.0, 140500.0] }    # numbers outside are marked as not valid
+/// ## temperatures = { column = "temp", unit = "C", scale = 0.01 }    # one thermometer for all taxels; also "K", "F"
 /// taxels = [
-///     { name = "S0", column = "p", lag_s = 0.112 },       # p(t + lag) belongs to z(t); also scale, offset_kpa
+///     { name = "S0", column = "p", lag_s = 0.112 },       # p(t + lag) belongs to z(t); also scale, offset_kpa, temperature = "t0"
 /// ]
 ///
 /// ## "return-to-rest": the tip leaves and returns to rest; "column" (with `column = "..."`): a column's number or text changes;
-/// ## "row": each row is a static press.
+/// ## "row": each row is a static press; "none": readings alone, which [`Import::read_frames`] reads.
 /// presses = { split = "return-to-rest", rest_mm = 0.0, tolerance_mm = 0.005, keep_rest_s = 1.0 }
 /// zero = { above_contact_mm = 0.5, window_s = 1.0 }       # zeroes each taxel before each press
 /// ## outliers = { within_mm = 0.8, jump = 0.15 }           # static presses: marks what leaps out of its neighbours
@@ -91,7 +95,7 @@ use track::Track;
 /// summary says so; one that has left the gel when the file ends is kept. A press without a frame to take the zero from is
 /// dropped likewise.
 ///
-/// Files are UTF-8, UTF-16 or Latin-1. A last row that the logger did not finish is left out, as are zero bytes after it; the summary says so. A reading that is
+/// Texts are UTF-8, UTF-16 or Latin-1. A last row that the logger did not finish is left out, as are zero bytes after it; the summary says so. A reading that is
 /// missing is not valid, and NaN; the rest of its row is there.
 ///
 /// A lagging taxel's readings are interpolated linearly onto the clock of the poses; a reading is valid if both neighbours
@@ -99,6 +103,7 @@ use track::Track;
 #[derive(Clone, Debug)]
 pub struct Import {
     descriptions: Descriptions,
+    read_bag: Option<ReadBag>,
 }
 
 impl Import {
@@ -109,10 +114,27 @@ impl Import {
     /// What is wrong, with the line and the field.
     pub fn parse(file: &str, text: &str) -> Result<Self, RecordingError> {
         let descriptions = Descriptions::parse(file, text)?;
-        Ok(Self { descriptions })
+        Ok(Self {
+            descriptions,
+            read_bag: None,
+        })
     }
 
-    /// Reads one CSV file.
+    /// Reads bags with `read_bag` as well: recordings of several topics, whose columns are `/topic:field`.
+    ///
+    /// Rows are the messages of the first taxel's topic, or of that of `time`. Times of a topic are those of its headers, else those at which it was recorded; without
+    /// `time`, they count from the first row. Numbers of other topics lie on the line between two messages around a row that are at most 20 ms, or two periods of
+    /// their topic, apart; a row without such messages is left out, and a reading is missing there. Where `time` is `/topic:log_time`, times of all topics are those at
+    /// which they were recorded.
+    #[must_use]
+    pub fn with_bags(self, read_bag: ReadBag) -> Self {
+        Self {
+            read_bag: Some(read_bag),
+            ..self
+        }
+    }
+
+    /// Reads one CSV file, or a bag.
     ///
     /// # Errors
     ///
@@ -120,6 +142,30 @@ impl Import {
     /// with file, line and column. No press reaches the gel, or readings are of about the pressure of the air and there is no `zero`.
     pub fn read_csv(&self, path: &Path) -> Result<(Recording, ImportSummary), RecordingError> {
         self.read_all(std::slice::from_ref(&path))
+    }
+
+    /// Whether the files hold presses; else they hold readings alone.
+    #[must_use]
+    pub fn has_presses(&self) -> bool {
+        self.descriptions.has_presses()
+    }
+
+    /// Reads the frames of a CSV file that holds no presses, as its description says: `presses = { split = "none" }`. Readings are in kPa, and as they
+    /// are: nothing is taken off.
+    ///
+    /// # Errors
+    /// As [`read_csv`](Self::read_csv). [`RecordingError::Inconsistent`]: the description has presses.
+    pub fn read_frames(&self, path: &Path) -> Result<(Frames, FileSummary), RecordingError> {
+        let description = self.descriptions.for_file(path)?;
+        if !matches!(description.presses, Split::None) {
+            return Err(RecordingError::Inconsistent {
+                place: path.display().to_string(),
+                problem: "its import description has presses; `presses = { split = \"none\" }` reads a log of readings alone".to_owned(),
+            });
+        }
+        let (frames, summary) = read_frames(path, &description, self.read_bag)?;
+        frames.check()?;
+        Ok((frames, summary))
     }
 
     /// Reads CSV files of one sensor into one recording, in the order of their paths whatever the order given.
@@ -137,7 +183,7 @@ impl Import {
         let mut recording: Option<Recording> = None;
         for path in paths {
             let description = self.descriptions.for_file(path)?;
-            let (presses, found) = read_file(path, &description)?;
+            let (presses, found) = read_file(path, &description, self.read_bag)?;
             summary.files.push(found);
             let taxels = description.taxels.into_iter().map(|taxel| taxel.name);
             let next = Recording {
@@ -167,16 +213,26 @@ impl Import {
     }
 }
 
-fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, FileSummary), RecordingError> {
-    let mut table = Table::read(path, description, &description.wanted_of(None))?;
-    let file = table.file.clone();
-    let n_rows_read = table.rows() + table.incomplete_rows;
+/// The rows of a file on the clock of the poses, and what was left out of it so far.
+fn read_track(
+    path: &Path,
+    description: &Description,
+    read_bag: Option<ReadBag>,
+) -> Result<(Track, FileSummary), RecordingError> {
+    let (wanted, time) = (description.wanted_of(None), description.time.as_ref());
+    let mut table = open(path, description, &wanted, time, read_bag)?;
+    let own_clock = Description {
+        time: description.time.clone().or_else(|| table.clock.take()),
+        ..description.clone()
+    };
+    let description = &own_clock;
+    let n_rows_read = table.rows() + table.incomplete_rows + table.rows_alone;
     let mut summary = FileSummary::new(file_name(path), n_rows_read);
     summary.rows_incomplete = table.incomplete_rows;
     summary.unread_columns.clone_from(&table.unread);
     table.notes.iter().for_each(|note| summary.warn(note.clone()));
     let mut times_s = clock::times_s(&table, description.time.as_ref());
-    let notes = join::join(path, &mut table, &mut times_s, description)?;
+    let notes = join::join(path, &mut table, &mut times_s, description, read_bag)?;
     notes.into_iter().for_each(|note| summary.warn(note));
     let n_rows = table.rows();
     let dropped = buffered::leading_rows(&table, &times_s, description)?;
@@ -186,6 +242,55 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
     summary.clipped_readings = unusable - summary.missing_readings;
     let track = align::onto_pose_clock(track, description);
     summary.rows_dropped = n_rows - track.time_s.len();
+    Ok((track, summary))
+}
+
+fn read_frames(
+    path: &Path,
+    description: &Description,
+    read_bag: Option<ReadBag>,
+) -> Result<(Frames, FileSummary), RecordingError> {
+    let (track, mut summary) = read_track(path, description, read_bag)?;
+    let names: Vec<String> = description
+        .taxels
+        .iter()
+        .map(|taxel| taxel.name.clone())
+        .collect();
+    let mut frames = Frames::new(&description.sensor, description.provenance, &names);
+    let taxels = 0..names.len();
+    for row in 0..track.time_s.len() {
+        let reading_kpa = |taxel: usize| match track.usable[taxel][row] {
+            true => track.kpa(row, taxel, description),
+            false => f64::NAN,
+        };
+        let temperature_c = |taxel: usize| {
+            track
+                .temperature_c
+                .get(taxel)
+                .map_or(f64::NAN, |column| column[row])
+        };
+        frames
+            .readings_kpa
+            .push(taxels.clone().map(reading_kpa).collect());
+        frames
+            .temperature_c
+            .push(taxels.clone().map(temperature_c).collect());
+    }
+    frames.gap_before = vec![false; track.time_s.len()];
+    frames.time_s = track.time_s;
+    if frames.time_s.is_empty() {
+        summary.warn("has no rows".to_owned());
+    }
+    Ok((frames, summary))
+}
+
+fn read_file(
+    path: &Path,
+    description: &Description,
+    read_bag: Option<ReadBag>,
+) -> Result<(Vec<Press>, FileSummary), RecordingError> {
+    let file = path.display().to_string();
+    let (track, mut summary) = read_track(path, description, read_bag)?;
     let stem = path
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -193,13 +298,15 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
     let spans = split::presses(&track, &description.presses, &mut summary);
     let ends = spans.windows(2);
     summary.shared_frames = ends.map(|pair| pair[0].end.saturating_sub(pair[1].start)).sum();
-    plausible::check(&file, &track, &spans, description)?;
+    if !matches!(description.presses, Split::None) {
+        plausible::check(&file, &track, &spans, description)?;
+    }
     for (index, span) in spans.into_iter().enumerate() {
         let number = index + 1;
         let Some(zero_kpa) = zero::before_press(&track, span.clone(), description) else {
             summary.drop_press(format!(
-                "press {number}, from line {}: no frame before the contact to take the zero from",
-                track.lines[span.start]
+                "press {number}, from {}: no frame before the contact to take the zero from",
+                track.place(span.start)
             ));
             continue;
         };
@@ -217,6 +324,7 @@ fn read_file(path: &Path, description: &Description) -> Result<(Vec<Press>, File
             force_n: (description.weight_n.is_some() || description.force.is_some()).then(Vec::new),
             taxels_kpa: Vec::new(),
             taxels_raw: Vec::new(),
+            temperature_c: (!track.temperature_c.is_empty()).then(Vec::new),
             valid: Vec::new(),
         };
         for frame in span {

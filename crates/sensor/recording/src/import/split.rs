@@ -14,6 +14,7 @@ pub(crate) fn presses(track: &Track, split: &Split, summary: &mut FileSummary) -
     let rows = track.time_s.len();
     match split {
         Split::Row => (0..rows).map(|row| row..row + 1).collect(),
+        Split::None => Vec::new(),
         Split::Column { .. } => {
             let is_same = |row: usize| {
                 let [before, now] = [track.press[row - 1], track.press[row]];
@@ -30,21 +31,21 @@ pub(crate) fn presses(track: &Track, split: &Split, summary: &mut FileSummary) -
             let excursions = runs(rows, |row| is_away(row) == is_away(row - 1), is_away);
             let mut presses = Vec::new();
             for (index, away) in excursions.iter().enumerate() {
-                let line = track.lines[away.start];
+                let place = track.place(away.start);
                 if away.start == 0 && track.height_mm[0] <= 0.0 {
                     summary.drop_press(format!(
-                        "from line {line}: the tip is in the gel when the file starts"
+                        "from {place}: the tip is in the gel when the file starts"
                     ));
                     continue;
                 }
                 if away.end == rows && track.height_mm[rows - 1] <= 0.0 {
-                    summary.drop_press(format!(
-                        "from line {line}: the tip is in the gel when the file ends"
-                    ));
+                    summary.drop_press(format!("from {place}: the tip is in the gel when the file ends"));
                     continue;
                 }
                 if away.end == rows {
-                    summary.warn(format!("from line {line}: the file ends on the way back to rest; kept, the tip has left the gel"));
+                    summary.warn(format!(
+                        "from {place}: the file ends on the way back to rest; kept, the tip has left the gel"
+                    ));
                 }
                 let earliest = if index == 0 { 0 } else { excursions[index - 1].end };
                 let latest = excursions.get(index + 1).map_or(rows, |next| next.start);
@@ -95,6 +96,10 @@ fn runs(rows: usize, goes_on: impl Fn(usize) -> bool, wanted: impl Fn(usize) -> 
 pub(crate) fn explain(split: &Split, summary: &FileSummary) -> String {
     let looked_for = match split {
         Split::Row => "each row is a press".to_owned(),
+        Split::None => {
+            "`presses.split` is \"none\": such a log has readings alone, and `twintac characterize` takes it"
+                .to_owned()
+        }
         Split::Column { column } => format!("a press lasts while `{column}` stays the same"),
         Split::ReturnToRest {
             rest_mm,

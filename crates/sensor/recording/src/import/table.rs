@@ -1,10 +1,10 @@
-//! A CSV file as columns of numbers, with the line of each row.
+//! A file as columns of numbers, with the place of each row.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::cell::{Cells, Kind, cells};
-use super::description::Description;
+use super::description::{Description, TimeColumn};
 use super::header;
 use super::text::Text;
 use crate::RecordingError;
@@ -12,12 +12,18 @@ use crate::RecordingError;
 /// The columns that were asked for, each read as what it was asked for as.
 pub(crate) struct Table {
     pub(crate) file: String,
-    /// Line of each row, from 1; `[n_rows]`.
+    /// What a row is: a line of a text, or a message of a bag.
+    pub(crate) row_name: &'static str,
+    /// Number of each row's line or message, from 1; `[n_rows]`.
     pub(crate) lines: Vec<u64>,
+    /// The time of the rows where the description names none.
+    pub(crate) clock: Option<TimeColumn>,
     columns: BTreeMap<(String, Kind), Vec<f64>>,
     /// Rows that were left out because a number is missing that is no reading.
     pub(crate) incomplete_rows: usize,
-    /// Columns that nothing was read of.
+    /// Rows that were left out because another topic has nothing at their time.
+    pub(crate) rows_alone: usize,
+    /// Columns, or topics of a bag, that nothing was read of.
     pub(crate) unread: Vec<String>,
     /// What a person should know of how the file was read.
     pub(crate) notes: Vec<String>,
@@ -37,11 +43,57 @@ struct Rows<'a> {
     lines: Vec<u64>,
     columns: Vec<Wanted<'a>>,
     cells: Cells<'a>,
-    drops_incomplete: bool,
-    n_incomplete: usize,
 }
 
 impl Table {
+    /// Columns of numbers, without the rows in which one is missing that is no reading: these are left out if `drops_incomplete` says so, and else an error.
+    pub(crate) fn new(
+        file: String,
+        mut lines: Vec<u64>,
+        mut columns: BTreeMap<(String, Kind), Vec<f64>>,
+        drops_incomplete: bool,
+    ) -> Result<Self, RecordingError> {
+        let mut is_complete = vec![true; lines.len()];
+        let needed = columns
+            .iter()
+            .filter(|((_, kind), _)| matches!(kind, Kind::Number | Kind::Clock));
+        let mut first: Option<(usize, &str)> = None;
+        for ((name, _), numbers) in needed {
+            for (row, is_complete) in is_complete.iter_mut().enumerate() {
+                if numbers[row].is_nan() {
+                    *is_complete = false;
+                    first = first.filter(|(other, _)| *other <= row).or(Some((row, name)));
+                }
+            }
+        }
+        if let Some((row, name)) = first.filter(|_| !drops_incomplete) {
+            return Err(RecordingError::Cell {
+                file,
+                line: lines[row],
+                column: name.to_owned(),
+                problem:
+                    "is missing, and only readings may be; `drop_incomplete_rows = true` leaves such rows out"
+                        .to_owned(),
+            });
+        }
+        let incomplete_rows = is_complete.iter().filter(|is_complete| !**is_complete).count();
+        columns
+            .values_mut()
+            .for_each(|numbers| retain(numbers, &is_complete));
+        retain(&mut lines, &is_complete);
+        Ok(Self {
+            file,
+            row_name: "line",
+            lines,
+            clock: None,
+            columns,
+            incomplete_rows,
+            rows_alone: 0,
+            unread: Vec::new(),
+            notes: Vec::new(),
+        })
+    }
+
     /// Reads columns of a file whose text is as described.
     pub(crate) fn read(
         path: &Path,
@@ -86,8 +138,6 @@ impl Table {
             lines: Vec::new(),
             columns: columns.collect::<Result<_, RecordingError>>()?,
             cells: Cells::new(description.decimal, &description.missing),
-            drops_incomplete: description.drop_incomplete_rows,
-            n_incomplete: 0,
         };
         // A line of another number of cells is an error, unless it turns out to be the last one and has no end.
         let mut cut = None;
@@ -119,16 +169,12 @@ impl Table {
         let is_read = |name: &&String| wanted.iter().any(|(wanted, _)| wanted == name);
         let unread = header.iter().filter(|name| !is_read(name) && !name.is_empty());
         let columns = rows.columns.into_iter();
-        Ok(Self {
-            unread: unread.cloned().collect(),
-            lines: rows.lines,
-            columns: columns
-                .map(|column| ((column.name.to_owned(), column.kind), column.numbers))
-                .collect(),
-            incomplete_rows: rows.n_incomplete,
-            notes,
-            file,
-        })
+        let columns = columns.map(|column| ((column.name.to_owned(), column.kind), column.numbers));
+        let (lines, columns) = (rows.lines, columns.collect());
+        let mut table = Self::new(file.clone(), lines, columns, description.drop_incomplete_rows)?;
+        table.unread = unread.cloned().collect();
+        table.notes = notes;
+        Ok(table)
     }
 
     /// The column of that name, which must be one of those asked for, read as that; `[n_rows]`.
@@ -147,13 +193,11 @@ impl Table {
 
     /// Puts the columns of another table beside these rows, by the row of it that each one's partner is; rows without one are left out.
     pub(crate) fn put_beside(&mut self, other: &Self, partners: &[Option<usize>]) {
-        let keep = |numbers: &mut Vec<f64>| {
-            let mut partners = partners.iter();
-            numbers.retain(|_| partners.next().is_some_and(Option::is_some));
-        };
-        self.columns.values_mut().for_each(keep);
-        let mut kept = partners.iter();
-        self.lines.retain(|_| kept.next().is_some_and(Option::is_some));
+        let is_kept: Vec<bool> = partners.iter().map(Option::is_some).collect();
+        self.columns
+            .values_mut()
+            .for_each(|numbers| retain(numbers, &is_kept));
+        retain(&mut self.lines, &is_kept);
         for (key, numbers) in &other.columns {
             if !self.columns.contains_key(key) {
                 let beside = partners.iter().flatten().map(|row| numbers[*row]);
@@ -168,10 +212,8 @@ impl Table {
 }
 
 impl Rows<'_> {
-    /// Takes the cells of a row, unless a number is missing that is no reading and such rows are left out.
+    /// Takes the cells of a row.
     fn push(&mut self, line: u64, row: &[&[u8]]) -> Result<(), RecordingError> {
-        let n_before = self.lines.len();
-        let mut is_complete = true;
         for column in &mut self.columns {
             let error = |problem: String| RecordingError::Cell {
                 file: self.file.to_owned(),
@@ -187,24 +229,17 @@ impl Rows<'_> {
                     problem
                 })
             })?;
-            if number.is_nan() && matches!(column.kind, Kind::Number | Kind::Clock) {
-                if !self.drops_incomplete {
-                    let problem = "is missing, and only readings may be; `drop_incomplete_rows = true` leaves such rows out";
-                    return Err(error(problem.to_owned()));
-                }
-                is_complete = false;
-            }
             column.numbers.push(number);
         }
-        if is_complete {
-            self.lines.push(line);
-        } else {
-            self.n_incomplete += 1;
-            let columns = self.columns.iter_mut();
-            columns.for_each(|column| column.numbers.truncate(n_before));
-        }
+        self.lines.push(line);
         Ok(())
     }
+}
+
+/// Keeps the rows that are to be kept.
+pub(super) fn retain<T>(rows: &mut Vec<T>, is_kept: &[bool]) {
+    let mut is_kept = is_kept.iter();
+    rows.retain(|_| is_kept.next().is_some_and(|is_kept| *is_kept));
 }
 
 fn line_error(file: &str, line: u64, problem: String) -> RecordingError {

@@ -13,7 +13,9 @@ use crate::{Press, RecordingError};
 
 /// Rows of one file, the columns converted.
 pub(crate) struct Track {
-    /// Line of each row in the file; `[n_rows]`.
+    /// What a row is: a line of a text, or a message of a bag.
+    pub(crate) row_name: &'static str,
+    /// Number of each row's line or message in the file; `[n_rows]`.
     pub(crate) lines: Vec<u64>,
     pub(crate) time_s: Vec<f64>,
     pub(crate) x_mm: Vec<f64>,
@@ -29,6 +31,8 @@ pub(crate) struct Track {
     pub(crate) raw: Vec<Vec<f64>>,
     /// Whether a reading is there and lies in the usable range; `[n_taxels][n_rows]`.
     pub(crate) usable: Vec<Vec<bool>>,
+    /// °C, NaN where the file gives none; `[n_taxels][n_rows]`, empty where no column has temperatures.
+    pub(crate) temperature_c: Vec<Vec<f64>>,
     /// Number of the press, where a column gives it; NaN of a row that belongs to none.
     pub(crate) press: Vec<f64>,
 }
@@ -75,6 +79,7 @@ impl Track {
             converted(&table, &description.x, dropped),
             converted(&table, &description.y, dropped),
         );
+        let temperature_c = temperatures(&table, description, dropped);
         let taxels = description.taxels.iter();
         let raw: Vec<Vec<f64>> = taxels
             .map(|taxel| {
@@ -86,6 +91,7 @@ impl Track {
         let [lowest, highest] = description.readings.usable;
         let is_usable = |raw: &f64| (lowest..=highest).contains(raw);
         Ok(Self {
+            row_name: table.row_name,
             lines: table.lines.split_off(dropped),
             time_s: times_s,
             x_mm,
@@ -99,8 +105,14 @@ impl Track {
                 .map(|raw| raw.iter().map(is_usable).collect())
                 .collect(),
             raw,
+            temperature_c,
             press,
         })
+    }
+
+    /// Where a row is in the file: `line 12`.
+    pub(crate) fn place(&self, row: usize) -> String {
+        format!("{} {}", self.row_name, self.lines[row])
     }
 
     /// Puts one row at the end of a press.
@@ -128,6 +140,9 @@ impl Track {
         press
             .taxels_raw
             .push(self.raw.iter().map(|taxel| taxel[row]).collect());
+        if let Some(rows) = &mut press.temperature_c {
+            rows.push(self.temperature_c.iter().map(|taxel| taxel[row]).collect());
+        }
         press.valid.push(
             zeros
                 .map(|(k, zero)| zero.is_some() && self.usable[k][row])
@@ -164,6 +179,24 @@ fn check_times(
         }
     }
     Ok(())
+}
+
+/// Temperatures of each taxel, °C, after the first `dropped` rows; none at all where no taxel has a column of them.
+fn temperatures(table: &Table, description: &Description, dropped: usize) -> Vec<Vec<f64>> {
+    let columns = (0..description.taxels.len()).map(|taxel| description.temperature_column(taxel));
+    if columns.clone().all(|column| column.is_none()) {
+        return Vec::new();
+    }
+    let settings = &description.temperatures;
+    let celsius = |number: &f64| settings.unit.celsius(number * settings.scale);
+    let of_taxel = |column: Option<&str>| match column {
+        Some(name) => table.column(name, Kind::Reading)[dropped..]
+            .iter()
+            .map(celsius)
+            .collect(),
+        None => vec![f64::NAN; table.rows() - dropped],
+    };
+    columns.map(of_taxel).collect()
 }
 
 fn rotations(table: &Table, rotation: &Rotation, dropped: usize) -> Result<Vec<DQuat>, RecordingError> {

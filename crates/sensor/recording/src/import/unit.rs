@@ -104,3 +104,23 @@ impl Unit for Pressure {
         }
     }
 }
+
+/// Unit of a temperature.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub(crate) enum Temperature {
+    #[default]
+    C,
+    K,
+    F,
+}
+
+impl Temperature {
+    /// A temperature in this unit, °C.
+    pub(crate) fn celsius(self, temperature: f64) -> f64 {
+        match self {
+            Self::C => temperature,
+            Self::K => temperature - 273.15,
+            Self::F => (temperature - 32.0) / 1.8,
+        }
+    }
+}

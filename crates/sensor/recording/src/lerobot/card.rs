@@ -6,18 +6,14 @@ use serde_json::Value;
 use twintac_text::{markdown, visible};
 
 use super::episode::LeRobotSummary;
-use super::features::{Feature, Rate};
+use super::features::Feature;
 use crate::{Provenance, Recording};
-
-/// Frames that are no farther from evenly spaced count as evenly spaced, s.
-const EVEN_S: f64 = 1e-4;
 
 /// `README.md`; `how_made` is Markdown.
 pub(super) fn card(
     recording: &Recording,
     features: &[Feature],
     summary: &LeRobotSummary,
-    rate: &Rate,
     how_made: &str,
 ) -> String {
     let (sensor, provenance) = (markdown(&recording.sensor), recording.provenance);
@@ -33,16 +29,17 @@ pub(super) fn card(
         episodes,
         frames,
         tasks,
+        fps,
+        resampled_from_hz,
     } = summary;
     let mut card = format!(
         "---\ntags:\n- LeRobot\n- tactile\ntask_categories:\n- robotics\nconfigs:\n- config_name: default\n  data_files: data/*/*.parquet\n---\n\n\
          # Presses of the barometric touch sensor {sensor}\n\n\
          - Provenance: `{provenance}`: every number is {meaning}.\n\
-         - {episodes} episodes (presses), {frames} frames, {tasks} tasks (indenters), {} frames a second; LeRobot format v3.0.\n\
+         - {episodes} episodes (presses), {frames} frames, {tasks} tasks (indenters), {fps} frames a second; LeRobot format v3.0.\n\
          - Licence: to be filled in by whoever publishes this.\n\n\
          ```python\nfrom lerobot.datasets.lerobot_dataset import LeRobotDataset\n\ndataset = LeRobotDataset({repository}, root=\".\")\n```\n\n\
-         ## Features\n\n| feature | type | numbers | meaning |\n|---|---|---|---|\n",
-        rate.value
+         ## Features\n\n| feature | type | numbers | meaning |\n|---|---|---|---|\n"
     );
     for feature in features {
         let meaning = meaning_of(&feature.name);
@@ -58,11 +55,11 @@ pub(super) fn card(
         "\nLengths are in mm, forces in N, pressures in kPa, times in s. The gel's frame has z up and z = 0 at the board; an indenter's origin is its point of first \
          touch on a flat gel. Quaternions are (x, y, z, w).\n",
     );
-    if rate.uneven_s > EVEN_S {
+    if let Some(from_hz) = resampled_from_hz {
         let _ = writeln!(
             card,
-            "\nFrames are not evenly spaced: `timestamp` is the time of each frame, up to {:.1} ms from its number over the rate.",
-            1e3 * rate.uneven_s
+            "\nFrames were resampled: they came at {from_hz:.2} Hz by the median of the times between them, and are interpolated linearly at {fps} Hz. A reading \
+             is usable where both that it lies between are, and no frame is missing there; poses and forces are interpolated there, too."
         );
     }
     if !features.iter().any(|feature| feature.name == "observation.force") {

@@ -3,7 +3,7 @@
 use crate::Press;
 
 /// What was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LeRobotSummary {
     /// Presses.
     pub episodes: usize,
@@ -11,6 +11,10 @@ pub struct LeRobotSummary {
     pub frames: usize,
     /// Indenters.
     pub tasks: usize,
+    /// Frames a second.
+    pub fps: u64,
+    /// The rate that frames were resampled from, Hz; `None` if they came evenly at a whole rate.
+    pub resampled_from_hz: Option<f64>,
 }
 
 /// A press as an episode.

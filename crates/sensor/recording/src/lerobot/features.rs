@@ -6,9 +6,6 @@ use super::columns::{LeRobotColumn, LeRobotValues};
 use super::episode::Episode;
 use crate::{Press, Recording};
 
-/// A rate that is so close to a whole number is that.
-const WHOLE: f64 = 1e-3;
-
 /// Names of a pose's numbers.
 const POSE: [&str; 7] = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];
 
@@ -201,38 +198,5 @@ impl Feature {
             return LeRobotColumn::lists(&self.name, rows.map(typed));
         }
         LeRobotColumn::single(&self.name, typed(rows.flatten().collect()))
-    }
-}
-
-/// Frames a second.
-pub(super) struct Rate {
-    /// A whole number where it is one.
-    pub(super) value: Value,
-    /// How far frames are from evenly spaced at that rate, s.
-    pub(super) uneven_s: f64,
-}
-
-/// The rate of a recording: that of the median time between frames.
-pub(super) fn frames_per_second(recording: &Recording) -> Rate {
-    let times_s = || recording.presses.iter().map(|press| &press.time_s);
-    let mut steps_s: Vec<f64> = times_s()
-        .flat_map(|time_s| time_s.windows(2).map(|pair| pair[1] - pair[0]))
-        .collect();
-    steps_s.sort_unstable_by(f64::total_cmp);
-    let rate_hz = steps_s.get(steps_s.len() / 2).map_or(1.0, |step_s| 1.0 / step_s);
-    let is_whole = rate_hz.round() >= 1.0 && (rate_hz / rate_hz.round() - 1.0).abs() < WHOLE;
-    let rate_hz = if is_whole { rate_hz.round() } else { rate_hz };
-    let off_s = |time_s: &Vec<f64>| {
-        let frames = time_s.iter().enumerate();
-        let off_s = frames.map(|(frame, at_s)| (at_s - time_s[0] - frame as f64 / rate_hz).abs());
-        off_s.fold(0.0, f64::max)
-    };
-    Rate {
-        value: if is_whole {
-            (rate_hz as u64).into()
-        } else {
-            rate_hz.into()
-        },
-        uneven_s: times_s().map(off_s).fold(0.0, f64::max),
     }
 }

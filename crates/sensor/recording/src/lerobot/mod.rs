@@ -12,6 +12,7 @@
 mod card;
 mod columns;
 mod episode;
+mod evenly;
 mod features;
 mod statistics;
 
@@ -25,7 +26,8 @@ use serde_json::{Map, Value, json};
 use crate::{Press, Recording, RecordingError};
 use columns::{LeRobotColumn, LeRobotValues, write_table};
 use episode::Episode;
-use features::{Feature, features, frames_per_second};
+use evenly::{Even, evenly};
+use features::{Feature, features};
 use statistics::{Statistics, statistics};
 
 /// The version of the format.
@@ -50,6 +52,9 @@ impl Recording {
     /// Features, as single-precision numbers: `observation.state`, the pose of the indenter (mm, quaternion); `observation.tactile`, a reading for each taxel (kPa);
     /// `observation.force` (N) where all presses have one; `action`, the pose of the next frame; `tactile_valid`, whether each reading can be used. `timestamp` counts
     /// from the start of each press, s. Tasks name the indenter.
+    ///
+    /// Frames come at a whole rate, that nearest to the recording's own: where they do not already, they are interpolated, which the summary and the card say. A
+    /// reading is usable where those beside it are.
     ///
     /// A reading that is missing is NaN. Statistics are of the readings that can be used, and null where there are none.
     ///
@@ -78,7 +83,7 @@ impl Recording {
         name.push(".partial");
         let partial = above.join(name);
         let _ = fs::remove_dir_all(&partial); // of a killed one
-        let written = self.write_lerobot_into(&partial, how_made);
+        let written = write_data_set(&evenly(self), &partial, how_made);
         match written {
             Ok(summary) => fs::rename(&partial, folder).map(|()| summary).map_err(problem),
             Err(error) => {
@@ -86,43 +91,6 @@ impl Recording {
                 Err(error)
             }
         }
-    }
-
-    fn write_lerobot_into(&self, folder: &Path, how_made: &str) -> Result<LeRobotSummary, RecordingError> {
-        let features = features(self);
-        let mut tasks: Vec<&str> = Vec::new();
-        for press in &self.presses {
-            if !tasks.contains(&press.indenter.as_str()) {
-                tasks.push(&press.indenter);
-            }
-        }
-        let episodes = self.episodes(&features, &tasks);
-        let n_frames = episodes.iter().map(|episode| episode.press.time_s.len()).sum();
-        let summary = LeRobotSummary {
-            episodes: episodes.len(),
-            frames: n_frames,
-            tasks: tasks.len(),
-        };
-        write_frames(folder, &features, &episodes)?;
-        write_episodes(folder, &features, &episodes, &tasks)?;
-        let task_texts: Vec<String> = tasks.iter().map(|indenter| task_text(indenter)).collect();
-        write_tasks(folder, &task_texts)?;
-        let rate = frames_per_second(self);
-        let info = info(self, &features, &summary, &rate.value);
-        write_json(&folder.join("meta/info.json"), &info)?;
-        let mut of_all = Map::new();
-        for (number, feature) in features.iter().enumerate() {
-            let rows: Vec<Vec<f64>> = episodes
-                .iter()
-                .enumerate()
-                .flat_map(|(index, episode)| features[number].usable_rows(episode, index))
-                .collect();
-            of_all.insert(feature.name.clone(), statistics(&rows).json());
-        }
-        write_json(&folder.join("meta/stats.json"), &Value::Object(of_all))?;
-        let card = card::card(self, &features, &summary, &rate, how_made);
-        write(&folder.join("README.md"), card.as_bytes())?;
-        Ok(summary)
     }
 
     /// The presses as episodes, divided among files.
@@ -150,6 +118,45 @@ impl Recording {
         };
         self.presses.iter().map(episode).collect()
     }
+}
+
+fn write_data_set(even: &Even<'_>, folder: &Path, how_made: &str) -> Result<LeRobotSummary, RecordingError> {
+    let recording = &*even.recording;
+    let features = features(recording);
+    let mut tasks: Vec<&str> = Vec::new();
+    for press in &recording.presses {
+        if !tasks.contains(&press.indenter.as_str()) {
+            tasks.push(&press.indenter);
+        }
+    }
+    let episodes = recording.episodes(&features, &tasks);
+    let n_frames = episodes.iter().map(|episode| episode.press.time_s.len()).sum();
+    let summary = LeRobotSummary {
+        episodes: episodes.len(),
+        frames: n_frames,
+        tasks: tasks.len(),
+        fps: even.fps,
+        resampled_from_hz: even.from_hz,
+    };
+    write_frames(folder, &features, &episodes)?;
+    write_episodes(folder, &features, &episodes, &tasks)?;
+    let task_texts: Vec<String> = tasks.iter().map(|indenter| task_text(indenter)).collect();
+    write_tasks(folder, &task_texts)?;
+    let info = info(recording, &features, &summary);
+    write_json(&folder.join("meta/info.json"), &info)?;
+    let mut of_all = Map::new();
+    for (number, feature) in features.iter().enumerate() {
+        let rows: Vec<Vec<f64>> = episodes
+            .iter()
+            .enumerate()
+            .flat_map(|(index, episode)| features[number].usable_rows(episode, index))
+            .collect();
+        of_all.insert(feature.name.clone(), statistics(&rows).json());
+    }
+    write_json(&folder.join("meta/stats.json"), &Value::Object(of_all))?;
+    let card = card::card(recording, &features, &summary, how_made);
+    write(&folder.join("README.md"), card.as_bytes())?;
+    Ok(summary)
 }
 
 /// What a press with an indenter is for.
@@ -249,7 +256,7 @@ fn write_tasks(folder: &Path, tasks: &[String]) -> Result<(), RecordingError> {
     )
 }
 
-fn info(recording: &Recording, features: &[Feature], summary: &LeRobotSummary, fps: &Value) -> Value {
+fn info(recording: &Recording, features: &[Feature], summary: &LeRobotSummary) -> Value {
     let described: Map<String, Value> = features
         .iter()
         .map(|feature| (feature.name.clone(), feature.info()))
@@ -263,7 +270,8 @@ fn info(recording: &Recording, features: &[Feature], summary: &LeRobotSummary, f
         "chunks_size": FILES_OF_CHUNK,
         "data_files_size_in_mb": FILE_MB,
         "video_files_size_in_mb": 200,
-        "fps": fps,
+        "fps": summary.fps,
+        "resampled_from_hz": summary.resampled_from_hz,
         "splits": {"train": format!("0:{}", summary.episodes)},
         "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
         "video_path": null,

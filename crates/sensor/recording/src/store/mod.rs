@@ -1,14 +1,17 @@
 //! Recordings in Parquet files: one row per frame, which pandas and the like open as they are.
 
 mod column;
+mod file;
 mod frames;
 mod read;
 mod schema;
 mod seal;
+mod stored;
 mod table;
 mod write;
 
 pub use frames::{FrameTable, TaxelCell};
+pub use stored::Stored;
 pub use table::Column;
 pub use write::RecordingWriter;
 

@@ -1,18 +1,18 @@
 //! Reads recordings.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use twintac_shape::Pose;
 
 use super::column::Columns;
-use super::{schema, seal};
+use super::file::{damaged, decoded, holds_frames};
+use super::schema;
 use crate::missing::known_or_nan;
 use crate::{Control, Press, Provenance, Recording, RecordingError};
 
 impl Recording {
-    /// Reads a Parquet file with the columns that [`write_parquet`](Self::write_parquet) gives; `press_index` may be missing,
+    /// Reads a Parquet file with the columns that [`write_parquet`](Self::write_parquet) gives; `press_index` and temperatures may be missing,
     /// further columns are left alone, and `mounting` may have its old name `file`. Rows with the same `press` belong together and must
     /// follow each other.
     ///
@@ -21,31 +21,31 @@ impl Recording {
     /// The file cannot be read, is truncated or altered (files that this crate wrote carry a checksum of all bytes), lacks a
     /// column, is inconsistent ([`check`](Self::check)), or holds no presses.
     pub fn read_parquet(path: &Path) -> Result<Self, RecordingError> {
-        let damaged = |problem: String| RecordingError::Damaged {
-            file: path.display().to_string(),
-            problem,
-        };
-        let bytes = std::fs::read(path).map_err(|source| RecordingError::read(path, source))?;
-        seal::verify(&bytes).map_err(damaged)?;
-        // A file of another program has no seal, and the Parquet decoder panics on some malformed ones.
-        let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes)));
-        let recording = decoded
-            .unwrap_or_else(|_| Err("it cannot be decoded".to_owned()))
-            .map_err(damaged)?;
-        recording.check().map_err(|e| damaged(e.to_string()))?;
-        if recording.presses.is_empty() {
-            return Err(RecordingError::NoPresses {
-                file: path.display().to_string(),
-                rows: 0,
-                why: "the table is empty".to_owned(),
-            });
-        }
+        let recording = decoded(path, decode)?;
+        expect_presses(path, &recording)?;
         Ok(recording)
     }
 }
 
-fn decode(bytes: Vec<u8>) -> Result<Recording, String> {
-    let columns = Columns::open(bytes)?;
+/// Refuses a file whose presses are inconsistent, and one without any.
+pub(super) fn expect_presses(path: &Path, recording: &Recording) -> Result<(), RecordingError> {
+    recording
+        .check()
+        .map_err(|error| damaged(path, error.to_string()))?;
+    if recording.presses.is_empty() {
+        return Err(RecordingError::NoPresses {
+            file: path.display().to_string(),
+            rows: 0,
+            why: "the table is empty".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+pub(super) fn decode(columns: &Columns) -> Result<Recording, String> {
+    if holds_frames(columns) {
+        return Err("it holds frames without poses, and no presses".to_owned());
+    }
     let version = columns.metadata(schema::VERSION_KEY)?;
     if version != schema::VERSION {
         return Err(format!(
@@ -54,8 +54,8 @@ fn decode(bytes: Vec<u8>) -> Result<Recording, String> {
         ));
     }
     let provenance = parse_provenance(&columns.metadata(schema::PROVENANCE_KEY)?)?;
-    let frames = Frames::read(&columns)?;
-    if let Some(other) = frames
+    let rows = Rows::read(columns)?;
+    if let Some(other) = rows
         .provenance
         .iter()
         .find(|&other| *other != provenance.to_string())
@@ -64,21 +64,21 @@ fn decode(bytes: Vec<u8>) -> Result<Recording, String> {
             "column `provenance` says `{other}`, the metadata `{provenance}`"
         ));
     }
-    let presses = frames.press.chunk_by(|a, b| a == b).scan(0, |start, run| {
-        let rows = *start..*start + run.len();
-        *start = rows.end;
-        Some(frames.press(rows))
+    let presses = rows.press.chunk_by(|a, b| a == b).scan(0, |start, run| {
+        let range = *start..*start + run.len();
+        *start = range.end;
+        Some(rows.press(range))
     });
     Ok(Recording {
         sensor: columns.metadata(schema::SENSOR_KEY)?,
         provenance,
         presses: presses.collect::<Result<_, _>>()?,
-        taxels: frames.taxels.clone(),
+        taxels: rows.taxels.clone(),
     })
 }
 
 /// All rows of a file, column by column.
-struct Frames {
+struct Rows {
     taxels: Vec<String>,
     press: Vec<String>,
     mounting: Vec<String>,
@@ -91,9 +91,11 @@ struct Frames {
     kpa: Vec<Vec<f64>>,
     raw: Vec<Vec<f64>>,
     valid: Vec<Vec<bool>>,
+    /// Empty in a file without temperatures.
+    temperature_c: Vec<Vec<f64>>,
 }
 
-impl Frames {
+impl Rows {
     fn read(columns: &Columns) -> Result<Self, String> {
         let taxels: Vec<String> = columns
             .names
@@ -108,7 +110,16 @@ impl Frames {
             };
             taxels.iter().map(column).collect()
         };
-        let frames = Self {
+        let has_temperatures = columns
+            .names
+            .iter()
+            .any(|name| name.ends_with(schema::TEMPERATURE_C));
+        let rows = Self {
+            temperature_c: if has_temperatures {
+                of_taxels(schema::TEMPERATURE_C)?
+            } else {
+                Vec::new()
+            },
             press: columns.texts(schema::PRESS)?,
             mounting: columns.texts(mounting_column(columns))?,
             indenter: columns.texts(schema::INDENTER)?,
@@ -128,14 +139,15 @@ impl Frames {
                 .collect::<Result<_, _>>()?,
             taxels,
         };
-        frames.check_lengths()?;
-        Ok(frames)
+        rows.check_lengths()?;
+        Ok(rows)
     }
 
     fn check_lengths(&self) -> Result<(), String> {
         let rows = self.press.len();
         let texts = [&self.mounting, &self.indenter, &self.control, &self.provenance].map(Vec::len);
-        let numbers = self.pose.iter().chain(&self.kpa).chain(&self.raw).map(Vec::len);
+        let of_taxels = self.kpa.iter().chain(&self.raw).chain(&self.temperature_c);
+        let numbers = self.pose.iter().chain(of_taxels).map(Vec::len);
         let others = self
             .valid
             .iter()
@@ -184,7 +196,10 @@ impl Frames {
                 .map(|row| columns.iter().map(|column| column[row]).collect())
                 .collect()
         };
+        let temperature_c = across(&self.temperature_c);
+        let has_temperatures = temperature_c.iter().flatten().any(|c| !c.is_nan());
         Ok(Press {
+            temperature_c: has_temperatures.then_some(temperature_c),
             name: name.clone(),
             mounting: self.mounting[first].clone(),
             indenter: self.indenter[first].clone(),
@@ -218,7 +233,7 @@ fn parse_control(text: &str) -> Result<Control, String> {
     known.ok_or_else(|| format!("column `control` says `{text}`, expected `pose` or `force`"))
 }
 
-fn parse_provenance(text: &str) -> Result<Provenance, String> {
+pub(super) fn parse_provenance(text: &str) -> Result<Provenance, String> {
     let known = [Provenance::Real, Provenance::Emulated, Provenance::Simulated];
     let known = known
         .into_iter()

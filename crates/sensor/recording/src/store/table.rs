@@ -40,6 +40,17 @@ impl Recording {
     /// them.
     #[must_use]
     pub fn columns(&self) -> Vec<(String, Column)> {
+        self.columns_with(self.has_temperatures())
+    }
+
+    /// Whether any press has temperatures.
+    #[must_use]
+    pub fn has_temperatures(&self) -> bool {
+        self.presses.iter().any(|press| press.temperature_c.is_some())
+    }
+
+    /// The same, with columns of temperatures or without.
+    pub(super) fn columns_with(&self, has_temperatures: bool) -> Vec<(String, Column)> {
         let frames = |press: &Press| press.time_s.len();
         let index = (0..).zip(&self.presses);
         let index = index.flat_map(|(index, press)| std::iter::repeat_n(index, frames(press)));
@@ -91,6 +102,15 @@ impl Recording {
             let rows = self.presses.iter().flat_map(|press| &press.valid);
             Column::Flag(rows.map(|row| row[taxel]).collect())
         });
+        if has_temperatures {
+            of_taxels(schema::TEMPERATURE_C, &|taxel| {
+                let of_press = |press: &Press| match &press.temperature_c {
+                    Some(rows) => rows.iter().map(|row| known(row[taxel])).collect(),
+                    None => vec![None; frames(press)],
+                };
+                Column::Known(self.presses.iter().flat_map(of_press).collect())
+            });
+        }
         columns
     }
 }

@@ -16,6 +16,7 @@ fn recording() -> Recording {
         gel_from_indenter: vec![Pose::from_position(DVec3::new(1.0, 2.0, 6.0)); 2],
         force_n: Some(vec![7.0, 9.0]),
         taxels_kpa: vec![vec![3.0], vec![5.0]],
+        temperature_c: None,
         taxels_raw: vec![vec![100.0], vec![101.0]],
         valid: vec![vec![true], vec![false]],
     };

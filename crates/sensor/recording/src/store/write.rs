@@ -26,14 +26,14 @@ impl Recording {
     ///
     /// Columns: `press_index` (from 0), `press`, `mounting`, `indenter`, `control` and `provenance`; `time_s`; the pose
     /// `x_mm`, `y_mm`, `z_mm`, `qx`, `qy`, `qz`, `qw`; `force_n` (null where unknown); then `<taxel>_kpa` of all taxels and
-    /// `<taxel>_raw` (null where a reading is missing), and `<taxel>_valid`. The metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
+    /// `<taxel>_raw` (null where a reading is missing), and `<taxel>_valid`; and `<taxel>_temperature_c`, if any press has temperatures. The metadata has `twintac.schema`, `twintac.sensor` and `twintac.provenance`.
     ///
     /// # Errors
     ///
     /// The recording is inconsistent ([`check`](Self::check)), or the file cannot be written.
     pub fn write_parquet(&self, path: &Path) -> Result<(), RecordingError> {
         self.check()?;
-        let mut writer = RecordingWriter::create(path, &self.sensor, self.provenance, &self.taxels)?;
+        let mut writer = RecordingWriter::begin(path, self.without_presses(), self.has_temperatures())?;
         for press in &self.presses {
             writer.push(press.clone())?;
         }
@@ -44,16 +44,26 @@ impl Recording {
     /// The bytes of a file, without a seal; `mounting` is what the column of the mounting is called.
     #[cfg(test)]
     pub(super) fn to_parquet(&self, mounting: &'static str) -> Result<Vec<u8>, ParquetError> {
-        let empty = Self {
-            presses: Vec::new(),
-            ..self.clone()
-        };
-        let mut encoder = Encoder::new(Vec::new(), empty, mounting)?;
+        let mut encoder = Encoder::new(
+            Vec::new(),
+            self.without_presses(),
+            mounting,
+            self.has_temperatures(),
+        )?;
         for press in &self.presses {
             encoder.push(press.clone())?;
         }
         encoder.put_group()?;
         encoder.writer.into_inner()
+    }
+
+    fn without_presses(&self) -> Self {
+        Self {
+            sensor: self.sensor.clone(),
+            provenance: self.provenance,
+            taxels: self.taxels.clone(),
+            presses: Vec::new(),
+        }
     }
 }
 
@@ -68,7 +78,7 @@ pub struct RecordingWriter {
 }
 
 impl RecordingWriter {
-    /// Begins a file of presses of one sensor.
+    /// Begins a file of presses of one sensor, without temperatures.
     ///
     /// # Errors
     /// [`RecordingError::Write`].
@@ -78,15 +88,19 @@ impl RecordingWriter {
         provenance: Provenance,
         taxels: &[String],
     ) -> Result<Self, RecordingError> {
-        let file = PartialFile::create(path).map_err(|source| RecordingError::write(path, source))?;
         let empty = Recording {
             sensor: sensor.to_owned(),
             provenance,
             taxels: taxels.to_vec(),
             presses: Vec::new(),
         };
+        Self::begin(path, empty, false)
+    }
+
+    fn begin(path: &Path, empty: Recording, has_temperatures: bool) -> Result<Self, RecordingError> {
+        let file = PartialFile::create(path).map_err(|source| RecordingError::write(path, source))?;
         let sink = Sealing::new(BufWriter::new(file));
-        let encoder = Encoder::new(sink, empty, schema::MOUNTING);
+        let encoder = Encoder::new(sink, empty, schema::MOUNTING, has_temperatures);
         Ok(Self {
             encoder: encoder.map_err(|error| problem(path, error))?,
             path: path.to_owned(),
@@ -98,14 +112,24 @@ impl RecordingWriter {
     /// Adds a press.
     ///
     /// # Errors
-    /// A press that is inconsistent ([`Recording::check`]) or whose name was there before; a file that cannot be written.
+    /// A press that is inconsistent ([`Recording::check`]), has temperatures in a file without, or whose name was there before; a file that cannot
+    /// be written.
     pub fn push(&mut self, press: Press) -> Result<(), RecordingError> {
         press.check(&self.encoder.waiting.taxels)?;
-        if !self.names.insert(press.name.clone()) {
-            return Err(RecordingError::Inconsistent {
+        let wrong = |problem: String| {
+            Err(RecordingError::Inconsistent {
                 place: self.path.display().to_string(),
-                problem: format!("press name `{}` is there twice", press.name),
-            });
+                problem,
+            })
+        };
+        if press.temperature_c.is_some() && !self.encoder.has_temperatures {
+            return wrong(format!(
+                "press `{}` has temperatures, and the file was begun without",
+                press.name
+            ));
+        }
+        if !self.names.insert(press.name.clone()) {
+            return wrong(format!("press name `{}` is there twice", press.name));
         }
         self.n_rows += press.time_s.len() as u64;
         self.encoder
@@ -143,10 +167,16 @@ struct Encoder<W: Write + Send> {
     n_written: i32,
     /// What the column of the mounting is called.
     mounting: &'static str,
+    has_temperatures: bool,
 }
 
 impl<W: Write + Send> Encoder<W> {
-    fn new(sink: W, empty: Recording, mounting: &'static str) -> Result<Self, ParquetError> {
+    fn new(
+        sink: W,
+        empty: Recording,
+        mounting: &'static str,
+        has_temperatures: bool,
+    ) -> Result<Self, ParquetError> {
         let pair = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::UNCOMPRESSED)
@@ -160,13 +190,14 @@ impl<W: Write + Send> Encoder<W> {
         for name in schema::TEXTS {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
-        let types = table::types(&columns(&empty, 0, mounting))?;
+        let types = table::types(&columns(&empty, 0, mounting, has_temperatures))?;
         Ok(Self {
             writer: SerializedFileWriter::new(sink, types, Arc::new(properties.build()))?,
             waiting: empty,
             n_waiting_rows: 0,
             n_written: 0,
             mounting,
+            has_temperatures,
         })
     }
 
@@ -185,7 +216,13 @@ impl<W: Write + Send> Encoder<W> {
             return Ok(());
         }
         let mut group = self.writer.next_row_group()?;
-        for (_, column) in columns(&self.waiting, self.n_written, self.mounting) {
+        let columns = columns(
+            &self.waiting,
+            self.n_written,
+            self.mounting,
+            self.has_temperatures,
+        );
+        for (_, column) in columns {
             put(&mut group, &column, &self.waiting.presses)?;
         }
         group.close()?;
@@ -215,8 +252,13 @@ impl<W: Write + Send> std::fmt::Debug for Encoder<W> {
 }
 
 /// A recording's columns, with presses numbered on from `first`.
-fn columns(recording: &Recording, first: i32, mounting: &str) -> Vec<(String, Column)> {
-    let mut columns = recording.columns();
+fn columns(
+    recording: &Recording,
+    first: i32,
+    mounting: &str,
+    has_temperatures: bool,
+) -> Vec<(String, Column)> {
+    let mut columns = recording.columns_with(has_temperatures);
     for (name, column) in &mut columns {
         if name == schema::MOUNTING {
             mounting.clone_into(name);

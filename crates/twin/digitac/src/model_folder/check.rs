@@ -27,6 +27,9 @@ impl Checked for ModelRecord {
         ranges.inside("start", &Of(&self.start, n_taxels));
         ranges.inside("gains", &Of(&self.gains, n_taxels));
         ranges.inside("bench", &Of(&self.bench, n_taxels));
+        if let Some(temperature) = &self.temperature {
+            ranges.inside("temperature", temperature);
+        }
         if let Some(certainty) = &self.certainty {
             ranges.inside("certainty", certainty);
         }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use twintac_recording::Provenance;
+use twintac_temperature::Compensation;
 
 use crate::network::Normalization;
 use crate::{BenchEstimate, Certainty, Evaluation, Gains, Score, Split, TrainedWith, Twin, Variant};
@@ -44,6 +45,9 @@ pub struct ModelRecord {
     /// Checksums of the presses that taught: what is judged elsewhere must not be among them.
     #[serde(default)]
     pub taught_by: BTreeSet<String>,
+    /// How zeros move with temperature: readings that taught were compensated for it, as far as they had temperatures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<Compensation>,
     /// Which presses were used for training, validation and test.
     pub split: Split,
     /// Errors on validation presses; of an adapted twin, on those that it was adapted with.
@@ -85,6 +89,8 @@ pub struct Origin {
     pub files: Vec<String>,
     /// Checksums of the presses that taught.
     pub taught_by: BTreeSet<String>,
+    /// How zeros move with temperature, if it is known.
+    pub temperature: Option<Compensation>,
     /// Which presses were used for training, validation and test.
     pub split: Split,
     /// How sure the twin is of its readings, if it is known.
@@ -107,6 +113,7 @@ impl Model {
             provenance: origin.provenance,
             files: origin.files,
             taught_by: origin.taught_by,
+            temperature: origin.temperature,
             split: origin.split,
             validation,
             certainty: origin.certainty,

@@ -131,6 +131,7 @@ pub fn simulated_recording(
         Press {
             force_n: Some(predicted.force_n),
             valid: usable.collect(),
+            temperature_c: None,
             taxels_raw: predicted.readings_kpa.clone(),
             taxels_kpa: predicted.readings_kpa,
             ..unread
@@ -217,6 +218,7 @@ pub fn unread_press(
         gel_from_indenter: trajectory.iter().map(|(_, depth_mm)| pose(*depth_mm)).collect(),
         force_n: None,
         taxels_kpa: unread.clone(),
+        temperature_c: None,
         taxels_raw: unread,
         valid: vec![vec![false; n_taxels]; trajectory.len()],
     };

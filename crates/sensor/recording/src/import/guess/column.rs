@@ -1,5 +1,7 @@
 //! A column: its name, the unit that the name ends with, and its numbers.
 
+use crate::import::bag::is_bag_column;
+
 /// A column, and its numbers.
 pub(super) struct Column {
     pub(super) name: String,
@@ -31,12 +33,21 @@ impl Column {
         }
     }
 
-    /// The name without its unit.
-    pub(super) fn bare_name(&self) -> &str {
+    /// The name without its unit. In a bag the number in an array, or the topic.
+    pub(super) fn bare_name(&self) -> String {
+        if is_bag_column(&self.name)
+            && let Some((topic, field)) = self.name.split_once(':')
+        {
+            return match field.rsplit_once('.') {
+                Some((_, number)) if number.parse::<usize>().is_ok() => format!("t{number}"),
+                _ => topic.trim_matches('/').replace('/', "_"),
+            };
+        }
         let is_same_length = self.name.to_lowercase().len() == self.name.len();
         let bare = self.name.get(..self.base.len()).filter(|_| is_same_length);
         bare.filter(|bare| bare.to_lowercase() == self.base)
             .unwrap_or(&self.name)
+            .to_owned()
     }
 
     /// The name less the digits at its end, if there are any.

@@ -27,10 +27,14 @@ impl Lines {
     }
 }
 
-/// The description of a file.
-pub(super) fn write(file: &str, layout: &Layout, columns: &[Column], roles: &Roles) -> String {
+/// The description of a file: of a text with its layout and all its columns, or of a bag.
+pub(super) fn write(file: &str, layout: Option<&Layout>, columns: &[Column], roles: &Roles) -> String {
+    let seen = match layout {
+        Some(_) => "its first lines",
+        None => "the types of its topics",
+    };
     let mut lines = Lines(format!(
-        "# How to read {file}: guessed from its first lines. Check each line; what is marked with TODO is not in the file.\n\n"
+        "# How to read {file}: guessed from {seen}. Check each line; what is marked with TODO is not in the file.\n\n"
     ));
     lines.add(
         "sensor = \"my-sensor\"",
@@ -42,11 +46,13 @@ pub(super) fn write(file: &str, layout: &Layout, columns: &[Column], roles: &Rol
         "gel_top_mm = 8.5",
         "TODO: height of the untouched gel above the board",
     );
-    add_layout(&mut lines, layout, columns);
+    if let Some(layout) = layout {
+        add_layout(&mut lines, layout, columns);
+    }
     lines.part();
     add_motion(&mut lines, roles);
     lines.part();
-    add_readings(&mut lines, &roles.taxels);
+    add_readings(&mut lines, roles);
     lines.part();
     add_presses(&mut lines, roles);
     lines.0
@@ -109,6 +115,9 @@ fn add_motion(lines: &mut Lines, roles: &Roles) {
         );
     }
     let Some(z) = roles.place[2] else {
+        if roles.time.is_some() && roles.press.is_none() {
+            return;
+        }
         lines.add(
             "# z = { column = \"…\", unit = \"mm\" }",
             "TODO: no column looks like a height",
@@ -140,7 +149,8 @@ fn add_motion(lines: &mut Lines, roles: &Roles) {
     }
 }
 
-fn add_readings(lines: &mut Lines, taxels: &[&Column]) {
+fn add_readings(lines: &mut Lines, roles: &Roles) {
+    let taxels = &roles.taxels;
     let (unit, why) = unit::pressure(taxels);
     let counts = if unit == "counts" {
         ", kpa_per_count = 1.0"
@@ -148,10 +158,26 @@ fn add_readings(lines: &mut Lines, taxels: &[&Column]) {
         ""
     };
     lines.add(&format!("readings = {{ unit = \"{unit}\"{counts} }}"), &why);
+    let has_own = roles.temperatures.len() == taxels.len();
+    match roles.temperatures.first() {
+        Some(shared) if !has_own => lines.add(
+            &format!(
+                "temperatures = {{ column = {}, unit = \"C\" }}",
+                quoted(&shared.name)
+            ),
+            "one thermometer for all taxels",
+        ),
+        Some(_) => lines.add("temperatures = { unit = \"C\" }", "of the taxels' own columns"),
+        None => {}
+    }
     lines.add("taxels = [", "TODO: names as in the sensor's description");
-    for taxel in taxels {
-        let [name, column] = [taxel.bare_name(), &taxel.name].map(quoted);
-        lines.add(&format!("    {{ name = {name}, column = {column} }},"), "");
+    for (index, taxel) in taxels.iter().enumerate() {
+        let [name, column] = [taxel.bare_name(), taxel.name.clone()].map(|name| quoted(&name));
+        let own = roles.temperatures.get(index).filter(|_| has_own);
+        let own = own.map_or(String::new(), |own| {
+            format!(", temperature = {}", quoted(&own.name))
+        });
+        lines.add(&format!("    {{ name = {name}, column = {column}{own} }},"), "");
     }
     lines.add("]", "");
 }
@@ -175,6 +201,10 @@ fn add_presses(lines: &mut Lines, roles: &Roles) {
                 "the tip starts from there and returns",
             );
         }
+        (None, None, Some(_)) => lines.add(
+            "presses = { split = \"none\" }",
+            "no column looks like a height: readings alone, as `twintac characterize` takes them",
+        ),
         _ => lines.add("presses = { split = \"row\" }", "each row is a press of its own"),
     }
     if roles.place[2].is_some() && roles.time.is_some() {

@@ -1,5 +1,6 @@
 //! A first import description of a file that nobody has described: a guess for each field, and what it was guessed from.
 
+mod bag;
 mod column;
 mod fields;
 mod layout;
@@ -8,13 +9,15 @@ mod unit;
 
 use std::path::Path;
 
+use bag::Guessed;
 use layout::Layout;
 use roles::Roles;
 
+use super::bag::ReadBag;
 use super::text::Text;
 use crate::RecordingError;
 
-/// The text of an import description for a file. It can be read as it is; what is not in the file is marked with TODO.
+/// The text of an import description for a text of columns. It can be read as it is; what is not in the file is marked with TODO.
 ///
 /// # Errors
 /// The file cannot be read, or nothing in it looks like rows of numbers.
@@ -28,8 +31,23 @@ pub fn guess_import(path: &Path) -> Result<String, RecordingError> {
                 .to_owned(),
     })?;
     let columns = layout.columns(text.rest());
-    let name = path
-        .file_name()
-        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    Ok(fields::write(&name, &layout, &columns, &Roles::new(&columns)))
+    let roles = Roles::new(&columns);
+    Ok(fields::write(&file_name(path), Some(&layout), &columns, &roles))
+}
+
+/// As [`guess_import`], for a bag that `read_bag` reads; none if the file is no bag.
+///
+/// # Errors
+/// The bag cannot be read, or none of its topics looks like readings of taxels.
+pub fn guess_bag_import(path: &Path, read_bag: ReadBag) -> Option<Result<String, RecordingError>> {
+    let bag = read_bag(path, &[])?;
+    let guess = bag
+        .and_then(|bag| Guessed::new(path, &bag, read_bag))
+        .map(|guessed| fields::write(&file_name(path), None, &[], &guessed.roles()));
+    Some(guess)
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }

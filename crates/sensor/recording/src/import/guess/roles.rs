@@ -43,6 +43,17 @@ pub(super) struct Roles<'a> {
     pub(super) force: Option<&'a Column>,
     pub(super) press: Option<&'a Column>,
     pub(super) taxels: Vec<&'a Column>,
+    /// Thermometers: one for each taxel, or one for all.
+    pub(super) temperatures: Vec<&'a Column>,
+}
+
+/// Whether a column's name is that of a thermometer.
+fn is_temperature(column: &Column) -> bool {
+    let words = ["temp", "temperature", "t"];
+    let is_named = |word: &&str| column.base == **word || column.base.ends_with(&format!("_{word}"));
+    column.base.starts_with("temp")
+        || words.iter().any(is_named)
+        || matches!(column.unit.as_deref(), Some("c" | "°c" | "degc"))
 }
 
 impl<'a> Roles<'a> {
@@ -66,7 +77,9 @@ impl<'a> Roles<'a> {
             let is_number = !column.is_text && !column.is_clock;
             is_number && !taken.iter().any(|taken| std::ptr::eq(*taken, *column))
         };
-        let left: Vec<&Column> = columns.iter().filter(is_left).collect();
+        let left = columns.iter().filter(is_left);
+        let (temperatures, left): (Vec<&Column>, Vec<&Column>) =
+            left.partition(|column| is_temperature(column));
         // The most columns that differ in a number alone; else all that change.
         let of_stem = |stem: &str| {
             left.iter()
@@ -87,6 +100,7 @@ impl<'a> Roles<'a> {
             force,
             press,
             taxels: taxels.unwrap_or_else(|| left.iter().filter(changes).copied().collect()),
+            temperatures,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Recordings that a key begins and ends.
+//! Logs of frames as they come.
 
 use std::path::{Path, PathBuf};
 
@@ -31,23 +31,28 @@ impl TouchRecording {
         let mut path = name(1);
         for number in 1..MOST_FILES {
             path = name(number);
-            match Recorder::create(&path, &about.description()) {
-                Ok(recorder) => {
-                    let (sender, frames) = (recorder.sender(), 0);
-                    return Ok(Self {
-                        recorder,
-                        sender,
-                        path,
-                        frames,
-                        last: None,
-                    });
-                }
-                Err(LogError::Exists { .. }) => {}
-                Err(error) => return Err(error.into()),
+            match Self::create(&path, about) {
+                Err(LiveError::Log(LogError::Exists { .. })) => {}
+                begun => return begun,
             }
         }
         let file = path.display().to_string();
         Err(LogError::Exists { file }.into())
+    }
+
+    /// Begins a file; its name ends in `.partial` until it is finished.
+    ///
+    /// # Errors
+    /// [`LiveError::Log`]: it is there already, or cannot be written.
+    pub fn create(path: &Path, about: &About) -> Result<Self, LiveError> {
+        let recorder = Recorder::create(path, &about.description())?;
+        Ok(Self {
+            sender: recorder.sender(),
+            recorder,
+            path: path.to_owned(),
+            frames: 0,
+            last: None,
+        })
     }
 
     /// Its file.
@@ -88,7 +93,7 @@ impl TouchRecording {
         Ok(())
     }
 
-    /// Writes what waits, gives the file its name, and puts a table of its frames beside it, `touch-0001.parquet`. How many frames it has.
+    /// Writes what waits, gives the file its name, and puts a table of its frames beside it, with the ending `.parquet`. How many frames it has.
     ///
     /// # Errors
     /// [`LiveError::Log`].

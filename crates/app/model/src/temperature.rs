@@ -1,0 +1,55 @@
+//! Recordings without what temperature did to their zeros.
+
+use std::borrow::Cow;
+
+use digitac::ModelRecord;
+use twintac_recording::Recording;
+use twintac_temperature::Compensation;
+use twintac_work::{Progress, WorkError};
+
+/// Takes off what temperature did to the zeros, where a recording has temperatures, and tells how much that was.
+///
+/// # Errors
+/// A compensation of another sensor, or without one of its taxels.
+pub fn compensate(
+    recording: &mut Recording,
+    compensation: &Compensation,
+    progress: &dyn Progress,
+) -> Result<(), WorkError> {
+    let done = compensation
+        .apply(recording)
+        .map_err(|error| WorkError::Input(error.to_string()))?;
+    if done.n_without > 0 {
+        progress.note(&format!(
+            "{} of {} presses have no temperatures, and keep what temperature did to them",
+            done.n_without,
+            done.n_presses + done.n_without
+        ));
+    }
+    if done.largest_kpa > 0.0 {
+        progress.note(&format!(
+            "zeros drift with temperature by up to {:.3} kPa within a press, which is taken off",
+            done.largest_kpa
+        ));
+    }
+    done.remarks.iter().for_each(|remark| progress.note(remark));
+    Ok(())
+}
+
+/// A recording as those were that taught a model.
+pub(crate) fn as_taught<'r>(
+    recording: &'r Recording,
+    record: &ModelRecord,
+    progress: &dyn Progress,
+) -> Result<Cow<'r, Recording>, WorkError> {
+    let Some(compensation) = record
+        .temperature
+        .as_ref()
+        .filter(|_| recording.has_temperatures())
+    else {
+        return Ok(Cow::Borrowed(recording));
+    };
+    let mut recording = recording.clone();
+    compensate(&mut recording, compensation, progress)?;
+    Ok(Cow::Owned(recording))
+}
