@@ -111,7 +111,7 @@ def test_a_recording_is_written_as_lerobot_reads_it(tmp_path: Path) -> None:
     written = recording.save_lerobot(folder, how_made="By a test.")
     columns = recording.columns()
     n_frames = len(columns["time_s"])
-    assert written == {"episodes": 12, "frames": n_frames, "tasks": 7}
+    assert written == {"episodes": 12, "frames": n_frames, "tasks": 7, "fps": 55, "resampled_from_hz": None}
 
     info = json.loads((folder / "meta/info.json").read_text())
     assert info["codebase_version"] == "v3.0" and info["fps"] == 55

@@ -499,7 +499,7 @@ class Recording:
         """
     def save_lerobot(self, folder: _Path, *, how_made: str = "") -> dict[str, int]:
         """Writes a LeRobot data set, version 3.0, into a folder that is not there yet: presses are episodes, indenters are tasks. `how_made` is put into its data card.
-        Returns the numbers of episodes, frames and tasks.
+        Returns the numbers of episodes, frames and tasks, frames a second (`fps`), and the rate that they were resampled from, Hz (`resampled_from_hz`; `None` if they came evenly).
 
         Raises `Error` for a folder that is there, or cannot be written.
         """

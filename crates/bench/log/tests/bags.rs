@@ -453,6 +453,7 @@ fn each_taxel_may_have_a_topic_of_its_own() {
 }
 
 // long: a message of each type, and what is read of it.
+// long: a row for each type
 #[test]
 fn every_usual_type_is_read() {
     let array = |element: &str| ARRAY.replace("float32", element);
