@@ -17,7 +17,15 @@ pub struct Exported {
     pub log: PathBuf,
     /// Its table (Parquet).
     pub table: PathBuf,
-    /// Rows of the table.
+    /// What the log has.
+    #[serde(flatten)]
+    pub found: LogFound,
+}
+
+/// What a log has that was written as something else.
+#[derive(Clone, Debug, Serialize)]
+pub struct LogFound {
+    /// Tactile frames.
     pub frames: u64,
     /// Gaps in them, marked by the recorder or left by damage.
     pub gaps: u64,
@@ -47,11 +55,7 @@ pub fn export(log: &Path, folder: Option<&Path>) -> Result<Exported, WorkError> 
     Ok(Exported {
         log: log.to_owned(),
         table,
-        frames: exported.frames,
-        gaps: exported.gaps,
-        last_s: exported.last_s,
-        is_whole: exported.ending == Ending::Whole,
-        recovered: recovered(log, exported.ending)?,
+        found: found(log, exported)?,
     })
 }
 
@@ -62,17 +66,9 @@ pub struct ExportedBag {
     pub log: PathBuf,
     /// The bag (MCAP).
     pub bag: PathBuf,
-    /// Tactile frames in it.
-    pub frames: u64,
-    /// Gaps in them, marked by the recorder or left by damage.
-    pub gaps: u64,
-    /// Time of the last frame, s.
-    pub last_s: f64,
-    /// Whether the log was whole and as it was written.
-    pub is_whole: bool,
-    /// What is wrong with a log that was cut or damaged, and what became of it, in words.
-    #[serde(skip)]
-    pub recovered: Option<String>,
+    /// What the log has.
+    #[serde(flatten)]
+    pub found: LogFound,
 }
 
 /// Writes a log as a bag of ROS 2 with standard messages alone (MCAP), of the log's name, into `folder`. `topics` are what a topic holds and what it is to be
@@ -91,6 +87,13 @@ pub fn export_ros(log: &Path, folder: &Path, topics: &[(String, String)]) -> Res
     Ok(ExportedBag {
         log: log.to_owned(),
         bag,
+        found: found(log, exported)?,
+    })
+}
+
+/// What was found in a log, and what becomes of it.
+fn found(log: &Path, exported: twintac_log::Exported) -> Result<LogFound, WorkError> {
+    Ok(LogFound {
         frames: exported.frames,
         gaps: exported.gaps,
         last_s: exported.last_s,

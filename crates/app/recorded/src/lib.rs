@@ -4,5 +4,5 @@
 mod export;
 mod recorded;
 
-pub use export::{Exported, ExportedBag, export, export_lerobot, export_ros};
+pub use export::{Exported, ExportedBag, LogFound, export, export_lerobot, export_ros};
 pub use recorded::{COMPENSATION, Recorded};

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use anyhow::Result;
-use twintac_recorded::{ExportedBag, export, export_lerobot, export_ros};
+use serde::Serialize;
+use twintac_recorded::{LogFound, export, export_lerobot, export_ros};
 use twintac_recording::LeRobotSummary;
 
 use super::files::expand;
@@ -38,19 +39,7 @@ pub(super) fn run(arguments: &Export) -> Result<()> {
     }
     for log in expand(&arguments.logs)? {
         let exported = export(&log, arguments.out.as_deref())?;
-        if let Some(recovered) = &exported.recovered {
-            say(&format!("{} {recovered}", log.display()));
-        }
-        print(&if arguments.json {
-            serde_json::to_string(&exported)?
-        } else {
-            format!(
-                "{}: {} frames, {} marked gaps",
-                exported.table.display(),
-                exported.frames,
-                exported.gaps
-            )
-        })?;
+        tell(arguments, &log, (&exported, &exported.table), &exported.found)?;
     }
     Ok(())
 }
@@ -58,17 +47,25 @@ pub(super) fn run(arguments: &Export) -> Result<()> {
 fn for_ros(arguments: &Export, folder: &Path) -> Result<()> {
     for log in expand(&arguments.logs)? {
         let exported = export_ros(&log, folder, &arguments.topic)?;
-        if let Some(recovered) = &exported.recovered {
-            say(&format!("{} {recovered}", log.display()));
-        }
-        let ExportedBag {
-            bag, frames, gaps, ..
-        } = &exported;
-        print(&if arguments.json {
-            serde_json::to_string(&exported)?
-        } else {
-            format!("{}: {frames} frames, {gaps} marked gaps", bag.display())
-        })?;
+        tell(arguments, &log, (&exported, &exported.bag), &exported.found)?;
     }
     Ok(())
+}
+
+/// Says what was found in a log, and into which file it was written.
+fn tell(
+    arguments: &Export,
+    log: &Path,
+    (exported, file): (&impl Serialize, &Path),
+    found: &LogFound,
+) -> Result<()> {
+    if let Some(recovered) = &found.recovered {
+        say(&format!("{} {recovered}", log.display()));
+    }
+    let LogFound { frames, gaps, .. } = found;
+    print(&if arguments.json {
+        serde_json::to_string(exported)?
+    } else {
+        format!("{}: {frames} frames, {gaps} marked gaps", file.display())
+    })
 }
