@@ -10,8 +10,8 @@ from twintac.ray import make_dataset
 
 ray = pytest.importorskip("ray")
 
-N_SHARDS = 8
-OPTIONS: dict[str, Any] = {"n_presses": 800, "fast": True}
+N_SHARDS = 16  # many are still to come when a node is killed
+OPTIONS: dict[str, Any] = {"n_presses": 1600, "fast": True}
 
 
 def test_a_node_that_is_killed_costs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::array::rows;
 use crate::error::{OrRaise, unreadable, unusable};
@@ -66,6 +67,12 @@ impl FastGel {
         let gel = py.detach(|| twintac::FastGel::from_bytes(&bytes));
         let gel = gel.map_err(|error| unreadable(py, &path, &error))?;
         Ok(Self { gel: Arc::new(gel) })
+    }
+
+    /// The gel as the bytes of a file that `load` reads: `Path("gel.safetensors").write_bytes(gel.to_bytes())`.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.gel.to_bytes()).or_raise(py)?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     /// Name of the sensor whose gel it is.

@@ -14,6 +14,7 @@ use crate::error::{OrRaise, unusable};
 use crate::long_call::{followed, long_call};
 use crate::path::{Followed, PressPath};
 use crate::pickle::{Kept, Reduced, reduced};
+use crate::plot::plot;
 use crate::pose::Pose;
 use crate::press::Press;
 use crate::sensor::Sensor;
@@ -200,6 +201,14 @@ impl Pressed {
             .flat_map(|frame| frame.port_pressure_kpa.clone())
             .collect();
         rows(py, readings, [frames.len(), self.pressed.readings_kpa().len()])
+    }
+
+    /// Draws readings and force over depth.
+    ///
+    /// With Matplotlib; its two axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+    #[pyo3(signature = (axes=None))]
+    fn plot<'py>(result: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        plot(result.py(), "pressed", (result, axes))
     }
 
     /// What a pickle keeps.

@@ -17,6 +17,7 @@ mod long_call;
 mod map;
 mod path;
 mod pickle;
+mod plot;
 mod pool;
 mod pose;
 mod press;

@@ -9,6 +9,7 @@ use crate::array::rows;
 use crate::error::{OrRaise, unusable};
 use crate::given::{Array, Given};
 use crate::pickle::{Kept, Reduced, reduced};
+use crate::plot::plot;
 use crate::recording::Provenance;
 use crate::sensor::Sensor;
 
@@ -90,6 +91,15 @@ impl PressureMap {
     /// Raises `Error` for a name with another ending, and for a file that cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.map.write(path)).or_raise(py)
+    }
+
+    /// Draws the map in the gel's plane, with a scale in kPa.
+    ///
+    /// With Matplotlib; its axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it.
+    #[pyo3(signature = (axes=None))]
+    fn plot<'py>(map: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        let bounds_mm = map.get().sensor.bounds_mm(map.py())?;
+        plot(map.py(), "pressure_map", (map, bounds_mm, axes))
     }
 
     /// What a pickle keeps.

@@ -12,6 +12,7 @@ use crate::error::{OrRaise, unreadable, unusable};
 use crate::fast::PROVENANCE;
 use crate::given::{Array, Given};
 use crate::pickle::{Kept, Reduced, reduced};
+use crate::plot::plot;
 use crate::pose::poses;
 
 /// A path of an indenter over and into a gel, through poses or to forces: down, aside, tilted, and up again. Between its poses the indenter moves evenly.
@@ -203,6 +204,14 @@ impl Followed {
         points
             .map(|name| (name.as_str(), self.each(py, |frame| frame.pressure_kpa[name])))
             .collect()
+    }
+
+    /// Draws readings, force and place over time.
+    ///
+    /// With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+    #[pyo3(signature = (axes=None))]
+    fn plot<'py>(result: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        plot(result.py(), "followed", (result, axes))
     }
 
     /// What a pickle keeps.

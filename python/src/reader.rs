@@ -134,7 +134,7 @@ impl Reader {
         self.notes.clone()
     }
 
-    /// What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing. Empty if all was well, and of a reader that is closed.
+    /// What was on the wire so far besides frames, and how often: torn lines, missing frames. Empty if all was well, and of a reader that is closed.
     fn remarks(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| {
             let reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);

@@ -12,6 +12,7 @@ use crate::arrow::{STREAM, stream};
 use crate::error::{OrRaise, unusable};
 use crate::long_call::long_call;
 use crate::pickle::{Kept, Reduced, reduced};
+use crate::plot::plot;
 use crate::sensor::Sensor;
 use crate::settings::to_python;
 
@@ -201,6 +202,18 @@ impl Recording {
             Ok::<_, twintac::WorkError>(found)
         })?;
         to_python(py, &found.or_raise(py)?)
+    }
+
+    /// Draws one press, counted from 0, over time: readings that are usable, force and height of the indenter.
+    ///
+    /// With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for a press that is not there or another number of axes.
+    #[pyo3(signature = (press=None, axes=None), text_signature = "($self, press=0, axes=None)")]
+    fn plot<'py>(
+        result: &Bound<'py, Self>,
+        press: Option<Bound<'py, PyAny>>,
+        axes: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        plot(result.py(), "recording", (result, press, axes))
     }
 
     /// What a pickle keeps.

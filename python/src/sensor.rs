@@ -67,7 +67,7 @@ impl Sensor {
 
     /// Lowest and highest corner of the box that holds the gel, in the gel's frame, mm; `[2, 3]`.
     #[getter]
-    fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    pub(crate) fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let sensor = &self.sensor.file().sensor;
         let (low, high) = sensor.gel.solid.bounds_mm(&sensor.surfaces);
         rows(py, [low.to_array(), high.to_array()].concat(), [2, 3])

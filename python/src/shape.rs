@@ -6,9 +6,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use twintac::{LengthUnit, Part, SurfaceFile, Surfaces, TriangleSurface};
+use twintac::{LengthUnit, Part, SignedDistance, SurfaceFile, Surfaces, TriangleSurface};
 
+use crate::array::rows;
 use crate::error::{OrRaise, unreadable, unusable};
 use crate::given::{Array, Given};
 use crate::long_call::long_call;
@@ -31,6 +33,11 @@ impl Shape {
     fn of(py: Python<'_>, shape: twintac::Shape, surfaces: Surfaces) -> PyResult<Self> {
         shape.validate().or_raise(py)?;
         Ok(Self { shape, surfaces })
+    }
+
+    /// The shape as distances to it.
+    fn distances(&self, py: Python<'_>) -> PyResult<Box<dyn SignedDistance>> {
+        self.shape.signed_distance_field(&self.surfaces).or_raise(py)
     }
 
     /// A surface where it is: as the shape of a file it would be moved, so that its lowest point has the origin's z.
@@ -219,6 +226,41 @@ impl Shape {
         };
         let parts = parts.into_iter().map(part).collect();
         Self::of(py, twintac::Shape::Union { parts }, surfaces)
+    }
+
+    /// Corners of the smallest box along the shape's axes that holds it, mm: `[2, 3]`.
+    #[getter]
+    fn bounds_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (low, high) = self.distances(py)?.bounds_mm();
+        rows(py, [low.to_array(), high.to_array()].concat(), [2, 3])
+    }
+
+    /// How far points of the shape's own frame are from its surface, mm, less than 0 inside: of `[n_points, 3]`, mm, `[n_points]`. Ctrl-C ends the wait.
+    ///
+    /// Raises `Error` for an array of another shape, and a point that is not finite.
+    fn signed_distance_mm<'py>(
+        &self,
+        py: Python<'py>,
+        points_mm: Given<'_>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let expected = "[n_points, 3], mm";
+        let points_mm: Array<2> = points_mm.numbers("points_mm", expected)?;
+        if points_mm.shape[1] != 3 {
+            let problem = format!("has the shape {:?}, expected {expected}", points_mm.shape);
+            return Err(unusable(py, "points_mm", &problem));
+        }
+        if !points_mm.values.iter().all(|number| number.is_finite()) {
+            let problem = format!("has a number that is not finite, expected {expected}");
+            return Err(unusable(py, "points_mm", &problem));
+        }
+        let distances = self.distances(py)?;
+        let distances_mm = long_call(py, move || -> Vec<f64> {
+            let points = points_mm.rows().map(DVec3::from_slice);
+            points
+                .map(|point| distances.signed_distance(point).distance_mm)
+                .collect()
+        })?;
+        Ok(PyArray1::from_vec(py, distances_mm))
     }
 
     /// What a pickle keeps.

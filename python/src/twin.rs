@@ -13,6 +13,7 @@ use crate::given::{Array, Given, since};
 use crate::long_call::{followed, long_call};
 use crate::path::PressPath;
 use crate::pickle::{Kept, Reduced, reduced, refused};
+use crate::plot::plot;
 use crate::press::Press;
 use crate::sensor::Sensor;
 use crate::shared::Shared;
@@ -229,6 +230,14 @@ impl Prediction {
     fn is_unlike<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<bool>>> {
         let certainty = self.prediction.certainty.as_ref()?;
         Some(PyArray1::from_slice(py, &certainty.is_unlike))
+    }
+
+    /// Draws readings with their 90 % intervals, force and depth over time; grey is where they are not to be trusted: not simulated, or unlike.
+    ///
+    /// With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+    #[pyo3(signature = (axes=None))]
+    fn plot<'py>(result: &Bound<'py, Self>, axes: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        plot(result.py(), "prediction", (result, axes))
     }
 
     /// What a pickle keeps.

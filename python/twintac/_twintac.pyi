@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas
 import polars
+from matplotlib.axes import Axes
 
 from twintac._progress import Progress
 
@@ -288,6 +289,11 @@ class Followed:
     @property
     def points_kpa(self) -> dict[str, _Float]:
         """Hydrostatic pressure at each point of the path's file, by name, kPa; `[n_frames]` each."""
+    def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Draws readings, force and place over time.
+
+        With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+        """
     def __len__(self) -> int: ...
 
 @final
@@ -306,6 +312,11 @@ class Pressed:
     def readings_kpa(self) -> _Float:
         """Hydrostatic pressure in the gel over each taxel's port, kPa; `[n_frames, n_taxels]`. A barometer there would read this if it followed
         the gel without gain, delay and creep; what a real one makes of it, a trained `Twin` tells.
+        """
+    def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Draws readings and force over depth.
+
+        With Matplotlib; its two axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
         """
 
 @final
@@ -334,6 +345,11 @@ class PressureMap:
         """Draws the map, with the taxels that have a reading marked, into a file: `.svg` or `.png`.
 
         Raises `Error` for a name with another ending, and for a file that cannot be written.
+        """
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the map in the gel's plane, with a scale in kPa.
+
+        With Matplotlib; its axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it.
         """
 
 @final
@@ -387,7 +403,7 @@ class Reader:
     def notes(self) -> list[str]:
         """What was odd when the sensor was switched on, a sentence each."""
     def remarks(self) -> list[str]:
-        """What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing. Empty if all was well, and of a reader that is closed."""
+        """What was on the wire so far besides frames, and how often: torn lines, missing frames. Empty if all was well, and of a reader that is closed."""
     def compensate(self, temperature: _Path) -> None:
         """Takes off readings what temperature does to the zeros, as a file says (TOML) that `twintac characterize` made. Nothing may touch the sensor meanwhile: the next
         frames make a new tare.
@@ -508,6 +524,11 @@ class Recording:
         With a folder, the report and the data sheet are written into it. Figures that the presses do not show have the reason in their place. Ctrl-C ends the wait.
 
         Raises `Error` for a sensor whose taxels are not those of the recording.
+        """
+    def plot(self, press: _Count = 0, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Draws one press, counted from 0, over time: readings that are usable, force and height of the indenter.
+
+        With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for a press that is not there or another number of axes.
         """
     def __len__(self) -> int: ...
 
@@ -638,6 +659,11 @@ class Prediction:
     @property
     def is_unlike(self) -> _Bool | None:
         """Whether the contact is too unlike for readings and intervals to be trusted, `[n_frames]`; `None` of a twin that does not know."""
+    def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Draws readings with their 90 % intervals, force and depth over time; grey is where they are not to be trusted: not simulated, or unlike.
+
+        With Matplotlib; its three axes are returned, to be restyled: new ones, or those given. Raises `ModuleNotFoundError` without it, and `Error` for another number of axes.
+        """
     def __len__(self) -> int: ...
 
 @final
@@ -817,6 +843,14 @@ class Shape:
     @staticmethod
     def union(parts: Sequence[tuple[Shape, Pose]]) -> Shape:
         """Several shapes held together, each where its pose in the whole says; they may overlap."""
+    @property
+    def bounds_mm(self) -> _Float:
+        """Corners of the smallest box along the shape's axes that holds it, mm: `[2, 3]`."""
+    def signed_distance_mm(self, points_mm: _Floats) -> _Float:
+        """How far points of the shape's own frame are from its surface, mm, less than 0 inside: of `[n_points, 3]`, mm, `[n_points]`. Ctrl-C ends the wait.
+
+        Raises `Error` for an array of another shape, and a point that is not finite.
+        """
 
 @final
 class Body:
@@ -844,6 +878,8 @@ class FastGel:
 
         Raises `Error` with the file if it is none, or cannot be read.
         """
+    def to_bytes(self) -> bytes:
+        """The gel as the bytes of a file that `load` reads: `Path("gel.safetensors").write_bytes(gel.to_bytes())`."""
     @property
     def sensor(self) -> str:
         """Name of the sensor whose gel it is."""

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 
 /// Folders of the checkout that documents name files of.
-const FOLDERS: [&str; 11] = [
+const FOLDERS: [&str; 13] = [
     "crates",
     "sensors",
     "protocols",
@@ -16,7 +16,9 @@ const FOLDERS: [&str; 11] = [
     "materials",
     "xtask",
     "docs",
+    "firmware",
     "fuzz",
+    "hardware",
     "python",
 ];
 

@@ -2,7 +2,8 @@
 //!
 //! The rules are tests: `xtask/tests/rules.rs` lists them. What each crate owns and must never know stands in `xtask/rooms.toml` ([`rooms`]); how
 //! source text is read and judged stands in [`code`]; the commands of README.md are run by [`readme`]; [`results`]
-//! keeps what the paper's experiments found; [`figures`] knows which sources made each committed figure, [`kept`] what each kept value is made from.
+//! keeps what the paper's experiments found; [`figures`] knows which sources made each committed figure, [`kept`] what each kept value is made from;
+//! [`web`] makes the page in which the gel is pressed.
 
 #![allow(clippy::print_stderr)] // a tool for people at a terminal
 
@@ -16,6 +17,7 @@ pub mod kept;
 pub mod readme;
 pub mod results;
 pub mod rooms;
+pub mod web;
 
 use std::path::{Path, PathBuf};
 

@@ -7,11 +7,11 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use xtask::cargo::{cargo, run};
-use xtask::{fuzz, readme, results, rooms};
+use xtask::{fuzz, readme, results, rooms, web};
 
 const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | rooms | results [FILE] | bench softbody [--json] | bench scaling | bench peers | bench recording | bench serial | bench import [--json] | bench twin |
     bench sensors [--rewrite] |
-    fuzz [target…] [--seconds N] [--jobs N] [--keep] | verify [rung…] [--quick] [--json] [--ccx CASE]>
+    fuzz [target…] [--seconds N] [--jobs N] [--keep] | hardware [--sensor FILE [--chip NAME]] [--out DIR] [--release] | web | verify [rung…] [--quick] [--json] [--ccx CASE]>
   ci     lint, package, readme, as CI does; CI also installs the Python programs that some tests want
   lint   formatting and clippy, warnings are errors
   package every crate that can be published, without building it again; nothing may be uncommitted
@@ -31,6 +31,9 @@ const USAGE: &str = "usage: cargo xtask <ci | lint | package | test | readme | r
          writes docs/benchmarks/sensors.*
   fuzz   looks for bytes that break what decodes wires and files, 60 s a target, two at a time; needs a C++ compiler; exit code 2 if it finds any
          keep: the corpus that was found becomes `fuzz/corpus`, the figures docs/benchmarks/fuzz.*
+  hardware  board, geometry, parts list and mechanics of each sensor that ships, or of one description, into target/hardware; with KiCad 9 also
+         rule checks and fabrication files (hardware/README.md); release: one archive each
+  web    the page in which the gel is pressed, target/web/twintac.html; needs Node.js and the standard library for wasm32-unknown-unknown (web/README.md)
   verify the verification ladder of the soft body; pages in docs/verification; exit code 1 if a limit does not hold";
 
 fn main() -> ExitCode {
@@ -47,6 +50,8 @@ fn main() -> ExitCode {
         "results" => results::write(&xtask::root(), std::env::args().nth(2).as_deref()),
         "bench" => bench(),
         "fuzz" => fuzz::fuzz(&std::env::args().skip(2).collect::<Vec<_>>()),
+        "hardware" => hardware(),
+        "web" => web::make(&xtask::root()),
         "verify" => return verify(),
         _ => Err(anyhow::anyhow!("there is no task `{task}`\n{USAGE}")),
     };
@@ -61,7 +66,7 @@ fn main() -> ExitCode {
 
 fn lint() -> Result<()> {
     cargo(&["fmt", "--all", "--check"])?;
-    for beside in ["fuzz/Cargo.toml", "python/Cargo.toml"] {
+    for beside in ["fuzz/Cargo.toml", "python/Cargo.toml", "web/engine/Cargo.toml"] {
         cargo(&["fmt", "--manifest-path", beside, "--check"])?;
     }
     cargo(&[
@@ -95,6 +100,24 @@ fn bench() -> Result<()> {
         cargo(&["build", "--release", "--package", "twintac-cli"])?; // it is run as its users run it
     }
     cargo(&of_verify(&given))
+}
+
+fn hardware() -> Result<()> {
+    let root = xtask::root();
+    let root = root.to_string_lossy();
+    let mut arguments = vec![
+        "run",
+        "--release",
+        "--quiet",
+        "--package",
+        "twintac-hardware",
+        "--",
+        "--root",
+        &root,
+    ];
+    let given: Vec<String> = std::env::args().skip(2).collect();
+    arguments.extend(given.iter().map(String::as_str));
+    cargo(&arguments)
 }
 
 /// Passes on the ladder's own exit code: 1 where a limit does not hold.

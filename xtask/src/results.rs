@@ -104,6 +104,11 @@ fn table(kept: &Kept) -> String {
             nearest(&twin["baselines"]["kernel"]),
         ),
         (
+            "what the fit of the gel leaves of the forces",
+            "",
+            number(&metrics["material"]["residual_percent"], 1, "%"),
+        ),
+        (
             "sensitivity under a 25 mm ball",
             "7.24 kPa/N",
             number(&sensor["sensitivity_kpa_per_n"], 2, "kPa/N"),

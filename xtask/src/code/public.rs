@@ -22,7 +22,7 @@ impl Words {
     /// Reads them all.
     pub fn read(root: &Path) -> Result<Self> {
         let mut words = BTreeMap::new();
-        for path in rust_files(root, &["crates", "xtask", "fuzz", "python"])? {
+        for path in rust_files(root, &["crates", "xtask", "firmware", "fuzz", "python", "web"])? {
             let text = fs::read_to_string(&path)?;
             let tokens = text.parse().map_err(|error| anyhow::anyhow!("{error}"));
             let found = identifiers(tokens.with_context(|| format!("reading {}", path.display()))?);

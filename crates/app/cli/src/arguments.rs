@@ -3,12 +3,18 @@
 #[cfg(test)]
 mod conflicts;
 mod dataset;
+mod design;
 mod stream;
+mod view;
+mod wire;
 
 use std::path::PathBuf;
 
 pub(crate) use dataset::Dataset;
+pub(crate) use design::Design;
 pub(crate) use stream::{Ports, RowFormat, Stream};
+pub(crate) use view::View;
+pub(crate) use wire::Wire;
 
 use clap::{ArgGroup, Args, Parser, Subcommand};
 use twintac_gel::mesh::LengthUnit;
@@ -41,8 +47,12 @@ pub(crate) enum Command {
     Mesh(Mesh),
     /// Press the simulated gel along a protocol.
     Simulate(Simulate),
+    /// Press the simulated gel by hand, on a page; beside a sensor, if there is one.
+    View(View),
     /// Make many simulated presses to learn from, in shards for as many machines as there are.
     Dataset(Dataset),
+    /// Compare sensors that differ in numbers of their description before one is cast.
+    Design(Design),
     /// Fit the gel's material to measured presses.
     Calibrate(Calibrate),
     /// Measure a sensor's properties in recorded presses: sensitivity, noise, hysteresis, and more.

@@ -108,7 +108,7 @@ fn bar(work: &str, n_steps: usize) -> ProgressBar {
     bar
 }
 
-/// How far a piece of work is.
+/// How far a piece of work is, and how things stand.
 fn line(bar: &ProgressBar) -> String {
     let minutes = |time: Duration| time.as_secs().div_ceil(60);
     let (done, all) = (bar.position(), bar.length().unwrap_or(0));
@@ -117,7 +117,13 @@ fn line(bar: &ProgressBar) -> String {
     let left = left.map_or(String::new(), |left| {
         format!(", about {} min left", minutes(left))
     });
-    format!("{work}: {done} of {all} after {after} min{left}")
+    let state = bar.message();
+    let state = if state.is_empty() {
+        state
+    } else {
+        format!(" ({state})")
+    };
+    format!("{work}: {done} of {all}{state} after {after} min{left}")
 }
 
 /// What is left to do, if each step takes as long as those before did on average.
@@ -146,6 +152,11 @@ mod tests {
         assert_eq!(line, "recording: 70 of 280 after 3 min, about 8 min left");
         let begun = bar("fitting", 30);
         assert_eq!(super::line(&begun), "fitting: 0 of 30 after 0 min");
+        begun.set_message("deviation 1.870 %");
+        assert_eq!(
+            super::line(&begun),
+            "fitting: 0 of 30 (deviation 1.870 %) after 0 min"
+        );
         let before = shown.told;
         shown.tell();
         assert_ne!(shown.told, before);

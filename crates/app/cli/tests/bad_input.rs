@@ -661,3 +661,46 @@ fn settings_that_cannot_be() {
     refused(&twintac(&dataset), &["settings.toml:1: `train`", "[simulate]"]);
     assert!(!out.exists());
 }
+
+#[test]
+fn designs_that_cannot_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("designs");
+    let design = |words: &[&str]| {
+        let mut command = vec!["design", "--nodes", "500", "--designs", "2", "--out", text(&out)];
+        command.extend(words);
+        let output = twintac(&command);
+        assert!(!out.exists());
+        output
+    };
+    let fields = ["`gel.hight_mm`", "gel.height_mm", "taxels.port_radius_mm"];
+    refused(&design(&["--vary", "gel.hight_mm=4..10"]), &fields);
+    refused(
+        &design(&["--vary", "gel.height_mm=10..4"]),
+        &["the smaller first"],
+    );
+    refused(&design(&["--vary", "gel.height_mm"]), &["FIELD=LOW..HIGH"]);
+    refused(&design(&[]), &["--vary"]);
+    let height = ["--vary", "gel.height_mm=4..10"];
+    refused(&design(&[height, height].concat()), &["varied twice"]);
+    refused(
+        &design(&[&height[..], &["--goal", "price"]].concat()),
+        &["price", "range_n"],
+    );
+    refused(
+        &design(&[&height[..], &["--need", "range_n"]].concat()),
+        &["FIGURE=VALUE"],
+    );
+    refused(&design(&[&height[..], &["--force-n=-1"]].concat()), &["force"]);
+    refused(
+        &design(&[&height[..], &["--noise-kpa", "nan"]].concat()),
+        &["noise"],
+    );
+    refused(&design(&["--vary", "gel.height_mm=-9..-4"]), &["size_mm[2]"]);
+    // The fingertip is no block.
+    let tip = root().join("sensors/phystac-tip.toml");
+    refused(
+        &design(&[&["--sensor", text(&tip)], &height[..]].concat()),
+        &["block", "gel.solid"],
+    );
+}

@@ -35,6 +35,8 @@ fn help_on_each_command() {
         "mesh",
         "simulate",
         "dataset",
+        "design",
+        "view",
         "calibrate",
         "stream",
         "ports",

@@ -5,7 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Press, Provenance, Recording};
-use twintac_work::{Progress, Work, WorkError, target};
+use twintac_work::{Progress, Work, WorkError, in_one_sentence, target};
 
 use crate::folder::Folder;
 use crate::identity::Inputs;
@@ -105,21 +105,7 @@ impl Dataset {
     fn press(&self, plan: &PressPlan) -> Result<Press, LeftOut> {
         press::press(&self.inputs, plan, self.seed).map_err(|error| LeftOut {
             press: plan.name.clone(),
-            why: chain(&error),
+            why: in_one_sentence(&error),
         })
     }
-}
-
-/// An error with all its sources, as one sentence.
-fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(error) = source {
-        let next = error.to_string();
-        if !text.ends_with(&next) {
-            text = format!("{text}: {next}");
-        }
-        source = error.source();
-    }
-    text
 }

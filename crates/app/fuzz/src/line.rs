@@ -3,13 +3,14 @@
 use twintac_line::{Decoder, Description, Heard};
 
 /// Lines of every form.
-const FORMS: [&str; 6] = [
+const FORMS: [&str; 7] = [
     "form = \"text\"\nfields = [\"sequence\", \"time\", \"pressure * 2\", \"temperature\"]\ntext.checksum = \"xor8\"",
     "form = \"json\"\nkeys.n = \"sequence\"\nkeys.t = \"time\"\nkeys.p = \"pressure * 2\"",
     "form = \"binary\"\nfields = [\"u32 time\", \"i16 pressure * 2\"]",
     "form = \"binary\"\nfields = [\"u16 sequence\", \"f32 pressure * 2\"]\nsequence_wraps_at = 65536\nbinary = { framing = \"cobs\", checksum = \"crc8\" }",
     "form = \"text\"\nfields = [\"pressure * 2\"]\ntext = { separator = \"blank\", lines = 2, strip = \"[]\", prefix = \"p\" }",
     "form = \"text\"\nfields = [\"time\", \"pressure * 2\"]\nrate_hz = 100\ntime.unit = \"us\"\ntext.longest = 64",
+    "form = \"binary\"\nfields = [\"u8 fault * 2\", \"f32 pressure * 2\"]\nbinary = { framing = \"cobs\", checksum = \"sum8\" }",
 ];
 
 /// What a decoder makes of these bytes. The first one says of which form they are, the second in pieces of which size they come.
@@ -38,6 +39,8 @@ fn frames(description: &Description, bytes: &[u8], size: usize) -> String {
                 let numbers = frame.pressures_kpa.iter().chain(&frame.temperatures_c);
                 assert!(numbers.flatten().all(|number| number.is_finite()));
                 assert_eq!((frame.pressures_kpa.len(), frame.temperatures_c.len()), (2, 2));
+                let taxels = frame.pressures_kpa.iter().zip(&frame.faults);
+                assert!({ taxels }.all(|(pressure, fault)| pressure.is_none() || fault.unwrap_or(0) == 0));
                 last = frame.sequence.or(last);
             }
         });

@@ -1,8 +1,5 @@
 //! The paper's data at its size, and the twins of them.
 
-use std::path::Path;
-
-use twintac_run::built_in::reality;
 use twintac_run::{Metrics, Run};
 use twintac_sensor::SensorFile;
 use twintac_store::Finished;
@@ -20,7 +17,7 @@ impl Paper {
             "presses",
             &format!("{} presses on the emulated bench", planned.presses.len()),
         )?;
-        run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        run.emulate(&self.effort.reality()?, &planned)?;
         Ok(run)
     }
 

@@ -1,13 +1,20 @@
 //! How much of the paper's experiments is made.
 
+use std::path::Path;
+
 use digitac::{BenchSettings, TrainSettings as TwinTraining};
 use serde::{Deserialize, Serialize};
 use twintac_classify::{Sampling, TrainSettings};
+use twintac_lab::Reality;
 use twintac_run::RunSettings;
-use twintac_run::built_in::{BuiltIn, DEMO_PROTOCOL, PAPER_PROTOCOL};
+use twintac_run::built_in::{BuiltIn, DEMO_PROTOCOL, PAPER_PROTOCOL, reality};
 use twintac_simulate::SimulateSettings;
+use twintac_work::WorkError;
 
 use crate::mixture::{Mixture, Simulated};
+
+/// Edges over a gel's height and over a contact's radius where it has to be quick.
+const COARSE: f64 = 4.0;
 
 /// Simulated trials of each shape in the paper.
 pub(super) const PAPER_SIMULATED: usize = 96;
@@ -23,12 +30,22 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// The reality of the bench that presses, by its name.
-    pub(super) fn reality(self) -> &'static str {
+    /// The reality of the bench that presses.
+    pub(super) fn reality(self) -> Result<Reality, WorkError> {
         match self {
-            Self::Full => "harder",
-            Self::Quick => "default",
+            Self::Full => reality(Some(Path::new("harder"))),
+            Self::Quick => self.simple_reality(),
         }
+    }
+
+    /// A bench without what makes it hard. A quick one has a coarse gel.
+    pub(super) fn simple_reality(self) -> Result<Reality, WorkError> {
+        let mut simple = reality(None)?;
+        if self == Self::Quick {
+            simple.gel.edges_per_height = COARSE;
+            simple.gel.edges_per_contact_radius = COARSE;
+        }
+        Ok(simple)
     }
 
     /// Presses that the gel's material is fitted to.
@@ -59,22 +76,22 @@ impl Effort {
     pub(super) fn real_trials(self) -> u32 {
         match self {
             Self::Full => 20,
-            Self::Quick => 4,
+            Self::Quick => 2,
         }
     }
 
     /// Trials of each shape that the twin makes.
     pub(super) fn simulated_trials(self) -> u32 {
         match self {
-            Self::Full => 400,
-            Self::Quick => 8,
+            Self::Full => PAPER_SIMULATED as u32,
+            Self::Quick => 4,
         }
     }
 
     /// Simulated trials of each shape that are trained with, but for the most.
     fn fewer_simulated(self) -> &'static [usize] {
         match self {
-            Self::Full => &[20, 48, PAPER_SIMULATED, 192],
+            Self::Full => &[20, 48],
             Self::Quick => &[],
         }
     }
@@ -83,7 +100,7 @@ impl Effort {
     fn curve(self) -> &'static [usize] {
         match self {
             Self::Full => &[0, 1, 2, 5, 10, 20],
-            Self::Quick => &[0, 4],
+            Self::Quick => &[0, 2],
         }
     }
 
@@ -147,8 +164,8 @@ impl Effort {
             },
             Self::Quick => RunSettings {
                 simulate: SimulateSettings {
-                    edges_per_height: 6.0,
-                    edges_per_contact_radius: 5.0,
+                    edges_per_height: COARSE,
+                    edges_per_contact_radius: COARSE,
                     ..SimulateSettings::default()
                 },
                 train: TwinTraining {

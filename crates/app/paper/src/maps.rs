@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use twintac_model::gel_of;
 use twintac_protocol::PressPlan;
 use twintac_recording::{Press, Recording};
-use twintac_run::built_in::{MAPS_PROTOCOL, reality};
+use twintac_run::built_in::MAPS_PROTOCOL;
 use twintac_run::{COMPLETE, Run, read_recording};
 use twintac_store::{Finished, Stage, read_json, write_json};
 use twintac_tables::DepthTableStore;
@@ -63,7 +63,7 @@ impl Paper {
         let sensor = &self.sensor.sensor;
         let planned = Planned::parse(MAPS_PROTOCOL.name, MAPS_PROTOCOL.text, sensor, self.seed)?;
         let run = self.run("five-shapes", "five presses on the emulated bench")?;
-        run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        run.emulate(&self.effort.reality()?, &planned)?;
         let felt: Vec<PressPlan> = planned.presses.iter().map(|plan| level.plan(plan)).collect();
         let finished = self.run_stage(&Mapping {
             felt: &felt,

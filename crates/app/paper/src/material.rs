@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use twintac_calibrate::FitSettings;
 use twintac_gel::calibration::{calibrate, force_curves};
-use twintac_run::built_in::{MATERIAL_PROTOCOL, reality};
+use twintac_run::built_in::MATERIAL_PROTOCOL;
 use twintac_run::{Change, read_recording};
 use twintac_sensor::SensorFile;
 use twintac_simulate::{Gel, SimulateSettings};
@@ -63,14 +63,23 @@ pub struct GelMaterial {
     pub residual_percent: f64,
     /// Presses that it was fitted to.
     pub presses: usize,
+    /// Warnings of the fit, in words.
+    pub warnings: Vec<String>,
 }
 
-/// How presses are simulated for the fit. Every step of it presses all curves again, with derivatives: coarser than the tables.
-fn fit_settings() -> SimulateSettings {
-    SimulateSettings {
+/// How presses are simulated for the fit. Every step of it presses all curves again: coarser than the tables.
+fn fit_settings(effort: Effort) -> SimulateSettings {
+    let fine = SimulateSettings {
         edges_per_height: 5.0,
         edges_per_contact_radius: 4.0,
         ..SimulateSettings::default()
+    };
+    match effort {
+        Effort::Full => fine,
+        Effort::Quick => SimulateSettings {
+            max_nodes: 2000,
+            ..fine
+        },
     }
 }
 
@@ -114,6 +123,7 @@ impl Stage for Fitting<'_> {
             friction: value("friction"),
             residual_percent: found.fit.noise_percent,
             presses: recording.presses.len(),
+            warnings: found.fit.warnings.clone(),
         };
         found.write(folder, self.start)?;
         Ok(write_json(&folder.join("found.json"), &material)?)
@@ -132,16 +142,20 @@ impl Paper {
             "force-presses",
             &format!("{n_presses} presses on the emulated bench"),
         )?;
-        run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        run.emulate(&self.effort.reality()?, &planned)?;
         let start = described.with_material(&yeoh(described))?;
         let finished = self.run_stage(&Fitting {
             start: &Keyed::of_bytes(start.clone(), start.text.as_bytes()),
-            settings: fit_settings(),
+            settings: fit_settings(self.effort),
             fit: Search::of(self.effort),
             level,
             recordings: run.recordings()?,
         })?;
         let material: GelMaterial = read_json(&finished.file("found.json"))?;
+        for warning in &material.warnings {
+            self.progress()
+                .note(&format!("the fit of the gel's material: {warning}"));
+        }
         let fitted = described.with_material(&read_text(&finished.file("material.toml"))?)?;
         Ok((fitted.with_friction(material.friction)?, material))
     }
@@ -197,7 +211,7 @@ mod tests {
     fn gel() -> Gel {
         let described = SensorFile::phystac().unwrap();
         let start = described.with_material(&yeoh(&described)).unwrap();
-        Gel::new(start.sensor.clone(), fit_settings())
+        Gel::new(start.sensor.clone(), fit_settings(Effort::Full))
     }
 
     /// A press of so many depths, mm, over time, s; what was measured does not count here.

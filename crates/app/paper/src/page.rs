@@ -23,10 +23,7 @@ pub(super) fn page(metrics: &PaperMetrics, sensor: &Sensor, command: &str) -> Pa
             "What the paper (arXiv 2509.10063) measured on its own sensor, beside the same experiments on an emulated bench and its twin.".into(),
             "The paper's figures are real, of a sensor and protocols that it describes in part; the numbers are not of the same thing.".into(),
         ],
-        warnings: match metrics.effort {
-            Effort::Full => Vec::new(),
-            Effort::Quick => vec!["Made with --quick: few presses of a simple bench. The figures show that everything runs, and nothing else.".into()],
-        },
+        warnings: warnings(metrics),
         sections: vec![
             section("twin", "The twin's error", twin(metrics)),
             section("sensor", "The sensor under a ball", under_a_ball(metrics)),
@@ -36,6 +33,16 @@ pub(super) fn page(metrics: &PaperMetrics, sensor: &Sensor, command: &str) -> Pa
         ],
         is_sheet: false,
     }
+}
+
+fn warnings(metrics: &PaperMetrics) -> Vec<String> {
+    let quick = match metrics.effort {
+        Effort::Full => None,
+        Effort::Quick => Some("Made with --quick: few presses of a simple bench. The figures show that everything runs, and nothing else.".into()),
+    };
+    let fit = metrics.material.warnings.iter();
+    let fit = fit.map(|warning| format!("The fit of the gel's material: {warning}."));
+    quick.into_iter().chain(fit).collect()
 }
 
 fn section(id: &'static str, title: &'static str, blocks: Vec<Block>) -> Section {

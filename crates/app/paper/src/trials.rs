@@ -6,7 +6,7 @@ use digitac::{Model, simulated_recording};
 use serde::Serialize;
 use twintac_model::gel_of;
 use twintac_protocol::{PressPlan, Protocol};
-use twintac_run::built_in::{SHAPES_PROTOCOL, reality};
+use twintac_run::built_in::SHAPES_PROTOCOL;
 use twintac_run::{COMPLETE, Run};
 use twintac_store::{Finished, Stage};
 use twintac_tables::DepthTableStore;
@@ -25,7 +25,7 @@ impl Paper {
         let planned = self.shapes(2 * self.effort.real_trials(), self.seed)?;
         let source = format!("{} trials on the emulated bench", planned.presses.len());
         let run = self.run("trials", &source)?;
-        run.emulate(&reality(Some(Path::new(self.effort.reality())))?, &planned)?;
+        run.emulate(&self.effort.reality()?, &planned)?;
         Ok(run)
     }
 

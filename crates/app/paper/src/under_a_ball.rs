@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use twintac_characterize::{Characterization, KnownStep};
 use twintac_recorded::Recorded;
-use twintac_run::built_in::{CHARACTERIZE_PROTOCOL, reality};
+use twintac_run::built_in::CHARACTERIZE_PROTOCOL;
 use twintac_run::read_recording;
 use twintac_sensor::SensorFile;
 use twintac_store::{Finished, Keyed, Stage, read_json, write_json};
@@ -50,7 +50,7 @@ impl Paper {
         let protocol = CHARACTERIZE_PROTOCOL;
         let planned = Planned::parse(protocol.name, protocol.text, sensor, self.seed)?;
         let run = self.run("under-a-ball", "presses and weights on the emulated bench")?;
-        run.emulate(&reality(None)?, &planned)?;
+        run.emulate(&self.effort.simple_reality()?, &planned)?;
         let finished = self.run_stage(&Characterizing {
             sensor: &Keyed::of_bytes(self.sensor.clone(), self.sensor.text.as_bytes()),
             recordings: run.recordings()?,

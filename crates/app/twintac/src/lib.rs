@@ -222,7 +222,9 @@ pub use twintac_sensors::{
     CoupledBatch, Coupling, HeldTouch, Imperfection, SensorBatch, SensorState, TouchId, TouchedTwice,
     most_sensors,
 };
-pub use twintac_shape::{LengthUnit, Part, Pose, Shape, SurfaceFile, Surfaces, TriangleSurface};
+pub use twintac_shape::{
+    Distance, LengthUnit, Part, Pose, Shape, SignedDistance, SurfaceFile, Surfaces, TriangleSurface,
+};
 pub use twintac_simulate::{Followed, FollowedFrame, GelState, SimulateSettings};
 #[cfg(feature = "run")]
 pub use twintac_store::Outcome;

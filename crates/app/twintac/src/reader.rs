@@ -122,7 +122,7 @@ impl Reader {
         &self.live.notes
     }
 
-    /// What was on the wire so far besides frames, a sentence each: lines that were torn, frames that are missing.
+    /// What was on the wire so far besides frames, and how often: torn lines, missing frames.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         self.live.source.tally().remarks

@@ -147,3 +147,18 @@ impl<T, E: Into<WorkError>> At<T> for Result<T, E> {
         })
     }
 }
+
+/// An error with all its sources, as one sentence.
+#[must_use]
+pub fn in_one_sentence(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(error) = source {
+        let next = error.to_string();
+        if !text.ends_with(&next) {
+            text = format!("{text}: {next}");
+        }
+        source = error.source();
+    }
+    text
+}

@@ -2,6 +2,9 @@
 
 use crate::Triangle;
 
+/// The search ends where not even this fraction of a step leads to a point that can be.
+const LEAST_FRACTION: f64 = 1e-3;
+
 /// Where an unknown may be.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
@@ -93,8 +96,9 @@ pub fn minimize<P: Problem>(
     let [mut damping, least, most] = method.damping;
     let [relax, damp] = method.factors;
     let (mut n_steps, mut is_settled, mut n_small) = (0, false, 0);
+    let mut fraction = 1.0;
     let mut near = problem.near(&x, &at)?;
-    while n_steps < method.max_steps && damping < most {
+    while n_steps < method.max_steps && damping < most && fraction > LEAST_FRACTION {
         let Quadratic { gradient, matrix } = &near;
         // What stands at its bound and would leave it stays there.
         let is_free = |i: usize| {
@@ -127,7 +131,7 @@ pub fn minimize<P: Problem>(
         let mut trial = x.clone();
         for (&i, step) in free.iter().zip(&step) {
             let [low, high] = ranges[i].bounds;
-            trial[i] = (x[i] + shorter * step).clamp(low, high);
+            trial[i] += fraction * ((x[i] + shorter * step).clamp(low, high) - x[i]);
         }
         n_steps += 1;
         match problem.evaluate(&trial)? {
@@ -139,6 +143,7 @@ pub fn minimize<P: Problem>(
                 };
                 (x, cost, at) = (trial, found, there);
                 damping = (relax * damping).max(least);
+                fraction = f64::min(2.0 * fraction, 1.0);
                 tell(cost);
                 if n_small >= method.patience.0 {
                     is_settled = true;
@@ -146,15 +151,18 @@ pub fn minimize<P: Problem>(
                 }
                 near = problem.near(&x, &at)?;
             }
-            rejected => {
+            Some((_, there)) => {
                 damping *= damp;
                 tell(cost);
-                if let Some((_, there)) = rejected {
-                    let way: Vec<f64> = trial.iter().zip(&x).map(|(trial, x)| trial - x).collect();
-                    if problem.rejected(&mut at, &way, &there) {
-                        near = problem.near(&x, &at)?;
-                    }
+                let way: Vec<f64> = trial.iter().zip(&x).map(|(trial, x)| trial - x).collect();
+                if problem.rejected(&mut at, &way, &there) {
+                    near = problem.near(&x, &at)?;
                 }
+            }
+            // Nothing is known there: half the way is tried. More damping would turn the step, but shorten it only after many trials.
+            None => {
+                fraction *= 0.5;
+                tell(cost);
             }
         }
     }
@@ -165,4 +173,98 @@ pub fn minimize<P: Problem>(
         n_steps,
         is_settled,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const METHOD: Method = Method {
+        damping: [1e-4, 1e-5, 1e8],
+        factors: [0.1, 4.0],
+        max_steps: 30,
+        enough_promised: 1e-12,
+        patience: (u32::MAX, 0.0),
+        exact: 0.0,
+    };
+
+    /// Half the square of `ln(1 - x) - ln(1 - where it is 0)`: a Gauss-Newton step from 0 leads beyond 1, where it can't be.
+    struct UpToOne {
+        zero: f64,
+        n_beyond: u32,
+    }
+
+    impl UpToOne {
+        fn residual(&self, x: f64) -> f64 {
+            (1.0 - x).ln() - (1.0 - self.zero).ln()
+        }
+    }
+
+    impl Problem for UpToOne {
+        type At = ();
+        type Error = std::convert::Infallible;
+
+        fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, ())>, Self::Error> {
+            let can_be = x[0] < 1.0;
+            self.n_beyond += u32::from(!can_be);
+            Ok(can_be.then(|| (0.5 * self.residual(x[0]).powi(2), ())))
+        }
+
+        fn near(&mut self, x: &[f64], (): &()) -> Result<Quadratic, Self::Error> {
+            let rate = -1.0 / (1.0 - x[0]);
+            Ok(Quadratic {
+                gradient: vec![rate * self.residual(x[0])],
+                matrix: vec![rate * rate],
+            })
+        }
+    }
+
+    #[test]
+    fn a_step_to_where_nothing_can_be_is_halved() {
+        for (zero, bounds) in [(0.9, [-10.0, 10.0]), (0.99, [-10.0, 10.0]), (0.9, [-10.0, 1.0])] {
+            let mut problem = UpToOne { zero, n_beyond: 0 };
+            let range = Range { bounds, reach: 100.0 };
+            let cost = 0.5 * problem.residual(0.0).powi(2);
+            let start = (vec![0.0], cost, ());
+            let Ok(found) = minimize(&mut problem, &[range], start, &METHOD, &mut |_| ());
+            assert!(
+                found.is_settled && (found.x[0] - zero).abs() < 1e-4,
+                "{:?}",
+                found.x
+            );
+            assert!(
+                (1..9).contains(&problem.n_beyond),
+                "{} of {}",
+                problem.n_beyond,
+                found.n_steps
+            );
+        }
+    }
+
+    #[test]
+    fn a_search_ends_where_no_part_of_a_step_can_be() {
+        struct Alone;
+        impl Problem for Alone {
+            type At = ();
+            type Error = std::convert::Infallible;
+
+            fn evaluate(&mut self, _: &[f64]) -> Result<Option<(f64, ())>, Self::Error> {
+                Ok(None)
+            }
+
+            fn near(&mut self, x: &[f64], (): &()) -> Result<Quadratic, Self::Error> {
+                Ok(Quadratic {
+                    gradient: vec![x[0]],
+                    matrix: vec![1.0],
+                })
+            }
+        }
+        let range = Range {
+            bounds: [-10.0, 10.0],
+            reach: 100.0,
+        };
+        let start = (vec![1.0], 0.5, ());
+        let Ok(found) = minimize(&mut Alone, &[range], start, &METHOD, &mut |_| ());
+        assert!(!found.is_settled && found.x == [1.0] && found.n_steps < 12);
+    }
 }

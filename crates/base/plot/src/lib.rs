@@ -1,6 +1,6 @@
 //! Plots, and pages that show them.
 //!
-//! A plot ([`Panels`], [`Bars`], [`HeatMaps`], [`Density`], [`Places`]) is plain data. It turns into a [`Scene`]: lines,
+//! A plot ([`Panels`], [`Bars`], [`HeatMaps`], [`Density`], [`Places`], [`Scatter`]) is plain data. It turns into a [`Scene`]: lines,
 //! areas and texts in pixels. [`svg`] and [`png`] paint a scene with an embedded font, so that the same data give the
 //! same bytes on every machine. [`page::Page`] is one self-contained HTML file of texts, tables and scenes.
 //!
@@ -27,7 +27,9 @@ mod svg;
 mod write;
 
 pub use axis::{extent, padded};
-pub use chart::{Bar, Bars, Density, HeatMap, HeatMaps, Panel, Panels, Places, Series};
+pub use chart::{
+    Bar, Bars, Density, HeatMap, HeatMaps, Panel, Panels, Places, Scatter, ScatterPoint, Series,
+};
 pub use color::{Ink, PALETTE, viridis};
 pub use error::PlotError;
 pub use font::text_width;

@@ -1,6 +1,7 @@
 //! What a bench streams.
 
 use glam::{DQuat, DVec3};
+use phystac::TaxelState;
 
 use crate::{Event, Stream};
 
@@ -71,71 +72,6 @@ pub struct TaxelReading {
     pub pressure_pa: Option<f64>,
     /// Temperature, °C, if it gave one.
     pub temperature_c: Option<f64>,
-}
-
-/// Whether a taxel's pressure can be used. Numbers stand in files and stay as they are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum TaxelState {
-    /// It can.
-    Good = 0,
-    /// Its barometer does not acknowledge.
-    Missing = 1,
-    /// It has no sample of this frame: its conversion did not end in time, or was lost with its power.
-    Stuck = 2,
-    /// The bus failed with its channel open.
-    BusError = 3,
-    /// Its channel hung the bus and is kept closed.
-    Isolated = 4,
-    /// Its barometer does not keep its settings.
-    Refused = 5,
-    /// Its pressure is at an end of the range or beyond.
-    Saturated = 6,
-    /// Its value no longer changes.
-    Frozen = 7,
-    /// Another part than the one described answers at its address.
-    WrongChip = 8,
-    /// What its barometer was calibrated to cannot be read, or fails its check.
-    Uncalibrated = 9,
-    /// Its barometer lost its settings, with its power.
-    Restarted = 10,
-}
-
-impl TaxelState {
-    /// Why the pressure cannot be used, in a word or two; `None` if it can.
-    #[must_use]
-    pub const fn fault(self) -> Option<&'static str> {
-        match self {
-            Self::Good => None,
-            Self::Missing => Some("missing"),
-            Self::Stuck => Some("stuck"),
-            Self::BusError => Some("bus error"),
-            Self::Isolated => Some("isolated"),
-            Self::Refused => Some("refused"),
-            Self::Saturated => Some("saturated"),
-            Self::Frozen => Some("frozen"),
-            Self::WrongChip => Some("wrong chip"),
-            Self::Uncalibrated => Some("uncalibrated"),
-            Self::Restarted => Some("restarted"),
-        }
-    }
-
-    pub(crate) fn from_code(code: u8) -> Option<Self> {
-        const ALL: [TaxelState; 11] = [
-            TaxelState::Good,
-            TaxelState::Missing,
-            TaxelState::Stuck,
-            TaxelState::BusError,
-            TaxelState::Isolated,
-            TaxelState::Refused,
-            TaxelState::Saturated,
-            TaxelState::Frozen,
-            TaxelState::WrongChip,
-            TaxelState::Uncalibrated,
-            TaxelState::Restarted,
-        ];
-        ALL.get(usize::from(code)).copied()
-    }
 }
 
 /// One reading of the force/torque sensor, as the sensor gives it: no tare is taken off.

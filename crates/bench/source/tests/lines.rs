@@ -194,7 +194,7 @@ fn what_is_torn_doubled_late_or_garbage_is_marked_and_counted() {
         (1, 1, 1, 1)
     );
     assert!(
-        source.remarks().contains(&"4 frames are missing".to_owned()),
+        source.remarks().contains(&"missing frames: 4".to_owned()),
         "{:?}",
         source.remarks()
     );

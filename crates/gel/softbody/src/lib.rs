@@ -11,6 +11,7 @@
 mod advance;
 mod body;
 mod build;
+mod clock;
 mod contact;
 mod derivatives;
 mod element;

@@ -20,8 +20,9 @@ pub struct SolverSettings {
     pub max_travel_mm: f64,
     /// Smallest sub-step as part of that or of the step asked for, whichever is smaller. Default 1/16.
     pub min_substep: f64,
-    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 100. Multipliers take over the
-    /// contact forces, so that it affects how fast steps converge, but not their result.
+    /// Contact stiffness per area in units of shear modulus over the local edge length. Default 100. At nodes, multipliers take over the
+    /// contact forces, so that it affects how fast steps converge, but not their result. The quadrature points beside a shape's rim have
+    /// no multipliers: there the result depends on it as on the mesh, by some percent of the force on a coarse one.
     pub contact_stiffness: f64,
     /// Largest depth of a node inside a shape after a step, mm; contact is stiffened until it is reached. Default 0.005.
     pub penetration_mm: f64,

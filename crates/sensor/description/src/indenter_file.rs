@@ -32,18 +32,39 @@ impl IndenterFile {
     /// The first field that is wrong, a surface that cannot be had, and a file that cannot be read.
     pub fn read(path: &Path) -> Result<Self, SensorError> {
         let document = twintac_config::read::<Indenter>(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::from_document(document, folder, &|surface| std::fs::read(folder.join(surface)))
+    }
+
+    /// Reads its text. `file` names it in errors; `load` gives the bytes of an STL file by the path that the text has for it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(
+        file: &str,
+        text: &str,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
+        let document = twintac_config::parse::<Indenter>(file, text)?;
+        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+        Self::from_document(document, folder, load)
+    }
+
+    fn from_document(
+        document: Document<Indenter>,
+        folder: &Path,
+        load: &dyn Fn(&str) -> std::io::Result<Vec<u8>>,
+    ) -> Result<Self, SensorError> {
         let mut indenter = document.value.clone();
         indenter.check(&document, "")?;
-        let in_folder = |surface: &str| path.parent().unwrap_or(Path::new("")).join(surface);
-        let load = |surface: &str| std::fs::read(in_folder(surface));
         let files = indenter.shape.surface_files().into_iter();
         let loaded =
-            files.map(|(field, file)| load_surface(&document, &format!("shape.{field}"), file, &load));
+            files.map(|(field, file)| load_surface(&document, &format!("shape.{field}"), file, load));
         let loaded = loaded.collect::<Result<Vec<TriangleSurface>, _>>()?;
         // The sensor may have another surface of the same name.
         indenter
             .shape
-            .rename_surfaces(&|surface| in_folder(surface).display().to_string());
+            .rename_surfaces(&|surface| folder.join(surface).display().to_string());
         let files = indenter.shape.surface_files().into_iter().zip(loaded);
         let surfaces = files.map(|((_, file), loaded)| (file.name().into_owned(), Arc::new(loaded)));
         let surfaces: Surfaces = surfaces.collect();

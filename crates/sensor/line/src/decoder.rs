@@ -270,6 +270,7 @@ impl Decoder {
             time_s: time.map(|(_, (_, whole))| whole * self.description.time.unit.seconds()),
             pressures_kpa: self.row.pressures_kpa(&self.description),
             temperatures_c: self.row.temperatures_c(&self.description),
+            faults: self.row.faults(&self.description),
             lost_before,
         })
     }

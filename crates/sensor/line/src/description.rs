@@ -339,6 +339,10 @@ impl Description {
             );
             return Some((place, problem, "give one temperature, or one of each taxel"));
         }
+        if !matches!(self.count(Meaning::Fault), 0) && self.count(Meaning::Fault) != n {
+            let problem = format!("have {} faults beside {n} pressures", self.count(Meaning::Fault));
+            return Some((place, problem, "give a fault of each taxel, or none"));
+        }
         if let Some(order) = &self.taxel_order {
             let mut sorted = order.clone();
             sorted.sort_unstable();

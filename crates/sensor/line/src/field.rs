@@ -15,6 +15,8 @@ pub enum Meaning {
     Time,
     /// The frame's number.
     Sequence,
+    /// Why a taxel has no reading, of each taxel in turn: 0 if it has one.
+    Fault,
     /// Something else.
     Ignored,
 }
@@ -123,10 +125,11 @@ impl Field {
             "temperature" => Meaning::Temperature,
             "time" => Meaning::Time,
             "sequence" => Meaning::Sequence,
+            "fault" => Meaning::Fault,
             "ignored" => Meaning::Ignored,
             other => {
                 return Err(format!(
-                    "`{text}`: `{other}` is no meaning; known are pressure, temperature, time, sequence and ignored"
+                    "`{text}`: `{other}` is no meaning; known are pressure, temperature, time, sequence, fault and ignored"
                 ));
             }
         };
@@ -154,6 +157,7 @@ impl fmt::Display for Field {
             Meaning::Temperature => "temperature",
             Meaning::Time => "time",
             Meaning::Sequence => "sequence",
+            Meaning::Fault => "fault",
             Meaning::Ignored => "ignored",
         })?;
         match self.repeats {

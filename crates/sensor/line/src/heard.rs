@@ -82,4 +82,25 @@ impl Tally {
             Passed::Late => &mut self.late,
         } += 1;
     }
+
+    /// What was on the line besides frames, how often each; empty if all was well.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let kinds = [
+            (self.lost, "missing frames"),
+            (self.torn, "torn lines"),
+            (self.checksum, "lines with a wrong checksum"),
+            (self.endless, "long stretches without a line as described"),
+            (self.doubled, "frames that came twice"),
+            (self.late, "frames that came late, and were left out"),
+            (self.restarts, "restarts of the board"),
+        ];
+        let some = kinds.into_iter().filter(|(n, _)| *n > 0);
+        let mut remarks: Vec<String> = some.map(|(n, what)| format!("{what}: {n}")).collect();
+        let others = self.comments + self.text;
+        if self.frames == 0 && others > 0 {
+            remarks.push(format!("{others} lines came, and none has readings as described"));
+        }
+        remarks
+    }
 }

@@ -14,6 +14,8 @@ pub struct LineFrame {
     pub pressures_kpa: Vec<Option<f64>>,
     /// Temperatures of the taxels, °C; `None` where there is none. `[n_taxels]`
     pub temperatures_c: Vec<Option<f64>>,
+    /// Why taxels have no reading, as numbers of the board's: 0 of one that has one, `None` where the line does not say. `[n_taxels]`
+    pub faults: Vec<Option<u8>>,
     /// Frames that are missing between the one before and this one.
     pub lost_before: u64,
 }
@@ -25,6 +27,7 @@ pub(crate) struct Row {
     pub(crate) sequence: Option<f64>,
     pub(crate) pressures: Vec<Option<f64>>,
     pub(crate) temperatures: Vec<Option<f64>>,
+    pub(crate) faults: Vec<Option<f64>>,
 }
 
 impl Row {
@@ -34,6 +37,7 @@ impl Row {
             Meaning::Temperature => self.temperatures.push(number),
             Meaning::Time => self.time = number,
             Meaning::Sequence => self.sequence = number,
+            Meaning::Fault => self.faults.push(number),
             Meaning::Ignored => {}
         }
     }
@@ -43,13 +47,34 @@ impl Row {
         self.sequence = None;
         self.pressures.clear();
         self.temperatures.clear();
+        self.faults.clear();
     }
 
-    /// Pressures of the taxels, kPa, in their order.
+    /// Pressures of the taxels, kPa, in their order. One that has a fault has none, whatever number stands there.
     pub(crate) fn pressures_kpa(&self, description: &Description) -> Vec<Option<f64>> {
         let Pressure { unit, gain, offset } = description.pressure;
         let kpa = |number: f64| unit.kilopascals() * (gain * number + offset);
-        in_order(description, &self.pressures, kpa)
+        let pressures = in_order(description, &self.pressures, kpa);
+        let faults = self.faults(description);
+        let sound =
+            |(pressure, fault): (Option<f64>, Option<u8>)| pressure.filter(|_| fault.unwrap_or(0) == 0);
+        pressures.into_iter().zip(faults).map(sound).collect()
+    }
+
+    /// Why taxels have no reading, in their order.
+    pub(crate) fn faults(&self, description: &Description) -> Vec<Option<u8>> {
+        if self.faults.is_empty() {
+            return vec![None; self.pressures.len()];
+        }
+        // A number that is none of a fault is one nevertheless.
+        let number = |number: f64| {
+            if number == 0.0 {
+                0
+            } else {
+                number.clamp(1.0, 255.0) as u8
+            }
+        };
+        in_order(description, &self.faults, number)
     }
 
     /// Temperatures of the taxels, °C, in their order.
@@ -64,11 +89,11 @@ impl Row {
     }
 }
 
-fn in_order(
+fn in_order<T: Clone>(
     description: &Description,
     numbers: &[Option<f64>],
-    convert: impl Fn(f64) -> f64,
-) -> Vec<Option<f64>> {
+    convert: impl Fn(f64) -> T,
+) -> Vec<Option<T>> {
     let convert = |number: &Option<f64>| number.map(&convert);
     let Some(order) = &description.taxel_order else {
         return numbers.iter().map(convert).collect();

@@ -9,7 +9,11 @@ use crate::row::Row;
 
 /// The numbers of a line. `None` where a reading is missing.
 pub(crate) fn read(description: &Description, line: &str, row: &mut Row) -> Result<(), Passed> {
-    let line = whole(description, line.trim())?;
+    let (line, comment) = (line.trim(), &description.text.comment);
+    if description.form == Form::Text && !comment.is_empty() && line.starts_with(comment) {
+        return Err(Passed::Comment); // which has no checksum
+    }
+    let line = whole(description, line)?;
     match description.form {
         Form::Json => read_object(description, line, row),
         _ => read_numbers(description, line, row),
@@ -33,9 +37,6 @@ fn whole<'a>(description: &Description, line: &'a str) -> Result<&'a str, Passed
 
 fn read_numbers(description: &Description, line: &str, row: &mut Row) -> Result<(), Passed> {
     let text = &description.text;
-    if !text.comment.is_empty() && line.starts_with(&text.comment) {
-        return Err(Passed::Comment);
-    }
     let Some(numbers) = line.strip_prefix(text.prefix.as_str()) else {
         return Err(Passed::of_nothing(line));
     };

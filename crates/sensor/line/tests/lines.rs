@@ -425,3 +425,35 @@ proptest! {
         prop_assert_eq!(decoder.tally().frames, frames);
     }
 }
+
+#[test]
+fn comments_need_no_checksum() {
+    let description = described("form = \"text\"\nfields = [\"pressure * 2\"]\ntext.checksum = \"xor8\"");
+    let (_, passed, _) = heard(&description, b"# 2 of 2 * kPa\n# hello\n1,2*2F\n");
+    assert_eq!(passed, [Passed::Comment, Passed::Comment]);
+}
+
+#[test]
+fn taxels_say_why_they_have_no_reading() {
+    let description = described(
+        r#"
+        form = "text"
+        fields = ["pressure * 3", "fault * 3"]
+        taxel_order = [2, 0, 1]
+        "#,
+    );
+    let (frames, _, _) = heard(&description, b"100,0,nan,0,4,1\n100,101,102,nan,0.5,999\n");
+    assert_eq!(
+        pressures(&frames),
+        [[None, None, Some(100.0)], [None, None, Some(100.0)]]
+    );
+    assert_eq!(
+        frames[0].faults,
+        [Some(4), Some(1), Some(0)],
+        "a taxel with a fault has no reading, whatever stands there"
+    );
+    assert_eq!(frames[1].faults, [Some(1), Some(255), None]);
+    let wrong = "form = \"text\"\nfields = [\"pressure * 3\", \"fault\"]";
+    let error = Description::parse("line.toml", wrong).unwrap_err().to_string();
+    assert!(error.contains("have 1 faults beside 3 pressures"), "{error}");
+}

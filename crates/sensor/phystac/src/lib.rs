@@ -21,10 +21,11 @@ mod patience;
 pub mod recovery;
 mod scale;
 mod settings;
+mod taxel_state;
 mod taxels;
 mod wiring;
 
-pub use blocking::{PhysTac, Tca9548a};
+pub use blocking::{AtOnce, PhysTac, Tca9548a, now};
 pub use budget::Budget;
 pub use channels::{Channels, SwitchAddress};
 pub use chip::{Chip, ChipData, Speed};
@@ -37,4 +38,5 @@ pub use health::{Drift, Health, Thresholds};
 pub use patience::Patience;
 pub use scale::{FreeAir, SCALES_PER_PA, ScaleError, ScaleHint, scale_hint};
 pub use settings::Settings;
+pub use taxel_state::TaxelState;
 pub use wiring::{Wired, Wiring, WiringError};

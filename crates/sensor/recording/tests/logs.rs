@@ -287,6 +287,25 @@ fn what_a_crash_leaves_at_the_end_is_left_out_and_said() {
 }
 
 #[test]
+fn the_first_of_several_errors_is_said() {
+    // In the order of lines, and in a line of columns; also where thousands of rows lie between.
+    let many = "6,0,0,-1\n".repeat(10_000);
+    for (log, line, column) in [
+        ("t,a,b,z\n0,0,x,-1\n1,x,x,0\n", 2, "b"),
+        ("t,a,b,z\n0,0,0,-1\n1,x,0,y\n", 3, "a"),
+        ("t,a,b,z\n0,x,0,-1\n1,0,0\n2,0,0,0\n", 2, "a"),
+        (&format!("{LOG}7,x,0,-1\n{many}8,y,0,-1\n9,0\n{many}"), 9, "a"),
+        (&format!("{LOG}{many}8,0,y,-1\n{many}9,x,0,-1\n"), 10_009, "b"),
+    ] {
+        let error = refused(BENCH, log);
+        assert!(
+            error.contains(&format!(":{line}:")) && error.contains(&format!("`{column}`")),
+            "{error}, expected line {line}, column {column}"
+        );
+    }
+}
+
+#[test]
 fn a_clock_as_text_counts_from_the_first_row() {
     let plain = numbers(&read(BENCH, LOG).0);
     let description = BENCH.replace("column = \"t\"", "column = \"t\", unit = \"clock\"");

@@ -5,7 +5,7 @@ use twintac_simulate::Gel;
 use twintac_softbody::Material;
 
 use crate::curve::Curve;
-use crate::least_squares::{minimize, normal_equations};
+use crate::least_squares::{Solution, minimize, normal_equations};
 use crate::problem::{Evaluation, Problem};
 use crate::statistics::{Covariance, HARD_TO_TELL, covariance, neighbour_correlation, student_quantile};
 use crate::unknown::{Unknown, poissons_ratio};
@@ -13,6 +13,9 @@ use crate::{CalibrateError, FitSettings, Parameter};
 
 /// Correlation of neighbouring residuals above which they are not noise.
 const NOT_NOISE: f64 = 0.5;
+
+/// Standard deviation of the residuals, over the largest measured value, above which the fit is not the gel.
+const TOO_MUCH: f64 = 0.05;
 
 /// Correlation of two unknowns above which a warning is given.
 const CORRELATED: f64 = 0.98;
@@ -116,14 +119,8 @@ pub fn fit(
     if guess_gains(&problem, &first, &mut start) {
         first = problem.evaluate(&start)?;
     }
-    let solution = minimize(&problem, start.clone(), first, settings.max_iterations, tell);
-    Ok(judge(
-        &problem,
-        &start,
-        &solution.x,
-        &solution.evaluation,
-        (solution.iterations, solution.converged),
-    ))
+    let solution = minimize(&problem, start.clone(), first, settings.max_iterations, tell)?;
+    Ok(judge(&problem, &start, &solution))
 }
 
 /// Starts each taxel's gain at the value that fits best on its own.
@@ -154,26 +151,34 @@ fn guess_gains(problem: &Problem, first: &Evaluation, start: &mut [f64]) -> bool
 }
 
 /// Computes confidence intervals and warnings.
-fn judge(
-    problem: &Problem,
-    start: &[f64],
-    x: &[f64],
-    evaluation: &Evaluation,
-    (iterations, converged): (u32, bool),
-) -> Fit {
+fn judge(problem: &Problem, start: &[f64], solution: &Solution) -> Fit {
+    let Solution {
+        x,
+        evaluation,
+        jacobian,
+        iterations,
+        converged,
+    } = solution;
     let all = &problem.unknowns.all;
     let n_samples = evaluation.residuals.len();
     let freedom = (n_samples - all.len()) as f64;
     let variance = evaluation.residuals.iter().map(|r| r * r).sum::<f64>() / freedom;
-    let normal = normal_equations(&evaluation.jacobian, &evaluation.residuals, all.len()).matrix;
+    let normal = normal_equations(jacobian, &evaluation.residuals, all.len()).matrix;
     let known = covariance(
         &faer::Mat::from_fn(all.len(), all.len(), |i, j| normal[i * all.len() + j]),
         variance,
     );
     let quantile = student_quantile(0.975, freedom);
     let mut warnings = Vec::new();
-    if !converged {
+    if !*converged {
         warnings.push(format!("the fit had not settled after {iterations} steps"));
+    }
+    if variance.sqrt() > TOO_MUCH {
+        warnings.push(format!(
+            "residuals are {:.1} % of the largest value, expected below {:.0} %: the gel is not of this law, or the search got stuck; start from other values",
+            100.0 * variance.sqrt(),
+            100.0 * TOO_MUCH
+        ));
     }
     let unknowns = fitted_unknowns(all, [start, x], &known, quantile, &mut warnings);
     warnings.extend(hard_to_tell(all, &known));
@@ -197,8 +202,8 @@ fn judge(
         condition: known.condition,
         noise_percent: 100.0 * variance.sqrt(),
         n_samples,
-        iterations,
-        converged,
+        iterations: *iterations,
+        converged: *converged,
         warnings,
         signals,
     }

@@ -1,17 +1,22 @@
 //! Nonlinear least squares within bounds.
 //!
-//! Derivatives of a rough contact are inexact: friction is left out of some of them. A step that they promise too much of is rejected, and corrects them
-//! along its way (Broyden, Mathematics of Computation 19, 1965). Shorter steps alone would end the search where it was misled.
+//! Derivatives of a rough contact are inexact, since friction is left out of some of them, and take twice as long as the curves. So they are not computed
+//! at each step: what a step found corrects them along its way (Broyden, Mathematics of Computation 19, 1965). They are computed anew where a step that
+//! they promised something of is rejected, and where the search would end.
 
 use std::convert::Infallible;
 
 use twintac_fit::{Method, Quadratic, Range};
 
+use crate::CalibrateError;
 use crate::problem::{Evaluation, Problem};
 
-/// The search ends when a step promises to lower the sum of squares by less than this fraction of the residuals' variance: about a
-/// hundredth of a standard error.
-const ENOUGH: f64 = 1e-4;
+/// The search ends when a step promises to lower the sum of squares by less than this fraction of what a simulated frame has of it: about
+/// a tenth of a standard error. Samples between frames are interpolated, and tell nothing of their own.
+const ENOUGH: f64 = 1e-2;
+
+/// The search ends after so many steps in turn that lower the sum of squares by less than that: derivatives of a rough contact promise more than they keep.
+const PATIENCE: u32 = 3;
 
 /// Mean square of the residuals below which the fit counts as exact.
 const EXACT: f64 = 1e-16;
@@ -20,6 +25,8 @@ const EXACT: f64 = 1e-16;
 pub(crate) struct Solution {
     pub(crate) x: Vec<f64>,
     pub(crate) evaluation: Evaluation,
+    /// The derivatives there, corrected by steps that were rejected.
+    pub(crate) jacobian: Vec<Vec<f64>>,
     pub(crate) iterations: u32,
     /// Whether the search ended because no further step promised a smaller error.
     pub(crate) converged: bool,
@@ -40,45 +47,21 @@ pub(crate) fn normal_equations(jacobian: &[Vec<f64>], residuals: &[f64], n: usiz
 }
 
 /// Half of the sum of squares.
-fn cost(evaluation: &Evaluation) -> f64 {
-    0.5 * evaluation.residuals.iter().map(|r| r * r).sum::<f64>()
+fn cost(residuals: &[f64]) -> f64 {
+    0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
 }
 
-/// All curves at one guess, and their derivatives, corrected by steps that were rejected.
-struct Corrected {
-    evaluation: Evaluation,
-    jacobian: Vec<Vec<f64>>,
+/// The derivatives of all residuals, `[n_residuals][n_unknowns]`, at one guess.
+struct Derivatives {
+    rows: Vec<Vec<f64>>,
+    /// Whether they were computed there, and not only corrected on the way there.
+    are_computed: bool,
 }
 
-impl Corrected {
-    fn of(evaluation: Evaluation) -> Self {
-        Self {
-            jacobian: evaluation.jacobian.clone(),
-            evaluation,
-        }
-    }
-}
-
-/// The sum of squares of a problem.
-struct Squares<'a>(&'a Problem<'a>);
-
-impl twintac_fit::Problem for Squares<'_> {
-    type At = Corrected;
-    type Error = Infallible;
-
-    /// What can't be simulated is no place to go.
-    fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Corrected)>, Infallible> {
-        let found = self.0.evaluate(x).ok();
-        Ok(found.map(|evaluation| (cost(&evaluation), Corrected::of(evaluation))))
-    }
-
-    fn near(&mut self, x: &[f64], at: &Corrected) -> Result<Quadratic, Infallible> {
-        Ok(normal_equations(&at.jacobian, &at.evaluation.residuals, x.len()))
-    }
-
-    /// Changes derivatives as little as can be, each in the unit of its column, so that they lead to what was found at the end of the way.
-    fn rejected(&mut self, here: &mut Corrected, way: &[f64], there: &Corrected) -> bool {
-        let columns = (0..way.len()).map(|i| here.jacobian.iter().map(|row| row[i] * row[i]).sum::<f64>());
+impl Derivatives {
+    /// Changes them as little as can be, each in the unit of its column, so that they lead to what was found at the end of a way.
+    fn correct(&mut self, way: &[f64], before: &[f64], after: &[f64]) {
+        let columns = (0..way.len()).map(|i| self.rows.iter().map(|row| row[i] * row[i]).sum::<f64>());
         let weighted: Vec<f64> = columns.zip(way).map(|(square, way)| square * way).collect();
         let length: f64 = weighted
             .iter()
@@ -86,48 +69,129 @@ impl twintac_fit::Problem for Squares<'_> {
             .map(|(weighted, way)| weighted * way)
             .sum();
         if length == 0.0 {
-            return false; // held by the bounds
+            return; // held by the bounds
         }
-        let ends = here.evaluation.residuals.iter().zip(&there.evaluation.residuals);
-        for (row, (before, after)) in here.jacobian.iter_mut().zip(ends) {
+        for (row, (before, after)) in self.rows.iter_mut().zip(before.iter().zip(after)) {
             let foretold: f64 = row.iter().zip(way).map(|(rate, way)| rate * way).sum();
             for (rate, weighted) in row.iter_mut().zip(&weighted) {
                 *rate += (after - before - foretold) * weighted / length;
             }
         }
+    }
+}
+
+/// The sum of squares of a problem, and where it was lowest so far.
+struct Squares<'a> {
+    problem: &'a Problem<'a>,
+    x: Vec<f64>,
+    residuals: Vec<f64>,
+    derivatives: Derivatives,
+}
+
+impl<'a> Squares<'a> {
+    fn new(problem: &'a Problem<'a>, x: &[f64], at: &Evaluation) -> Result<Self, CalibrateError> {
+        let derivatives = Derivatives {
+            rows: problem.jacobian(x, at)?,
+            are_computed: true,
+        };
+        Ok(Self {
+            problem,
+            x: x.to_owned(),
+            residuals: at.residuals.clone(),
+            derivatives,
+        })
+    }
+
+    /// Computes the derivatives where the sum was lowest. Where they can't be, those that are there stand for them.
+    fn compute(&mut self, at: &Evaluation) {
+        if let Ok(rows) = self.problem.jacobian(&self.x, at) {
+            self.derivatives.rows = rows;
+        }
+        self.derivatives.are_computed = true;
+    }
+
+    fn way_to(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.x).map(|(to, from)| to - from).collect()
+    }
+}
+
+impl twintac_fit::Problem for Squares<'_> {
+    type At = Evaluation;
+    type Error = Infallible;
+
+    /// What can't be simulated is no place to go.
+    fn evaluate(&mut self, x: &[f64]) -> Result<Option<(f64, Evaluation)>, Infallible> {
+        let evaluation = self.problem.evaluate(x).ok();
+        Ok(evaluation.map(|evaluation| (cost(&evaluation.residuals), evaluation)))
+    }
+
+    fn near(&mut self, x: &[f64], at: &Evaluation) -> Result<Quadratic, Infallible> {
+        let way = self.way_to(x);
+        if way.iter().any(|way| *way != 0.0) {
+            self.derivatives.correct(&way, &self.residuals, &at.residuals);
+            self.derivatives.are_computed = false;
+            (self.x, self.residuals) = (x.to_owned(), at.residuals.clone());
+            if at.has_rates {
+                self.compute(at);
+            }
+        }
+        Ok(normal_equations(&self.derivatives.rows, &self.residuals, x.len()))
+    }
+
+    fn rejected(&mut self, here: &mut Evaluation, way: &[f64], there: &Evaluation) -> bool {
+        if !self.derivatives.are_computed {
+            self.compute(here);
+        }
+        self.derivatives.correct(way, &self.residuals, &there.residuals);
         true
     }
 }
 
 /// Minimizes the sum of squares from `x`; `tell` is called with the root mean square of the residuals after each step.
+///
+/// # Errors
+/// The curves have no derivatives at `x`.
 pub(crate) fn minimize(
     problem: &Problem,
     x: Vec<f64>,
     evaluation: Evaluation,
     max_iterations: u32,
     tell: &mut dyn FnMut(f64),
-) -> Solution {
+) -> Result<Solution, CalibrateError> {
     let n_residuals = evaluation.residuals.len() as f64;
-    let method = Method {
-        damping: [1e-4, 1e-5, 1e8],
-        factors: [0.1, 4.0],
-        max_steps: max_iterations,
-        enough_promised: ENOUGH / n_residuals,
-        patience: (u32::MAX, 0.0),
-        exact: 0.5 * n_residuals * EXACT,
-    };
+    let enough = ENOUGH / problem.n_frames() as f64;
     let ranges = problem.unknowns.all.iter().map(|unknown| Range {
         bounds: unknown.bounds,
         reach: unknown.reach,
     });
     let ranges: Vec<Range> = ranges.collect();
     let mut tell = |cost: f64| tell((2.0 * cost / n_residuals).sqrt());
-    let start = (x, cost(&evaluation), Corrected::of(evaluation));
-    let Ok(found) = twintac_fit::minimize(&mut Squares(problem), &ranges, start, &method, &mut tell);
-    Solution {
-        x: found.x,
-        evaluation: found.at.evaluation,
-        iterations: found.n_steps,
-        converged: found.is_settled,
+    let mut squares = Squares::new(problem, &x, &evaluation)?;
+    let (mut start, mut iterations) = ((x, cost(&evaluation.residuals), evaluation), 0);
+    loop {
+        let method = Method {
+            damping: [1e-4, 1e-5, 1e8],
+            factors: [0.1, 4.0],
+            max_steps: max_iterations - iterations,
+            enough_promised: enough,
+            patience: (PATIENCE, enough),
+            exact: 0.5 * n_residuals * EXACT,
+        };
+        let Ok(found) = twintac_fit::minimize(&mut squares, &ranges, start, &method, &mut tell);
+        iterations += found.n_steps;
+        let was_computed = squares.derivatives.are_computed;
+        if !was_computed {
+            squares.compute(&found.at);
+        }
+        if was_computed || !found.is_settled {
+            return Ok(Solution {
+                x: found.x,
+                evaluation: found.at,
+                jacobian: squares.derivatives.rows,
+                iterations,
+                converged: found.is_settled,
+            });
+        }
+        start = (found.x, found.cost, found.at);
     }
 }

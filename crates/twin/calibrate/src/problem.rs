@@ -46,12 +46,24 @@ pub(crate) struct Problem<'a> {
 
 /// All curves at one guess.
 pub(crate) struct Evaluation {
+    /// The simulated frames. `[n_curves][n_frames]`
+    presses: Vec<Vec<RatedFrame>>,
     /// The modelled signals. `[n_curves][n_signals][n_samples]`
     pub(crate) model: Vec<Vec<Vec<f64>>>,
     /// Model less measured in units of the signals' scales, of all usable samples.
     pub(crate) residuals: Vec<f64>,
-    /// Their derivatives. `[n_residuals][n_unknowns]`
-    pub(crate) jacobian: Vec<Vec<f64>>,
+    /// Whether the frames have their rates, and so derivatives are there without more presses.
+    pub(crate) has_rates: bool,
+}
+
+/// How the frames of a press change with some of the unknowns.
+struct Rates {
+    /// Indices of these unknowns.
+    unknowns: Vec<usize>,
+    /// By frame and unknown, N.
+    force_n: Vec<Vec<f64>>,
+    /// By frame, unknown and taxel, kPa.
+    port_pressure_kpa: Vec<Vec<Vec<f64>>>,
 }
 
 impl<'a> Problem<'a> {
@@ -112,32 +124,100 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Simulates all curves, each on a thread.
-    pub(crate) fn evaluate(&self, x: &[f64]) -> Result<Evaluation, CalibrateError> {
-        let indices: Vec<usize> = (0..self.curves.len()).collect();
-        let presses = indices
-            .par_iter()
-            .with_max_len(1)
-            .map(|&curve| self.press(curve, x))
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut evaluation = Evaluation {
-            model: Vec::new(),
-            residuals: Vec::new(),
-            jacobian: Vec::new(),
-        };
-        for (curve, (directions, frames)) in presses.iter().enumerate() {
-            let signals = 0..self.curves[curve].signals.len();
-            let model =
-                signals.map(|signal| self.compare(curve, signal, x, directions, frames, &mut evaluation));
-            let model = model.collect();
-            evaluation.model.push(model);
-        }
-        Ok(evaluation)
+    /// Number of frames that are simulated.
+    pub(crate) fn n_frames(&self) -> usize {
+        self.frames.iter().map(|frames| frames.rows.len()).sum()
     }
 
-    /// One press, with the indices of the unknowns that its rates are for. The rates by material and depth are those of a gel without friction, which
-    /// cannot be differentiated: friction changes how much is carried, and little of how that changes.
-    fn press(&self, index: usize, x: &[f64]) -> Result<(Vec<usize>, Vec<RatedFrame>), CalibrateError> {
+    /// Simulates all curves, each on a thread.
+    pub(crate) fn evaluate(&self, x: &[f64]) -> Result<Evaluation, CalibrateError> {
+        let presses = self.each_curve(|curve| match self.friction(curve, x) {
+            0.0 => self.press(curve, x, 0.0, &self.directions(curve, x).1), // with its rates at once
+            friction => self.press(curve, x, friction, &[]),
+        })?;
+        let (mut model, mut residuals) = (Vec::new(), Vec::new());
+        for (index, (curve, frames)) in self.curves.iter().zip(&presses).enumerate() {
+            let mut of_curve = Vec::new();
+            for (which, signal) in curve.signals.iter().enumerate() {
+                let [scale, offset] = self.scale_and_offset(index, signal.quantity, x);
+                let value = |frame: usize| signal.quantity.of(&frames[frame]);
+                let bare = (0..signal.values.len()).map(|sample| self.frames[index].sample(sample, value));
+                let values: Vec<f64> = bare.map(|bare| scale * bare + offset).collect();
+                let pairs = values.iter().zip(&signal.values);
+                let usable = pairs.filter(|(_, measured)| measured.is_finite());
+                residuals
+                    .extend(usable.map(|(model, measured)| (model - measured) / self.scales[index][which]));
+                of_curve.push(values);
+            }
+            model.push(of_curve);
+        }
+        let mut all = self.unknowns.all.iter();
+        let is_rough = all.any(|unknown| unknown.parameter == Parameter::Friction)
+            || (0..self.curves.len()).any(|curve| self.friction(curve, x) > 0.0);
+        Ok(Evaluation {
+            presses,
+            model,
+            residuals,
+            has_rates: !is_rough,
+        })
+    }
+
+    /// The derivatives of the residuals where they were evaluated. `[n_residuals][n_unknowns]`
+    pub(crate) fn jacobian(&self, x: &[f64], at: &Evaluation) -> Result<Vec<Vec<f64>>, CalibrateError> {
+        let rates = self.each_curve(|curve| self.rates(curve, x, &at.presses[curve]))?;
+        let mut jacobian = Vec::new();
+        for (curve, rates) in rates.iter().enumerate() {
+            for which in 0..self.curves[curve].signals.len() {
+                self.rows(curve, which, x, rates, &at.presses[curve], &mut jacobian);
+            }
+        }
+        Ok(jacobian)
+    }
+
+    /// Does something for all curves, each on a thread.
+    fn each_curve<T: Send>(
+        &self,
+        work: impl Fn(usize) -> Result<T, CalibrateError> + Sync,
+    ) -> Result<Vec<T>, CalibrateError> {
+        let indices: Vec<usize> = (0..self.curves.len()).collect();
+        indices
+            .par_iter()
+            .with_max_len(1)
+            .map(|&curve| work(curve))
+            .collect()
+    }
+
+    fn friction(&self, curve: usize, x: &[f64]) -> f64 {
+        let given = self.curves[curve].friction;
+        self.unknowns.value(&Parameter::Friction, None, x, given)
+    }
+
+    /// The unknowns that a press has rates for, and the rates of what.
+    fn directions(&self, curve: usize, x: &[f64]) -> (Vec<usize>, Vec<Direction>) {
+        let direction = |unknown| Some((unknown, self.unknowns.direction(unknown, curve, x)?));
+        (0..x.len()).filter_map(direction).unzip()
+    }
+
+    /// What multiplies a simulated signal, and what is added then.
+    fn scale_and_offset(&self, curve: usize, quantity: Quantity, x: &[f64]) -> [f64; 2] {
+        let value = |parameter, owner, otherwise| self.unknowns.value(&parameter, owner, x, otherwise);
+        match quantity {
+            Quantity::Force => [
+                value(Parameter::ForceScale, None, 1.0),
+                value(Parameter::ForceOffset, Some(curve), 0.0),
+            ],
+            Quantity::Taxel(taxel) => [value(Parameter::Gain, Some(taxel), 1.0), 0.0],
+        }
+    }
+
+    /// Simulates one press.
+    fn press(
+        &self,
+        index: usize,
+        x: &[f64],
+        friction: f64,
+        directions: &[Direction],
+    ) -> Result<Vec<RatedFrame>, CalibrateError> {
         let curve = &self.curves[index];
         let place = PressPlace {
             indenter: String::new(),
@@ -157,92 +237,80 @@ impl<'a> Problem<'a> {
                 depth_mm: curve.depth_mm[row].max(ABOVE_MM - deeper_mm),
             })
             .collect();
-        let found = (0..self.unknowns.all.len())
-            .filter_map(|unknown| Some((unknown, self.unknowns.direction(unknown, index, x)?)));
-        let (mut unknowns, directions): (Vec<usize>, Vec<Direction>) = found.unzip();
         let gel = self.gel.clone().with_material(self.unknowns.material(x));
-        let press = |friction: f64, directions: &[Direction]| {
-            let rough = gel.clone().with_friction(friction);
-            let frames = rough
-                .mesh(&place)
-                .and_then(|mesh| mesh.press_with_rates(&keyframes, deeper_mm, directions));
-            frames.map_err(|error: SimulateError| CalibrateError::Simulate {
-                curve: curve.name.clone(),
-                error,
-            })
-        };
-        let mut frames = press(0.0, &directions)?;
-        let free = self
-            .unknowns
-            .all
-            .iter()
-            .position(|unknown| unknown.parameter == Parameter::Friction);
-        let friction = self.unknowns.value(&Parameter::Friction, None, x, curve.friction);
-        if friction > 0.0 {
-            for (frame, rough) in frames.iter_mut().zip(press(friction, &[])?) {
-                frame.force_n = rough.force_n;
-                frame.port_pressure_kpa = rough.port_pressure_kpa;
-            }
-        }
-        if let Some(free) = free {
-            unknowns.push(free);
-            let rougher = press(friction + FRICTION_DIFFERENCE, &[])?;
-            for (frame, rougher) in frames.iter_mut().zip(rougher) {
-                let rate = |more: f64, value: f64| (more - value) / FRICTION_DIFFERENCE;
-                let pressures = rougher.port_pressure_kpa.iter().zip(&frame.port_pressure_kpa);
-                let rates = pressures.map(|(more, value)| rate(*more, *value)).collect();
-                frame.port_pressure_rates_kpa.push(rates);
-                frame.force_rates_n.push(rate(rougher.force_n, frame.force_n));
-            }
-        }
-        Ok((unknowns, frames))
+        let mesh = gel.with_friction(friction).mesh(&place);
+        let frames = mesh.and_then(|mesh| mesh.press_with_rates(&keyframes, deeper_mm, directions));
+        frames.map_err(|error: SimulateError| CalibrateError::Simulate {
+            curve: curve.name.clone(),
+            error,
+        })
     }
 
-    /// Adds the residuals of a signal; returns the modelled signal.
-    fn compare(
+    /// How a press that was simulated changes. The rates by material and depth are those of a gel without friction, which cannot be differentiated:
+    /// friction changes how much is carried, and little of how that changes.
+    fn rates(&self, index: usize, x: &[f64], pressed: &[RatedFrame]) -> Result<Rates, CalibrateError> {
+        let (unknowns, directions) = self.directions(index, x);
+        let friction = self.friction(index, x);
+        let smooth = match friction {
+            0.0 => pressed.to_vec(),
+            _ => self.press(index, x, 0.0, &directions)?,
+        };
+        let (force_n, port_pressure_kpa) = smooth
+            .into_iter()
+            .map(|frame| (frame.force_rates_n, frame.port_pressure_rates_kpa))
+            .unzip();
+        let mut rates = Rates {
+            unknowns,
+            force_n,
+            port_pressure_kpa,
+        };
+        let mut all = self.unknowns.all.iter();
+        if let Some(free) = all.position(|unknown| unknown.parameter == Parameter::Friction) {
+            let rougher = self.press(index, x, friction + FRICTION_DIFFERENCE, &[])?;
+            rates.unknowns.push(free);
+            for (frame, (rougher, pressed)) in rougher.iter().zip(pressed).enumerate() {
+                let rate = |more: f64, value: f64| (more - value) / FRICTION_DIFFERENCE;
+                let pressures = rougher.port_pressure_kpa.iter().zip(&pressed.port_pressure_kpa);
+                let of_ports = pressures.map(|(more, value)| rate(*more, *value)).collect();
+                rates.port_pressure_kpa[frame].push(of_ports);
+                rates.force_n[frame].push(rate(rougher.force_n, pressed.force_n));
+            }
+        }
+        Ok(rates)
+    }
+
+    /// Adds the derivatives of a signal's residuals.
+    fn rows(
         &self,
         curve: usize,
-        signal: usize,
+        which: usize,
         x: &[f64],
-        pressed: &[usize],
-        frames: &[RatedFrame],
-        evaluation: &mut Evaluation,
-    ) -> Vec<f64> {
-        let signal_scale = self.scales[curve][signal];
-        let signal = &self.curves[curve].signals[signal];
-        let unknowns = &self.unknowns;
-        let (of_scale, owner, offset) = match signal.quantity {
-            Quantity::Force => (
-                Parameter::ForceScale,
-                None,
-                unknowns.value(&Parameter::ForceOffset, Some(curve), x, 0.0),
-            ),
-            Quantity::Taxel(taxel) => (Parameter::Gain, Some(taxel), 0.0),
+        rates: &Rates,
+        pressed: &[RatedFrame],
+        jacobian: &mut Vec<Vec<f64>>,
+    ) {
+        let signal = &self.curves[curve].signals[which];
+        let signal_scale = self.scales[curve][which];
+        let (of_scale, owner) = match signal.quantity {
+            Quantity::Force => (Parameter::ForceScale, None),
+            Quantity::Taxel(taxel) => (Parameter::Gain, Some(taxel)),
         };
-        let scale = unknowns.value(&of_scale, owner, x, 1.0);
-        let value = |frame: usize| match signal.quantity {
-            Quantity::Force => frames[frame].force_n,
-            Quantity::Taxel(taxel) => frames[frame].port_pressure_kpa[taxel],
-        };
+        let [scale, _] = self.scale_and_offset(curve, signal.quantity, x);
         let rate = |frame: usize, direction: usize| match signal.quantity {
-            Quantity::Force => frames[frame].force_rates_n[direction],
-            Quantity::Taxel(taxel) => frames[frame].port_pressure_rates_kpa[direction][taxel],
+            Quantity::Force => rates.force_n[frame][direction],
+            Quantity::Taxel(taxel) => rates.port_pressure_kpa[frame][direction][taxel],
         };
         let interpolation = &self.frames[curve];
-        let mut model = Vec::with_capacity(signal.values.len());
-        for (sample, measured) in signal.values.iter().enumerate() {
-            let bare = interpolation.sample(sample, value);
-            model.push(scale * bare + offset);
-            if !measured.is_finite() {
-                continue;
-            }
-            let mut row = vec![0.0; unknowns.all.len()];
-            for (direction, &unknown) in pressed.iter().enumerate() {
+        let usable = (0..signal.values.len()).filter(|&sample| signal.values[sample].is_finite());
+        jacobian.extend(usable.map(|sample| {
+            let mut row = vec![0.0; x.len()];
+            for (direction, &unknown) in rates.unknowns.iter().enumerate() {
                 let bare_rate = interpolation.sample(sample, |frame| rate(frame, direction));
                 row[unknown] = scale * bare_rate / signal_scale;
             }
-            for (entry, (unknown, x)) in row.iter_mut().zip(unknowns.all.iter().zip(x)) {
+            for (entry, (unknown, x)) in row.iter_mut().zip(self.unknowns.all.iter().zip(x)) {
                 if unknown.parameter == of_scale && unknown.owner == owner {
+                    let bare = interpolation.sample(sample, |frame| signal.quantity.of(&pressed[frame]));
                     *entry = unknown.scale.rate(*x) * bare / signal_scale;
                 } else if unknown.parameter == Parameter::ForceOffset
                     && signal.quantity == Quantity::Force
@@ -251,11 +319,17 @@ impl<'a> Problem<'a> {
                     *entry = unknown.scale.rate(*x) / signal_scale;
                 }
             }
-            evaluation
-                .residuals
-                .push((scale * bare + offset - measured) / signal_scale);
-            evaluation.jacobian.push(row);
+            row
+        }));
+    }
+}
+
+impl Quantity {
+    /// Its value in a frame: N or kPa.
+    fn of(self, frame: &RatedFrame) -> f64 {
+        match self {
+            Self::Force => frame.force_n,
+            Self::Taxel(taxel) => frame.port_pressure_kpa[taxel],
         }
-        model
     }
 }

@@ -8,7 +8,7 @@ use twintac_softbody::SolveError;
 use crate::history::solve_quality;
 use crate::readout::PortReadout;
 use crate::walk::Walk;
-use crate::{FollowedFrame, Gel, SimulateError};
+use crate::{Fields, FollowedFrame, Gel, SimulateError};
 
 /// A gel that one indenter presses, frame by frame: pushed, slid and turned as poses come. It keeps how it is deformed, what its material remembers, and where friction
 /// holds it.
@@ -121,6 +121,18 @@ impl GelState {
             depth_mm: self.touch_mm - gel_from_indenter.position_mm.z,
             error,
         })
+    }
+
+    /// Height of the indenter's origin at first touch, at the place and turn of the path's first pose, mm: depths count from there.
+    #[must_use]
+    pub fn touch_mm(&self) -> f64 {
+        self.touch_mm
+    }
+
+    /// The gel as it is now: its mesh, how that is moved, and what is felt at its nodes.
+    #[must_use]
+    pub fn fields(&self) -> Fields<'_> {
+        self.walk.gel.fields(&self.walk.state)
     }
 
     /// Nodes and tetrahedra of the mesh.

@@ -4,37 +4,17 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
 
+use super::Wire;
+
 /// Streams start when nothing touches the sensor: a tare is taken from the first frames. Without `--format` and `--log` they are a dashboard.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("source").required(true), group = ArgGroup::new("written").multiple(true))]
 pub(crate) struct Stream {
-    /// I²C bus of the sensor, such as /dev/i2c-1 (Linux).
-    #[arg(long, value_name = "PATH", group = "source")]
-    pub(crate) bus: Option<PathBuf>,
-    /// Serial port that a microcontroller writes frames to, such as /dev/ttyACM0; `twintac ports` lists what is plugged in.
-    #[arg(long, value_name = "PORT", group = "source", requires = "line")]
-    pub(crate) serial: Option<String>,
-    /// Address where frames come as datagrams, such as 0.0.0.0:9000.
-    #[arg(long, value_name = "ADDRESS", group = "source", requires = "line")]
-    pub(crate) udp: Option<String>,
-    /// How frames stand on the serial line or in datagrams (TOML).
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["bus", "lab", "replay"])]
-    pub(crate) line: Option<PathBuf>,
-    /// A log (MCAP), played at its own pace.
-    #[arg(long, value_name = "FILE", group = "source")]
-    pub(crate) replay: Option<PathBuf>,
-    /// The emulated sensor, pressed by a slow motion.
-    #[arg(long, group = "source")]
-    pub(crate) lab: bool,
+    #[command(flatten)]
+    pub(crate) wire: Wire,
     /// Sensor description (TOML) [default: PhysTac].
     #[arg(long, value_name = "FILE")]
     pub(crate) sensor: Option<PathBuf>,
-    /// Counts per Pa of the barometers, confirmed by a person who knows the parts [default: the sensor description's].
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(crate) scale: Option<u16>,
-    /// Altitude of the place, m, whose free air the scale is checked against [default: anything up to 2000].
-    #[arg(long, value_name = "M", conflicts_with = "lab", allow_negative_numbers = true)]
-    pub(crate) altitude_m: Option<f32>,
     /// How zeros move with temperature (TOML), as `twintac characterize` found it: it is taken off the readings.
     #[arg(long, value_name = "FILE")]
     pub(crate) temperature: Option<PathBuf>,

@@ -6,6 +6,7 @@ mod characterize;
 mod cross_validate;
 mod dataset;
 mod demo;
+mod design;
 mod export;
 mod fast;
 mod files;
@@ -22,6 +23,7 @@ mod sensor;
 mod simulate;
 mod stages;
 mod stream;
+mod view;
 
 use anyhow::Result;
 
@@ -39,9 +41,11 @@ pub(crate) fn run(command: Command, program: &Program) -> Result<()> {
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments, program),
         Command::Dataset(arguments) => dataset::run(&arguments),
+        Command::Design(arguments) => design::run(&arguments, program),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Characterize(arguments) => characterize::run(&arguments),
         Command::Ports(arguments) => ports::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
         Command::Stream(arguments) => stream::run(&arguments),
         Command::Record(arguments) => record::run(&arguments, program),
         Command::Export(arguments) => export::run(&arguments),

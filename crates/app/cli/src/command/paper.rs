@@ -39,6 +39,8 @@ fn text(found: &PaperMetrics) -> String {
         let error = percent(paper.nearest_in_contact_percent);
         lines.push(format!("the paper's network   {error}"));
     }
+    let left = percent(Some(found.material.residual_percent));
+    lines.push(format!("the gel's fit leaves  {left} of the forces"));
     if let Some(sensitivity) = found.sensor.sensitivity_kpa_per_n {
         lines.push(format!("sensitivity           {sensitivity:6.2} kPa/N"));
     }

@@ -3,10 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, bail};
-use twintac_live::{
-    About, Format, Live, Origin, StopAfter, TouchRecording, dashboard, record_frames, stream_rows,
-};
-use twintac_source::{Known, Tally};
+use twintac_live::{About, Format, Live, StopAfter, TouchRecording, dashboard, record_frames, stream_rows};
+use twintac_source::Tally;
 
 use super::files::sensor_or_phystac;
 use crate::arguments::{RowFormat, Stream};
@@ -19,11 +17,8 @@ pub(super) fn run(arguments: &Stream) -> Result<()> {
         );
     }
     let sensor = sensor_or_phystac(arguments.sensor.as_deref())?;
-    let known = Known {
-        counts_per_pa: arguments.scale,
-        altitude_m: arguments.altitude_m,
-    };
-    let mut live = Live::open(&origin(arguments), &sensor.sensor, &sensor.text, &known)?;
+    let origin = arguments.wire.origin().context("no source was named")?;
+    let mut live = Live::open(&origin, &sensor.sensor, &sensor.text, &arguments.wire.known())?;
     for note in &live.notes {
         say(note);
     }
@@ -100,29 +95,6 @@ fn ended() -> Result<&'static AtomicBool> {
     static ENDED: AtomicBool = AtomicBool::new(false);
     ctrlc::set_handler(|| ENDED.store(true, Ordering::Relaxed)).context("listening to signals")?;
     Ok(&ENDED)
-}
-
-/// Where the frames come from.
-fn origin(arguments: &Stream) -> Origin {
-    let line = arguments.line.clone().unwrap_or_default();
-    match (
-        &arguments.bus,
-        &arguments.serial,
-        &arguments.udp,
-        &arguments.replay,
-    ) {
-        (Some(bus), ..) => Origin::Bus(bus.clone()),
-        (_, Some(port), ..) => Origin::Serial {
-            port: port.clone(),
-            line,
-        },
-        (_, _, Some(address), _) => Origin::Udp {
-            address: address.clone(),
-            line,
-        },
-        (.., Some(log)) => Origin::Log(log.clone()),
-        _ => Origin::Emulated,
-    }
 }
 
 /// Says what was lost, if anything was.

@@ -5,12 +5,14 @@ mod density;
 mod heat;
 mod lines;
 mod places;
+mod scatter;
 
 pub use bars::{Bar, Bars};
 pub use density::Density;
 pub use heat::{HeatMap, HeatMaps};
 pub use lines::{Panel, Panels, Series};
 pub use places::Places;
+pub use scatter::{Scatter, ScatterPoint};
 
 /// Width of a chart that stands alone or beside others, px.
 const WIDTH_PX: f64 = 380.0;

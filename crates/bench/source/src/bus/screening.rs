@@ -33,7 +33,7 @@ impl<const N: usize> Screening<N> {
         let mut message = tactile_frame(&frame, &self.transfer);
         self.health.screen(&mut frame);
         for (index, fault) in frame.faults() {
-            message.taxels[index].state = taxel_state(fault);
+            message.taxels[index].state = TaxelState::from(fault);
             message.taxels[index].pressure_pa = None;
         }
         message
@@ -70,26 +70,11 @@ fn taxel_reading(taxel: Result<phystac::Sample, Fault>, read_us: u64, transfer: 
         false => sample.counts.unsigned().cast_signed(),
     };
     TaxelReading {
-        state: pressure_pa.map_or_else(taxel_state, |_| TaxelState::Good),
+        state: pressure_pa.map_or_else(TaxelState::from, |_| TaxelState::Good),
         read_us,
         counts: taxel.ok().map(count),
         pressure_pa: pressure_pa.ok().map(f64::from),
         temperature_c: taxel.ok().map(|sample| f64::from(sample.temperature_c)),
-    }
-}
-
-fn taxel_state(fault: Fault) -> TaxelState {
-    match fault {
-        Fault::Missing | Fault::NotWired => TaxelState::Missing,
-        Fault::Stuck => TaxelState::Stuck,
-        Fault::Bus(_) => TaxelState::BusError,
-        Fault::Isolated => TaxelState::Isolated,
-        Fault::Refused => TaxelState::Refused,
-        Fault::Saturated => TaxelState::Saturated,
-        Fault::Frozen => TaxelState::Frozen,
-        Fault::WrongChip => TaxelState::WrongChip,
-        Fault::Uncalibrated => TaxelState::Uncalibrated,
-        Fault::Restarted => TaxelState::Restarted,
     }
 }
 

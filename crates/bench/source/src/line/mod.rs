@@ -118,19 +118,16 @@ impl LineSource {
             .map_or(arrived_s, |time_s| self.device_clock.bench_s(time_s, arrived_s));
         let sequence = self.next_sequence + frame.lost_before;
         self.next_sequence = sequence + 1;
-        let taxels = frame.pressures_kpa.iter().zip(&frame.temperatures_c);
+        let numbers = frame.pressures_kpa.iter().zip(&frame.temperatures_c);
+        let taxels = numbers.zip(&frame.faults);
         Reading {
             sequence,
             bench_s,
             frame: TactileFrame {
                 triggered_us: (bench_s * 1e6).round().max(0.0) as u64,
                 taxels: taxels
-                    .map(|(pressure_kpa, temperature_c)| TaxelReading {
-                        state: if pressure_kpa.is_some() {
-                            TaxelState::Good
-                        } else {
-                            TaxelState::Missing
-                        },
+                    .map(|((pressure_kpa, temperature_c), fault)| TaxelReading {
+                        state: state(*pressure_kpa, *fault),
                         read_us: arrived_us,
                         counts: None,
                         pressure_pa: pressure_kpa.map(|kpa| 1e3 * kpa),
@@ -139,6 +136,17 @@ impl LineSource {
                     .collect(),
             },
         }
+    }
+}
+
+/// Why a taxel has no pressure, if it has none: what the line says, if it says what is known.
+fn state(pressure_kpa: Option<f64>, fault: Option<u8>) -> TaxelState {
+    let known = fault
+        .and_then(TaxelState::from_code)
+        .filter(|state| *state != TaxelState::Good);
+    match pressure_kpa {
+        Some(_) => TaxelState::Good,
+        None => known.unwrap_or(TaxelState::Missing),
     }
 }
 
@@ -178,23 +186,7 @@ impl TactileSource for LineSource {
     }
 
     fn remarks(&self) -> Vec<String> {
-        let tally = self.tally();
-        let kinds = [
-            (tally.lost, "frames are missing"),
-            (tally.torn, "lines were torn"),
-            (tally.checksum, "lines had a wrong checksum"),
-            (tally.endless, "times nothing that was described came for long"),
-            (tally.doubled, "frames came twice"),
-            (tally.late, "frames came late, and were left out"),
-            (tally.restarts, "times the board started anew"),
-        ];
-        let some = kinds.into_iter().filter(|(n, _)| *n > 0);
-        let mut remarks: Vec<String> = some.map(|(n, what)| format!("{n} {what}")).collect();
-        let others = tally.comments + tally.text;
-        if tally.frames == 0 && others > 0 {
-            remarks.push(format!("{others} lines came, and none has readings as described"));
-        }
-        remarks
+        self.tally().remarks()
     }
 
     fn is_over(&self) -> bool {

@@ -1,5 +1,7 @@
 //! Elementary functions as arithmetic without branches: the compiler can use vectors for them, and they give the same bits on every machine.
 
+use super::plus_product::PlusProduct;
+
 /// A number that has a logarithm and an exponential.
 pub trait Elementary: Sized {
     /// Square root.
@@ -19,7 +21,7 @@ macro_rules! atanh_series {
         let mut term = $terms;
         while term > 0 {
             term -= 1;
-            sum = sum.mul_add($z, 1.0 / (2 * term + 1) as $type);
+            sum = (1.0 / (2 * term + 1) as $type).plus_product(sum, $z);
         }
         sum
     }};
@@ -31,7 +33,7 @@ macro_rules! exp_series {
         let mut sum: $type = 1.0;
         let mut term = $terms;
         while term > 0 {
-            sum = (sum * $x).mul_add(1.0 / term as $type, 1.0);
+            sum = <$type>::plus_product(1.0, sum * $x, 1.0 / term as $type);
             term -= 1;
         }
         sum
@@ -51,7 +53,7 @@ impl Elementary for f64 {
         let mantissa = Self::from_bits(self.to_bits().wrapping_sub((i64::from(exponent) << 52) as u64));
         let s = (mantissa - 1.0) / (mantissa + 1.0);
         let series = atanh_series!(Self, s * s, 11);
-        Self::from(exponent).mul_add(std::f64::consts::LN_2, 2.0 * s * series)
+        (2.0 * s * series).plus_product(Self::from(exponent), std::f64::consts::LN_2)
     }
 
     #[inline(always)]
@@ -61,7 +63,7 @@ impl Elementary for f64 {
         const LOWER: f64 = 1.908_214_929_270_587_7e-10;
         let x = self.clamp(-700.0, 700.0);
         let whole = (x * std::f64::consts::LOG2_E).round_ties_even();
-        let rest = (-whole).mul_add(LOWER, (-whole).mul_add(UPPER, x));
+        let rest = x.plus_product(-whole, UPPER).plus_product(-whole, LOWER);
         let power = Self::from_bits(((whole as i32 + 1023) as u64) << 52);
         exp_series!(Self, rest, 13) * power
     }
@@ -79,7 +81,7 @@ impl Elementary for f32 {
         let mantissa = Self::from_bits(self.to_bits().wrapping_sub((exponent << 23) as u32));
         let s = (mantissa - 1.0) / (mantissa + 1.0);
         let series = atanh_series!(Self, s * s, 5);
-        (exponent as Self).mul_add(std::f32::consts::LN_2, 2.0 * s * series)
+        (2.0 * s * series).plus_product(exponent as Self, std::f32::consts::LN_2)
     }
 
     #[inline(always)]
@@ -88,7 +90,7 @@ impl Elementary for f32 {
         const LOWER: f32 = -2.121_944_4e-4;
         let x = self.clamp(-80.0, 80.0);
         let whole = (x * std::f32::consts::LOG2_E).round_ties_even();
-        let rest = (-whole).mul_add(LOWER, (-whole).mul_add(UPPER, x));
+        let rest = x.plus_product(-whole, UPPER).plus_product(-whole, LOWER);
         let power = Self::from_bits(((whole as i32 + 127) as u32) << 23);
         exp_series!(Self, rest, 7) * power
     }

@@ -1,10 +1,12 @@
 //! Eight numbers side by side, for which the compiler uses the vectors of the processor.
 
 mod elementary;
+mod plus_product;
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use elementary::Elementary;
+pub use plus_product::PlusProduct;
 
 /// Numbers side by side.
 pub const LANES: usize = 8;
@@ -20,15 +22,13 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
     + Elementary
+    + PlusProduct
 {
     /// A relative difference below round-off.
     const ROUND_OFF: Self;
 
     /// The nearest number.
     fn from_f64(value: f64) -> Self;
-
-    /// `self + a b`, rounded once.
-    fn plus_product(self, a: Self, b: Self) -> Self;
 
     /// `x^(-1/3)` of a number above zero.
     fn inverse_cube_root(self) -> Self;
@@ -40,11 +40,6 @@ impl Real for f64 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
-    }
-
-    #[inline(always)]
-    fn plus_product(self, a: Self, b: Self) -> Self {
-        a.mul_add(b, self)
     }
 
     #[inline(always)]
@@ -65,11 +60,6 @@ impl Real for f32 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value as Self
-    }
-
-    #[inline(always)]
-    fn plus_product(self, a: Self, b: Self) -> Self {
-        a.mul_add(b, self)
     }
 
     #[inline(always)]
@@ -96,7 +86,7 @@ impl<T: Real> Wide<T> {
         Self([T::from_f64(value); LANES])
     }
 
-    /// `self + a b`, rounded once: the processor has one instruction for it.
+    /// `self + a b`, as [`PlusProduct`] has it.
     #[inline(always)]
     #[must_use]
     pub fn plus_product(mut self, a: Self, b: Self) -> Self {

@@ -1,13 +1,12 @@
 //! A motion, in one step or in parts.
 
-use std::time::Instant;
-
 use glam::DVec3;
 use twintac_shape::{Pose, SignedDistance};
 
 use super::drive::Drive;
 use crate::SolveError;
 use crate::body::SoftBody;
+use crate::clock::Instant;
 use crate::contact::{Contact, PassedThrough};
 use crate::frame::Frame;
 use crate::newton::{Equilibrium, Failure};

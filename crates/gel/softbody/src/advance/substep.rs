@@ -11,6 +11,9 @@ use crate::newton::{Equilibrium, Failure, Step, Unknowns};
 use crate::sensitivity;
 use crate::state::State;
 
+/// So often the points at which contact is evaluated are chosen anew within a step, at most.
+const MOST_LOOKS: u32 = 3;
+
 impl SoftBody {
     /// Solves for a part of a motion, from one fraction of it to another; on failure the state is as before.
     pub(super) fn substep(
@@ -57,11 +60,20 @@ impl SoftBody {
             drive.hold(self, part[1], x.displacements_mm);
         }
         let iterations_before = *iterations;
+        buffers.passed.clear();
         let mut solved = buffers.solve(self, &step, &mut x, iterations);
         if is_ahead && *iterations == iterations_before && matches!(solved, Err(Failure::Inverted)) {
             // Where the last motion would lead, a tetrahedron is inside out.
             x.displacements_mm.copy_from_slice(&buffers.old.displacements_mm);
             drive.hold(self, part[1], x.displacements_mm);
+            solved = buffers.solve(self, &step, &mut x, iterations);
+        }
+        // At the rims of a shape that went far lie other triangles by now than where the step began. Without another look, its force would go on to change
+        // while it is held.
+        for _ in 0..MOST_LOOKS {
+            if !solved.is_ok_and(|equilibrium| equilibrium.is_settled) || !self.look_again(&shapes, &mut x) {
+                break;
+            }
             solved = buffers.solve(self, &step, &mut x, iterations);
         }
         let solved = solved.and_then(|equilibrium| {
@@ -142,6 +154,16 @@ impl SoftBody {
                 friction.begin(shape, touches, self.boundary_mm(displacements_mm));
             }
         }
+    }
+
+    /// Chooses the points at which contact is evaluated anew; whether there are others now.
+    fn look_again(&self, shapes: &[RigidBody], x: &mut Unknowns) -> bool {
+        let displacements_mm: &[DVec3] = x.displacements_mm;
+        let at_mm = |node: u32| self.mesh.nodes_mm[node as usize] + displacements_mm[node as usize];
+        let contacts = shapes.iter().zip(x.contacts.iter_mut());
+        contacts.fold(false, |any, (shape, contact)| {
+            contact.look_again(shape, &self.boundary, &at_mm) || any
+        })
     }
 
     /// Refuses a solution in which the indenter and the body have passed through each other.

@@ -1,10 +1,11 @@
 //! Coulomb friction of a boundary's nodes on a rigid shape.
 //!
 //! A node in touch is connected to a point of the shape, its anchor, by a spring along the surface. The force of the spring is at most the
-//! coefficient times the normal force: it is elastic up to a slip of `μ f / k`, and drags the anchor along beyond that. With the normal forces of the
-//! last iterate ("lagged", as Li et al., Incremental Potential Contact, ACM Trans. Graph. 39, 2020) the spring has an energy and a symmetric
-//! tangent, and never gives back more energy than it took. The anchor of a spring that holds does not move, so a held press does not creep.
-//! The law is that of Simo and Laursen (Comput. Struct. 42, 1992).
+//! coefficient times the normal force, `μ f`: it grows from stiffness `k` to that limit over a slip of `2 μ f / k`, and drags the anchor along beyond
+//! that (Simo and Laursen, Comput. Struct. 42, 1992). It is `μ f (2t - t²)`, `t` the part of that slip: with a kink at the limit instead, Newton's method goes
+//! to and fro between nodes that hold and nodes that slip. With the normal forces of the last iterate ("lagged") the spring has an energy and a
+//! symmetric tangent, and never gives back more energy than it took; both are of Li et al. (Incremental Potential Contact, ACM Trans. Graph. 39, 2020).
+//! The anchor of a spring that holds does not move, so a held press does not creep.
 
 use glam::{DMat3, DVec3};
 
@@ -95,12 +96,13 @@ impl Friction {
                 && let Some(slip_mm) = grip.slip_mm(shape, at_mm)
             {
                 let length_mm = slip_mm.length();
-                let elastic_mm = grip.most_n / point.stiffness;
-                if length_mm <= elastic_mm {
-                    energy += 0.5 * point.stiffness * length_mm * length_mm;
-                    grip.force_n = -slip_mm * point.stiffness;
+                let elastic_mm = grip.elastic_mm(point.stiffness);
+                let part = length_mm / elastic_mm;
+                if part <= 1.0 {
+                    energy += grip.most_n * length_mm * part * (1.0 - part / 3.0);
+                    grip.force_n = -slip_mm * (grip.most_n / elastic_mm) * (2.0 - part);
                 } else {
-                    energy += grip.most_n * (length_mm - 0.5 * elastic_mm);
+                    energy += grip.most_n * (length_mm - elastic_mm / 3.0);
                     grip.force_n = -slip_mm * (grip.most_n / length_mm);
                 }
                 add(point, grip.force_n);
@@ -119,12 +121,13 @@ impl Friction {
     ) -> Option<DMat3> {
         let grip = &self.grips[index];
         let slip_mm = grip.slip_mm(shape, at_mm).filter(|_| grip.most_n > 0.0)?;
-        let length_mm = slip_mm.length();
+        let (length_mm, elastic_mm) = (slip_mm.length(), grip.elastic_mm(stiffness));
         let plane = DMat3::IDENTITY - outer(grip.normal, grip.normal);
-        Some(if length_mm * stiffness <= grip.most_n {
-            plane * stiffness
+        let along = slip_mm.normalize_or_zero();
+        let part = length_mm / elastic_mm;
+        Some(if part <= 1.0 {
+            (plane * (2.0 - part) - outer(along, along) * part) * (grip.most_n / elastic_mm)
         } else {
-            let along = slip_mm / length_mm;
             (plane - outer(along, along)) * (grip.most_n / length_mm)
         })
     }
@@ -145,7 +148,7 @@ impl Friction {
             let held_mm = grip
                 .slip_mm(shape, at_mm)
                 .unwrap_or(DVec3::ZERO)
-                .clamp_length_max(grip.most_n / point.stiffness);
+                .clamp_length_max(grip.elastic_mm(point.stiffness));
             grip.anchor_mm = Some(shape.gel_from_shape.inverse_transform_point(at_mm - held_mm));
         }
     }
@@ -161,5 +164,87 @@ impl Grip {
     fn slip_mm(&self, shape: &RigidBody, at_mm: DVec3) -> Option<DVec3> {
         let anchor_mm = shape.gel_from_shape.transform_point(self.anchor_mm?);
         Some((at_mm - anchor_mm).reject_from_normalized(self.normal))
+    }
+
+    /// Slip at which the spring's force reaches its limit, mm; `stiffness` is that without slip, N/mm.
+    fn elastic_mm(&self, stiffness: f64) -> f64 {
+        2.0 * self.most_n / stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test that cannot set itself up has failed
+    use twintac_shape::{Pose, Shape, Surfaces};
+
+    use super::*;
+
+    const STIFFNESS: f64 = 50.0;
+
+    /// One node that a ball at rest holds at the origin with at most 0.2 N.
+    fn held() -> Friction {
+        let grip = Grip {
+            anchor_mm: Some(DVec3::ZERO),
+            normal: DVec3::Z,
+            most_n: 0.2,
+            force_n: DVec3::ZERO,
+        };
+        Friction {
+            coefficient: 0.5,
+            grips: vec![grip],
+        }
+    }
+
+    fn on_ball<T>(make: impl FnOnce(&RigidBody) -> T) -> T {
+        let ball = Shape::Sphere { radius_mm: 5.0 };
+        let ball = ball.signed_distance_field(&Surfaces::default()).unwrap();
+        make(&RigidBody {
+            shape: &*ball,
+            gel_from_shape: Pose::IDENTITY,
+        })
+    }
+
+    fn energy_and_force(at_mm: DVec3) -> (f64, DVec3) {
+        let (mut friction, point) = (held(), ContactPoint::of_node(0, STIFFNESS));
+        let energy = on_ball(|ball| friction.pull(ball, std::iter::once((&point, at_mm)), |_, _| ()));
+        (energy, friction.force_n(0))
+    }
+
+    #[test]
+    fn force_and_stiffness_are_those_of_the_energy() {
+        let elastic_mm = held().grips[0].elastic_mm(STIFFNESS);
+        let step = 1e-7;
+        for slip_mm in [0.0, 0.3, 0.999, 1.001, 3.0].map(|part| part * elastic_mm) {
+            let at_mm = DVec3::new(0.6, -0.8, 0.0) * slip_mm + 0.01 * DVec3::Z;
+            let stiffness = on_ball(|ball| held().stiffness(0, ball, at_mm, STIFFNESS)).unwrap();
+            let force_n = energy_and_force(at_mm).1;
+            assert!(force_n.length() <= 0.2 * (1.0 + 1e-12));
+            for axis in DVec3::AXES {
+                let [before, after] = [-step, step].map(|by| energy_and_force(at_mm + by * axis));
+                let slope = (after.0 - before.0) / (2.0 * step);
+                assert!(
+                    (slope + force_n.dot(axis)).abs() < 1e-7,
+                    "{slip_mm} mm along {axis}"
+                );
+                let change = (before.1 - after.1) / (2.0 * step);
+                let off = (change - stiffness * axis).length();
+                assert!(off < 2e-3 * STIFFNESS, "{slip_mm} mm along {axis}: {off} N/mm");
+            }
+        }
+    }
+
+    #[test]
+    fn the_limit_is_reached_without_a_kink() {
+        let elastic_mm = held().grips[0].elastic_mm(STIFFNESS);
+        let along = |slip_mm: f64| {
+            let at_mm = slip_mm * DVec3::X;
+            on_ball(|ball| held().stiffness(0, ball, at_mm, STIFFNESS))
+                .unwrap()
+                .x_axis
+                .x
+        };
+        assert_eq!(along(0.0), STIFFNESS);
+        assert!(along(0.9999 * elastic_mm) < 1e-3 * STIFFNESS);
+        assert_eq!(along(1.0001 * elastic_mm), 0.0);
     }
 }

@@ -208,6 +208,25 @@ impl Contact {
         self.touches.iter_mut().for_each(|touch| touch.measured_mm = 0.0);
     }
 
+    /// Chooses the quadrature points anew where the body is by now. True if they are in other triangles than before; else those of before stay.
+    pub(crate) fn look_again(
+        &mut self,
+        shape: &RigidBody,
+        boundary: &Boundary,
+        node_mm: &dyn Fn(u32) -> DVec3,
+    ) -> bool {
+        let before = std::mem::take(&mut self.inside);
+        self.look_inside(shape, boundary, node_mm);
+        let triangles = |inside: &[Inside]| -> Vec<[u32; 3]> {
+            inside.iter().map(|inside| inside.point.corners()).collect()
+        };
+        let is_other = triangles(&before) != triangles(&self.inside);
+        if !is_other {
+            self.inside = before;
+        }
+        is_other
+    }
+
     /// Chooses the quadrature points of a step: inside the triangles where the shape's normal turns sharply.
     pub(crate) fn look_inside(
         &mut self,

@@ -2,6 +2,8 @@
 
 use glam::{DVec3, Mat3, Vec3};
 
+use crate::wide::PlusProduct;
+
 /// A vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(16))]
@@ -71,7 +73,7 @@ impl Block {
         }
         for k in 1..3 {
             for i in 0..4 {
-                out[i] = rows[k][i].mul_add(x.0[k], out[i]);
+                out[i] = out[i].plus_product(rows[k][i], x.0[k]);
             }
         }
         Vector(out)
@@ -120,7 +122,7 @@ impl Sum {
     pub(crate) fn add(&mut self, block: &Block, x: &Vector) {
         for j in 0..3 {
             for i in 0..4 {
-                self.0[j][i] = block.0[j][i].mul_add(x.0[j], self.0[j][i]);
+                self.0[j][i] = self.0[j][i].plus_product(block.0[j][i], x.0[j]);
             }
         }
     }
@@ -129,7 +131,7 @@ impl Sum {
     #[inline(always)]
     pub(crate) fn add_scaled(&mut self, v: &Vector, a: f32) {
         for i in 0..4 {
-            self.0[0][i] = v.0[i].mul_add(a, self.0[0][i]);
+            self.0[0][i] = self.0[0][i].plus_product(v.0[i], a);
         }
     }
 

@@ -10,6 +10,7 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::NullaryFnOnce;
 
 use crate::parallel::{dispatch, join_halves};
+use crate::wide::PlusProduct;
 
 /// Entries that are worked on at once. Columns are padded with zeros to a multiple.
 const LANES: usize = 16;
@@ -275,7 +276,7 @@ impl Solve<'_> {
             let (below, _) = below.as_chunks_mut::<LANES>();
             let (here, _) = here.as_chunks::<LANES>();
             for (below, here) in below.iter_mut().zip(here) {
-                *below = std::array::from_fn(|lane| f32::from(here[lane]).mul_add(x, below[lane]));
+                *below = std::array::from_fn(|lane| below[lane].plus_product(f32::from(here[lane]), x));
             }
         }
         own.copy_from_slice(&local[..n_columns]);
@@ -330,12 +331,13 @@ impl Solve<'_> {
             let n_here = Supernode::padded(n_local - 1 - index);
             let here = &entries[end - n_here..end];
             end -= n_here;
-            let mut sums = [0.0; LANES];
+            let mut sums = [0.0_f32; LANES];
             let below = &local[index + 1..][..n_here];
             let (below, _) = below.as_chunks::<LANES>();
             let (here, _) = here.as_chunks::<LANES>();
             for (below, here) in below.iter().zip(here) {
-                sums = std::array::from_fn(|lane| f32::from(here[lane]).mul_add(below[lane], sums[lane]));
+                sums =
+                    std::array::from_fn(|lane| sums[lane].plus_product(f32::from(here[lane]), below[lane]));
             }
             let x = own[index] * inverse[column] - scales[column] * total(&sums);
             own[index] = x;

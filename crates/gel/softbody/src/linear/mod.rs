@@ -6,12 +6,18 @@
 pub(crate) mod block;
 pub(crate) mod coarse;
 pub(crate) mod cycle;
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) mod direct;
 mod elimination_order;
 mod factors;
 pub(crate) mod krylov;
 pub(crate) mod matrix;
+#[cfg(target_arch = "wasm32")]
+pub(crate) mod no_direct;
 pub(crate) mod numbering;
 mod product;
 mod sparsity;
 mod sweep;
+
+#[cfg(target_arch = "wasm32")]
+pub(crate) use no_direct as direct;

@@ -1,12 +1,11 @@
 //! The tangent: the matrix of the fine system, and the factors of the coarse one.
 
-use std::time::Instant;
-
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::step::{Failure, Step, Unknowns};
 use super::workspace::{Buffers, Workspace};
 use crate::body::SoftBody;
+use crate::clock::Instant;
 use crate::contact::ContactPoint;
 use crate::element::{CoarseSink, Response, Sink};
 use crate::linear::block::{Block, Vector};

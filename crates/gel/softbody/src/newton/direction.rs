@@ -1,10 +1,9 @@
 //! The direction of Newton's method.
 
-use std::time::Instant;
-
 use super::step::{Failure, Step, Unknowns};
 use super::workspace::Buffers;
 use crate::body::SoftBody;
+use crate::clock::Instant;
 use crate::linear::block::Vector;
 use crate::linear::cycle::TwoLevel;
 use crate::linear::direct::DirectSystem;

@@ -1,12 +1,11 @@
 //! The energy of a step, and its gradient.
 
-use std::time::Instant;
-
 use glam::DVec3;
 
 use super::step::{Evaluation, Step, Unknowns};
 use super::workspace::Buffers;
 use crate::body::SoftBody;
+use crate::clock::Instant;
 use crate::parallel::join_halves;
 
 impl Buffers {

@@ -1,10 +1,9 @@
 //! The iteration: directions and steps along them, until the forces are balanced and no node is too deep inside a shape.
 
-use std::time::Instant;
-
 use super::step::{Equilibrium, Failure, Passed, Step, Unknowns};
 use super::workspace::Buffers;
 use crate::body::SoftBody;
+use crate::clock::Instant;
 use crate::contact::Contact;
 
 /// Accuracy of a direction: iterations end when one adds less than the square of this to the decrease of energy.
@@ -33,7 +32,6 @@ impl Buffers {
         iterations: &mut u32,
     ) -> Result<Equilibrium, Failure> {
         self.damping = 0.0;
-        self.passed.clear();
         let settings = &body.settings;
         let mut now = self.evaluate(body, step, x).ok_or(Failure::Inverted)?;
         let mut has_failed = false;

@@ -1,11 +1,10 @@
 //! The scratch memory of Newton's method.
 
-use std::time::Instant;
-
 use glam::DVec3;
 
 use super::step::{Beginning, Passed, Unknowns};
 use crate::body::SoftBody;
+use crate::clock::Instant;
 use crate::element::{CoarseTangent, Forces, Volumes};
 use crate::frame::Cost;
 use crate::linear::coarse::{Factors, Tangent};

@@ -14,9 +14,9 @@ use core::task::{Context, Poll, Waker};
 
 use embedded_hal::i2c::{ErrorType, Operation};
 
-/// A blocking bus or delay, as one whose futures are ready at once.
-#[derive(Debug)]
-struct AtOnce<T>(T);
+/// A blocking bus or delay, as one whose futures are ready at once: for what is written over [`embedded_hal_async`].
+#[derive(Clone, Copy, Debug)]
+pub struct AtOnce<T>(pub T);
 
 impl<T: ErrorType> ErrorType for AtOnce<T> {
     type Error = T::Error;
@@ -50,8 +50,8 @@ impl<T: embedded_hal::delay::DelayNs> embedded_hal_async::delay::DelayNs for AtO
     }
 }
 
-/// The outcome of a future that awaits nothing but [`AtOnce`], and so is never pending.
-fn now<F: Future>(future: F) -> F::Output {
+/// The outcome of a future that awaits nothing but [`AtOnce`], and so is never pending. Of another one it polls without rest.
+pub fn now<F: Future>(future: F) -> F::Output {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());
     loop {

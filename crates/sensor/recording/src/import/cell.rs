@@ -39,8 +39,11 @@ pub(crate) struct Cells<'a> {
     missing: Vec<&'a str>,
     /// Words for missing readings that are numbers, such as -999.
     missing_numbers: Vec<f64>,
-    labels: HashMap<String, u32>,
 }
+
+/// The labels of a column, each a number.
+#[derive(Default)]
+pub(crate) struct Labels(HashMap<String, u32>);
 
 /// Why a cell can't be read, after its name: "is `x`, expected a number".
 pub(crate) type Problem = String;
@@ -53,12 +56,11 @@ impl<'a> Cells<'a> {
             has_decimal_comma: decimal == ',',
             missing_numbers: missing.iter().filter_map(|word| word.parse().ok()).collect(),
             missing,
-            labels: HashMap::new(),
         }
     }
 
-    /// The number of a cell, NaN where it is missing.
-    pub(crate) fn read(&mut self, cell: &[u8], kind: Kind) -> Result<f64, Problem> {
+    /// The number of a cell, NaN where it is missing; `labels` are those of its column.
+    pub(crate) fn read(&self, cell: &[u8], kind: Kind, labels: &mut Labels) -> Result<f64, Problem> {
         let text = std::str::from_utf8(cell).unwrap_or("\u{fffd}");
         match kind {
             Kind::Number | Kind::Reading => self.number(text),
@@ -67,7 +69,7 @@ impl<'a> Cells<'a> {
                 clock_s(text).ok_or_else(|| format!("{}, expected a time, such as 13:05:59.250", is(text)))
             }
             Kind::Label if text.is_empty() => Ok(f64::NAN),
-            Kind::Label => Ok(f64::from(self.label(text))),
+            Kind::Label => Ok(f64::from(labels.number(text))),
         }
     }
 
@@ -103,14 +105,16 @@ impl<'a> Cells<'a> {
     fn is_missing(&self, text: &str) -> bool {
         self.missing.contains(&text) || MISSING.iter().any(|word| text.eq_ignore_ascii_case(word))
     }
+}
 
+impl Labels {
     /// The number of a text. Texts of the same number are the same label.
-    fn label(&mut self, text: &str) -> u32 {
+    fn number(&mut self, text: &str) -> u32 {
         let name = text
             .parse::<f64>()
             .map_or_else(|_| text.to_owned(), |number| number.to_string());
-        let next = self.labels.len() as u32;
-        *self.labels.entry(name).or_insert(next)
+        let next = self.0.len() as u32;
+        *self.0.entry(name).or_insert(next)
     }
 }
 

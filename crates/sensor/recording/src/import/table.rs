@@ -3,11 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::cell::{Cells, Kind, cells};
+use csv::ByteRecord;
+use rayon::prelude::*;
+
+use super::cell::{Cells, Kind, Labels, Problem, cells};
 use super::description::{Description, TimeColumn};
 use super::header;
 use super::text::Text;
 use crate::RecordingError;
+
+/// Rows that are split into cells before any is read: the cells of different columns are then read at once.
+const BATCH: usize = 4096;
 
 /// The columns that were asked for, each read as what it was asked for as.
 pub(crate) struct Table {
@@ -35,6 +41,7 @@ struct Wanted<'a> {
     kind: Kind,
     place: usize,
     numbers: Vec<f64>,
+    labels: Labels,
 }
 
 /// The rows that were read so far.
@@ -43,6 +50,13 @@ struct Rows<'a> {
     lines: Vec<u64>,
     columns: Vec<Wanted<'a>>,
     cells: Cells<'a>,
+}
+
+/// Rows that were split into cells. Records that were read once lend their memory to later ones.
+#[derive(Default)]
+struct Batch {
+    lines: Vec<u64>,
+    records: Vec<ByteRecord>,
 }
 
 impl Table {
@@ -109,8 +123,8 @@ impl Table {
             .flexible(true)
             .from_reader(text.rest());
         let line_at = |at: Option<&csv::Position>| text.skipped_lines + at.map_or(0, csv::Position::line);
-        let mut record = csv::ByteRecord::new();
-        let mut next = |record: &mut csv::ByteRecord| {
+        let mut record = ByteRecord::new();
+        let mut next = |record: &mut ByteRecord| {
             let found = reader.read_byte_record(record);
             found.map_err(|error| line_error(&file, line_at(error.position()), error.to_string()))
         };
@@ -131,6 +145,7 @@ impl Table {
                 kind,
                 place: header::place(&file, header_line, &header, name, remedy)?,
                 numbers: Vec::new(),
+                labels: Labels::default(),
             })
         });
         let mut rows = Rows {
@@ -139,24 +154,38 @@ impl Table {
             columns: columns.collect::<Result<_, RecordingError>>()?,
             cells: Cells::new(description.decimal, &description.missing),
         };
+        let mut batch = Batch::default();
         // A line of another number of cells is an error, unless it turns out to be the last one and has no end.
         let mut cut = None;
-        while next(&mut record)? {
-            if let Some(error) = cut.take() {
-                return Err(error);
+        let wrong = loop {
+            let record = batch.next();
+            match next(record) {
+                Ok(true) => (),
+                Ok(false) => break None,
+                Err(error) => break Some(error),
+            }
+            if cut.is_some() {
+                break cut.take();
             }
             let line = line_at(record.position());
-            let mut row: Vec<&[u8]> = cells(&record, blanks_separate).collect();
-            while row.len() > header.len() && row.last().is_some_and(|cell| cell.is_empty()) {
-                row.pop();
+            if blanks_separate {
+                *record = cells(record, true).collect();
             }
-            if row.len() == header.len() {
-                rows.push(line, &row)?;
-            } else if row.iter().any(|cell| !cell.is_empty()) {
-                let (expected, found) = (header.len(), row.len());
-                let problem = format!("expected {expected} cells, found {found}");
+            let n_cells = n_cells(record, header.len());
+            if n_cells == header.len() {
+                batch.keep(line);
+                if batch.lines.len() == BATCH {
+                    rows.take(&mut batch)?;
+                }
+            } else if record.iter().any(|cell| !cell.trim_ascii().is_empty()) {
+                let problem = format!("expected {} cells, found {n_cells}", header.len());
                 cut = Some(line_error(&file, line, problem));
             }
+        };
+        // What is wrong in a row comes before what is wrong further down.
+        rows.take(&mut batch)?;
+        if let Some(error) = wrong {
+            return Err(error);
         }
         let mut notes = text.notes.clone();
         match cut {
@@ -211,29 +240,76 @@ impl Table {
     }
 }
 
-impl Rows<'_> {
-    /// Takes the cells of a row.
-    fn push(&mut self, line: u64, row: &[&[u8]]) -> Result<(), RecordingError> {
-        for column in &mut self.columns {
-            let error = |problem: String| RecordingError::Cell {
-                file: self.file.to_owned(),
-                line,
-                column: column.name.to_owned(),
-                problem,
-            };
-            let cell = row[column.place];
-            let number = self.cells.read(cell, column.kind).map_err(|problem| {
-                error(if cell == column.name.as_bytes() {
-                    "is there again: the log was started again in the same file; make it two files".to_owned()
-                } else {
-                    problem
-                })
-            })?;
-            column.numbers.push(number);
+impl Batch {
+    /// A record to be filled.
+    fn next(&mut self) -> &mut ByteRecord {
+        let place = self.lines.len();
+        if place == self.records.len() {
+            self.records.push(ByteRecord::new());
         }
+        &mut self.records[place]
+    }
+
+    /// Keeps the record that was filled.
+    fn keep(&mut self, line: u64) {
         self.lines.push(line);
+    }
+
+    fn records(&self) -> &[ByteRecord] {
+        &self.records[..self.lines.len()]
+    }
+}
+
+impl Rows<'_> {
+    /// Takes the cells of all rows of a batch.
+    fn take(&mut self, batch: &mut Batch) -> Result<(), RecordingError> {
+        let (file, cells) = (self.file, &self.cells);
+        let columns = self.columns.par_iter_mut();
+        let wrong = columns.filter_map(|column| {
+            let (row, problem) = column.take(batch.records(), cells).err()?;
+            Some((row, column.name, problem))
+        });
+        // The first of a file is said, and in a row the first in order of columns.
+        let wrong = wrong.collect::<Vec<_>>().into_iter().min_by_key(|(row, ..)| *row);
+        if let Some((row, name, problem)) = wrong {
+            return Err(RecordingError::Cell {
+                file: file.to_owned(),
+                line: batch.lines[row],
+                column: name.to_owned(),
+                problem,
+            });
+        }
+        self.lines.append(&mut batch.lines);
         Ok(())
     }
+}
+
+impl Wanted<'_> {
+    /// Takes its cells of rows, or says in which one it can't, and why.
+    fn take(&mut self, records: &[ByteRecord], cells: &Cells<'_>) -> Result<(), (usize, Problem)> {
+        self.numbers.reserve(records.len());
+        for (row, record) in records.iter().enumerate() {
+            let cell = record[self.place].trim_ascii();
+            let number = cells.read(cell, self.kind, &mut self.labels).map_err(|problem| {
+                let is_header = cell == self.name.as_bytes();
+                let started_again = || {
+                    "is there again: the log was started again in the same file; make it two files".to_owned()
+                };
+                (row, if is_header { started_again() } else { problem })
+            })?;
+            self.numbers.push(number);
+        }
+        Ok(())
+    }
+}
+
+/// The cells of a row of a table of so many columns: empty ones at the end that are too many do not count.
+fn n_cells(record: &ByteRecord, n_columns: usize) -> usize {
+    let mut n = record.len();
+    while n > n_columns && record[n - 1].trim_ascii().is_empty() {
+        n -= 1;
+    }
+    n
 }
 
 /// Keeps the rows that are to be kept.

@@ -1,7 +1,7 @@
 //! How the lines of a file are cut into cells, told from what most of them look like.
 
 use super::column::Column;
-use crate::import::cell::{Cells, Kind, cells};
+use crate::import::cell::{Cells, Kind, Labels, cells};
 
 /// Lines that are looked at.
 const LINES: usize = 5000;
@@ -94,7 +94,10 @@ impl Layout {
 
     /// The columns, and the numbers of the first rows.
     pub(super) fn columns(&self, text: &[u8]) -> Vec<Column> {
-        let mut reading = Cells::new(if self.has_decimal_comma { ',' } else { '.' }, &[]);
+        let (reading, mut labels) = (
+            Cells::new(if self.has_decimal_comma { ',' } else { '.' }, &[]),
+            Labels::default(),
+        );
         let names = self
             .header
             .clone()
@@ -109,9 +112,11 @@ impl Layout {
                 continue;
             }
             for (column, cell) in columns.iter_mut().zip(&row) {
-                match reading.read(cell.as_bytes(), Kind::Reading) {
+                match reading.read(cell.as_bytes(), Kind::Reading, &mut labels) {
                     Ok(number) => column.numbers.push(number),
-                    Err(_) if reading.read(cell.as_bytes(), Kind::Clock).is_ok() => column.is_clock = true,
+                    Err(_) if reading.read(cell.as_bytes(), Kind::Clock, &mut labels).is_ok() => {
+                        column.is_clock = true
+                    }
                     Err(_) => column.is_text = true,
                 }
             }

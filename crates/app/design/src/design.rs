@@ -1,0 +1,113 @@
+//! Designs with what they do, as tables.
+
+use serde::Serialize;
+use twintac_work::WorkError;
+
+use crate::press::Outcome;
+use crate::{Figure, Figures, Measure, Wishes};
+
+/// One design.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Design {
+    /// Its number, from 1.
+    pub number: usize,
+    /// The values of the variables.
+    pub values: Vec<f64>,
+    /// What it does.
+    #[serde(flatten)]
+    pub(crate) outcome: Outcome,
+}
+
+impl Design {
+    /// What it does; `None` where it cannot be judged.
+    #[must_use]
+    pub fn figures(&self) -> Option<&Figures> {
+        match &self.outcome {
+            Outcome::Figures(figures) => Some(figures),
+            Outcome::Refused(_) => None,
+        }
+    }
+
+    /// Why it cannot be judged; `None` where it can.
+    #[must_use]
+    pub fn refused(&self) -> Option<&str> {
+        match &self.outcome {
+            Outcome::Figures(_) => None,
+            Outcome::Refused(why) => Some(why),
+        }
+    }
+}
+
+/// All designs of a search.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Designs {
+    /// The sensor that was varied.
+    pub sensor: String,
+    /// Where the figures come from: `simulated`.
+    pub provenance: &'static str,
+    /// How they were measured.
+    pub measure: Measure,
+    /// Standard deviation of a reading that was taken, kPa.
+    pub noise_kpa: f64,
+    /// What was varied.
+    pub fields: Vec<String>,
+    /// The designs in order of their numbers.
+    pub designs: Vec<Design>,
+}
+
+impl Designs {
+    /// The designs that can be judged.
+    pub fn judged(&self) -> impl Iterator<Item = (&Design, &Figures)> {
+        self.designs
+            .iter()
+            .filter_map(|design| Some((design, design.figures()?)))
+    }
+
+    /// Numbers of the designs that no other beats in all goals.
+    #[must_use]
+    pub fn front(&self, wishes: &Wishes) -> Vec<usize> {
+        let (designs, figures): (Vec<&Design>, Vec<&Figures>) = self.judged().unzip();
+        wishes
+            .front(&figures)
+            .into_iter()
+            .map(|index| designs[index].number)
+            .collect()
+    }
+
+    /// The number of the design that is best of those with all that is needed: the one whose worst goal is best, each goal counted from 0, the best of these designs, to 1, the worst.
+    #[must_use]
+    pub fn best(&self, wishes: &Wishes) -> Option<usize> {
+        let fit = self.judged().filter(|(_, figures)| wishes.are_met(figures));
+        let (designs, figures): (Vec<&Design>, Vec<&Figures>) = fit.unzip();
+        wishes.best(&figures).map(|index| designs[index].number)
+    }
+
+    /// The table of all designs, a row each.
+    pub(crate) fn csv(&self, wishes: &Wishes) -> Result<Vec<u8>, WorkError> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let wrong = |found: csv::Error| WorkError::Input(format!("the table of designs: {found}"));
+        let names = ["design"].into_iter();
+        let names = names.chain(self.fields.iter().map(String::as_str));
+        let names = names.chain(Figure::ALL.map(Figure::name));
+        writer
+            .write_record(names.chain(["depth_mm", "range_end", "is_on_front", "provenance", "refused"]))
+            .map_err(wrong)?;
+        let front = self.front(wishes);
+        for design in &self.designs {
+            let figures = design.figures();
+            let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+            let mut row = vec![design.number.to_string()];
+            row.extend(design.values.iter().map(f64::to_string));
+            row.extend(Figure::ALL.map(|figure| number(figures.and_then(|figures| figure.of(figures)))));
+            row.push(number(figures.map(|figures| figures.depth_mm)));
+            row.push(figures.map_or(String::new(), |figures| figures.range_end.to_string()));
+            row.push(front.contains(&design.number).to_string());
+            row.push(self.provenance.to_owned());
+            row.push(design.refused().unwrap_or_default().to_owned());
+            writer.write_record(row).map_err(wrong)?;
+        }
+        writer
+            .into_inner()
+            .map_err(|found| WorkError::Input(format!("the table of designs: {}", found.error())))
+    }
+}

@@ -1,0 +1,13 @@
+//! Answers requests, one JSON text a line, with one JSON text a line: what the WebAssembly module answers is compared with this.
+
+use std::io::{BufRead, Write};
+
+use twintac_engine::Engine;
+
+fn main() -> std::io::Result<()> {
+    let mut engine = Engine::default();
+    for request in std::io::stdin().lock().lines() {
+        writeln!(std::io::stdout(), "{}", engine.answer(&request?, &[]))?;
+    }
+    Ok(())
+}

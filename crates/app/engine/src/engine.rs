@@ -1,0 +1,158 @@
+//! What answers requests.
+
+use std::sync::Arc;
+
+use twintac_line::Description;
+use twintac_sensor::{IndenterFile, Sensor};
+
+use crate::arrays::{Array, Arrays};
+use crate::desk::Desk;
+use crate::error::EngineError;
+use crate::files::Files;
+use crate::outline::outline;
+use crate::press::Press;
+use crate::request::{Offer, Refused, Reply, Request};
+use crate::sensor_reply::SensorReply;
+
+/// A sensor's gel, and what a page has asked of it so far.
+#[derive(Default)]
+pub struct Engine {
+    files: Files,
+    sensor: Option<Arc<Sensor>>,
+    press: Option<Press>,
+    offer: Offer,
+    desk: Option<Desk>,
+    arrays: Arrays,
+}
+
+impl Engine {
+    /// Answers a request, a JSON text, with a JSON text. `bytes` is the file that a request keeps, or what came over a line. Where something is wrong, the answer is
+    /// `{"error": "…"}`, and the engine is as it was.
+    pub fn answer(&mut self, request: &str, bytes: &[u8]) -> String {
+        let answered = self
+            .reply(request, bytes)
+            .and_then(|reply| Ok(serde_json::to_string(&reply)?));
+        answered.unwrap_or_else(|error| {
+            let error = error.to_string();
+            serde_json::to_string(&Refused { error }).expect("a text can be written as JSON")
+        })
+    }
+
+    /// Says what the program offers that the engine is part of. Where that is a sensor on the desk, its frames are handed over from now on.
+    pub fn set_offer(&mut self, offer: Offer, provenance: &str) {
+        self.desk = offer.source.as_ref().map(|source| Desk::new(source, provenance));
+        if let (Some(desk), Some(sensor)) = (&mut self.desk, &self.sensor) {
+            desk.set_sensor(sensor);
+        }
+        self.offer = offer;
+    }
+
+    /// Keeps a file that descriptions name.
+    pub fn keep(&mut self, name: &str, bytes: &[u8]) {
+        self.files.keep(name, bytes);
+    }
+
+    /// Hands over a frame of the sensor that is offered: absolute pressures of its taxels, kPa, none of one without a reading. Nothing comes of it while a
+    /// line that is listened to has taken its place.
+    pub fn take_frame(&mut self, pressures_kpa: Vec<Option<f64>>) {
+        if let Some(desk) = self.offered() {
+            desk.take_frame(pressures_kpa);
+        }
+    }
+
+    /// Hands over what is odd about the frames of the sensor that is offered, a sentence each.
+    pub fn set_remarks(&mut self, remarks: Vec<String>) {
+        if let Some(desk) = self.offered() {
+            desk.set_remarks(remarks);
+        }
+    }
+
+    fn offered(&mut self) -> Option<&mut Desk> {
+        self.desk.as_mut().filter(|desk| !desk.has_line())
+    }
+
+    /// What there is to draw after the last request.
+    #[must_use]
+    pub fn arrays(&self) -> &Arrays {
+        &self.arrays
+    }
+
+    /// The arrays that requests have changed since this was last asked: what has to be sent where memory is not shared.
+    pub fn take_new(&mut self) -> impl Iterator<Item = Array> {
+        self.arrays.take_new()
+    }
+
+    fn reply(&mut self, request: &str, bytes: &[u8]) -> Result<Reply, EngineError> {
+        match serde_json::from_str(request)? {
+            Request::Keep { name } => {
+                self.files.keep(&name, bytes);
+                Ok(Reply::Done {})
+            }
+            Request::Open { file, text } => {
+                let sensor = Sensor::parse(&file, &text, &|path| self.files.load(path))?;
+                self.press = None;
+                Ok(self.has_sensor(sensor))
+            }
+            Request::Add { file, text } => {
+                let indenter = IndenterFile::parse(&file, &text, &|path| self.files.load(path))?;
+                let sensor = indenter.added_to(self.sensor()?)?;
+                Ok(self.has_sensor(sensor))
+            }
+            Request::Outline { indenter } => {
+                let sensor = self.sensor()?;
+                let gel = twintac_simulate::Gel::new(Arc::clone(sensor), Default::default());
+                let shape = gel.shape(&indenter)?.signed_distance_field(&sensor.surfaces)?;
+                outline(shape.as_ref(), &mut self.arrays);
+                Ok(Reply::Done {})
+            }
+            Request::Prepare(asked) => {
+                let press = Press::new(self.sensor()?, &asked)?;
+                let prepared = press.show_mesh(&mut self.arrays);
+                self.press = Some(press);
+                Ok(Reply::Prepared(prepared))
+            }
+            Request::Step {
+                since_s,
+                gel_from_indenter,
+            } => {
+                let press = self.press.as_mut().ok_or(EngineError::NoPress)?;
+                let frame = press.step(since_s, &gel_from_indenter, &mut self.arrays)?;
+                Ok(Reply::Frame(frame))
+            }
+            Request::Rest {} => {
+                let press = self.press.as_mut().ok_or(EngineError::NoPress)?;
+                press.rest(&mut self.arrays);
+                Ok(Reply::Done {})
+            }
+            Request::Offer {} => Ok(Reply::Offer(self.offer.clone())),
+            Request::Listen { file, text } => {
+                let description = Description::parse(&file, &text)?;
+                self.desk = Some(Desk::on_line(&description, self.sensor()?)?);
+                Ok(Reply::Line(description.serial))
+            }
+            Request::Hear {} => {
+                let sensor = self.sensor.as_ref().ok_or(EngineError::NoSensor)?;
+                let desk = self.desk.as_mut().ok_or(EngineError::NoDesk)?;
+                desk.take_bytes(bytes);
+                Ok(Reply::Desk(desk.show(sensor, &mut self.arrays)?))
+            }
+            Request::Zero {} => {
+                self.desk.as_mut().ok_or(EngineError::NoDesk)?.take_zero();
+                Ok(Reply::Done {})
+            }
+        }
+    }
+
+    fn sensor(&self) -> Result<&Arc<Sensor>, EngineError> {
+        self.sensor.as_ref().ok_or(EngineError::NoSensor)
+    }
+
+    fn has_sensor(&mut self, sensor: Sensor) -> Reply {
+        let reply = SensorReply::of(&sensor);
+        if let Some(desk) = &mut self.desk {
+            desk.set_sensor(&sensor);
+        }
+        self.sensor = Some(Arc::new(sensor));
+        Reply::Sensor(Box::new(reply))
+    }
+}

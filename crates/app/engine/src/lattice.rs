@@ -1,0 +1,24 @@
+//! Places all over a gel: a mesh that is fine at each of them is fine wherever a hand goes.
+
+use glam::DVec2;
+use twintac_sensor::Sensor;
+
+/// Distance between places over the gel's height: the fine parts of a mesh then run into each other.
+const APART: f64 = 0.6;
+
+/// Most places along an axis.
+const MOST: f64 = 12.0;
+
+/// Places over the gel, its middle first, mm.
+pub(crate) fn places_mm(sensor: &Sensor) -> Vec<DVec2> {
+    let (solid, surfaces) = (&sensor.gel.solid, &sensor.surfaces);
+    let (low, high) = solid.bounds_mm(surfaces);
+    let (middle, size) = (0.5 * (low + high).truncate(), (high - low).truncate());
+    let counts = (size / (APART * high.z))
+        .ceil()
+        .clamp(DVec2::ONE, DVec2::splat(MOST));
+    let steps = |count: f64| (0..count as u32).map(move |i| (f64::from(i) + 0.5) / count - 0.5);
+    let all = steps(counts.x).flat_map(|x| steps(counts.y).map(move |y| middle + size * DVec2::new(x, y)));
+    let covered = |place: &DVec2| solid.top_height_mm(place.x, place.y, surfaces).is_some();
+    std::iter::once(middle).chain(all.filter(covered)).collect()
+}

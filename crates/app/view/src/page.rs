@@ -1,0 +1,14 @@
+//! The page.
+
+/// The page that this library was built with: the file that `TWINTAC_PAGE` named then, if it named one.
+pub const PAGE: Option<&[u8]> = page();
+
+#[cfg(has_page)]
+const fn page() -> Option<&'static [u8]> {
+    Some(include_bytes!(env!("TWINTAC_PAGE")))
+}
+
+#[cfg(not(has_page))]
+const fn page() -> Option<&'static [u8]> {
+    None
+}

@@ -1,0 +1,67 @@
+//! What went wrong with a whole round, as a number on the line.
+
+use core::fmt;
+
+use phystac::Error;
+
+/// What went wrong with a whole round. Numbers stand on lines and stay as they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Trouble {
+    /// Nothing.
+    #[default]
+    None = 0,
+    /// The bus failed, and works again.
+    Bus = 1,
+    /// No transaction went through any more; the bus was to be freed since.
+    BusHung = 2,
+    /// A switch does not acknowledge.
+    SwitchMissing = 3,
+    /// A switch lost its mask: it lost power or was reset.
+    SwitchReset = 4,
+    /// Something on the bus itself answers where barometers behind switches do.
+    AddressConflict = 5,
+    /// No barometer took the trigger.
+    NotTriggered = 6,
+    /// Something else.
+    Other = 7,
+}
+
+impl Trouble {
+    /// Whether a reset of the switches may help.
+    pub(crate) const fn needs_rescue(self) -> bool {
+        matches!(
+            self,
+            Self::Bus | Self::BusHung | Self::SwitchMissing | Self::SwitchReset
+        )
+    }
+}
+
+impl<E> From<&Error<E>> for Trouble {
+    fn from(error: &Error<E>) -> Self {
+        match error {
+            Error::Bus(_) => Self::Bus,
+            Error::BusHung { .. } => Self::BusHung,
+            Error::SwitchMissing => Self::SwitchMissing,
+            Error::SwitchReset { .. } => Self::SwitchReset,
+            Error::AddressConflict { .. } => Self::AddressConflict,
+            Error::NotTriggered => Self::NotTriggered,
+            _ => Self::Other,
+        }
+    }
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "the bus works",
+            Self::Bus => "the bus failed",
+            Self::BusHung => "the bus hangs",
+            Self::SwitchMissing => "the switch does not acknowledge",
+            Self::SwitchReset => "the switch lost its mask",
+            Self::AddressConflict => "something answers at the barometers' address with all channels closed",
+            Self::NotTriggered => "no barometer takes the trigger",
+            Self::Other => "a round failed",
+        })
+    }
+}

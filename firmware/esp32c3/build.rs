@@ -1,0 +1,6 @@
+//! What is built depends on the variables that name the chips.
+
+fn main() {
+    println!("cargo:rerun-if-env-changed=TWINTAC_CHIP");
+    println!("cargo:rerun-if-env-changed=TWINTAC_SCALE");
+}

@@ -1,0 +1,1 @@
+"""How much silicone a sensor needs, and the sheet that says so."""

@@ -1,0 +1,265 @@
+"""The fast gel as arrays: where its surface is looked at, and its networks."""
+
+import os
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import Error, FastGel
+from ._convert import convert
+from ._file import File, read_file
+from ._namespace import Array
+
+_Floats = npt.NDArray[np.float64]
+
+N_LEVELS = 3
+# Heights of the levels at which distances are taken, and how deep at most points count, mm, for
+# points 2 mm apart; in proportion for points that are farther apart.
+_LEVELS_MM = (0.0, -1.5, -3.0)
+_DEEPEST_MM = 4.0
+_SPACING_MM = 2.0
+# Gaps up to which something may touch between points, and beyond which nothing does, in distances
+# of points.
+_TOUCHED = (0.05, 0.25)
+# What outputs of 1 mean: kPa; N and N mm.
+_PRESSURE_KPA = 50.0
+_WRENCH = (1.0, 1.0, 10.0, 30.0, 30.0, 10.0)
+# What the gel's edges do falls by e over this part of its height.
+_EDGE_DECAY = 0.5
+# A part of a spacing that is none.
+_ROUNDING = 1e-6
+# Weights of all ports together at most: they take 0.5 GB in single precision.
+_MOST_WEIGHTS = 2**27
+
+
+class Layer(NamedTuple):
+    """A linear layer."""
+
+    weight: Array
+    """`[n_inputs, n_outputs]`"""
+    bias: Array
+    """`[n_outputs]`"""
+
+
+class Network(NamedTuple):
+    """A network that looks at each point by itself, then at all points that a row is near."""
+
+    point: Layer
+    """From the levels of a point to its features."""
+    rows: Array
+    """From the features of all points to the first hidden units of each row,
+    `[n_points * n_features, n_rows * n_hidden]`."""
+    bias: Array
+    """`[n_rows, n_hidden]`"""
+    layers: tuple[Layer, ...]
+    """Those after that, shared by all rows; the last one has `n_outputs`."""
+    near: Array
+    """1 where a row looks at a point, `[n_points, n_rows]`."""
+    unit: Array
+    """What outputs of 1 mean, `[n_rows * n_outputs]`."""
+
+
+class Gel(NamedTuple):
+    """A fast gel as arrays, all of one library: what `load` returns. It is a tuple, of which the
+    libraries know what to do: it may be an argument of functions that are compiled, and gradients
+    may be taken with respect to it.
+    """
+
+    points_mm: Array
+    """Where the surface is looked at, in the gel's frame, `[3, n_points]`; the points of the first
+    grid first."""
+    levels_mm: Array
+    """Heights of the levels above the points, `[n_points, 3]`."""
+    deepest_mm: Array
+    """How deep points count at most, `[n_points, 1]`."""
+    highest_mm: Array
+    """Height of the highest point of each point's grid, `[n_points]`, or `[1]` for all."""
+    touched_mm: Array
+    """Gaps at which something touches altogether and not at all, `[2]`."""
+    pressure: Network
+    """To pressures at the ports."""
+    wrench: Network
+    """To force and torque, from the points of the first grid."""
+    ports_mm: Array
+    """Where the ports are in the gel's plane, `[n_taxels, 2]`."""
+    center_mm: Array
+    """The top of the gel's middle, about which torques count, `[3]`."""
+
+
+def load(source: FastGel | str | os.PathLike[str] | bytes, *, like: Array | None = None) -> Gel:
+    """A fast gel as arrays: of a `FastGel`, of a file that `twintac fast train` has made, or of the
+    bytes of such a file. Arrays are of NumPy, in single precision; or of the library, the precision
+    and the device of the array `like`.
+
+    Raises `Error` with the file if it is none, and for more ports than fit into one matrix (about
+    2,000 on PhysTac's gel).
+    """
+    file = read_file(source)
+    try:
+        gel = _gel(file)
+    except (KeyError, IndexError, TypeError, ValueError) as error:
+        if isinstance(error, Error):
+            raise
+        raise Error(f"this fast twin cannot be read: {error!r}") from error
+    return convert(gel, np.zeros(0, np.float32) if like is None else like)
+
+
+class _Grid(NamedTuple):
+    first_mm: _Floats
+    spacing_mm: float
+    n: tuple[int, int]
+    height_mm: _Floats
+    first_point: int
+
+    def point(self, i: int, j: int) -> int | None:
+        """Number of a point among those of all grids; `None` beside the grid."""
+        is_there = 0 <= i < self.n[0] and 0 <= j < self.n[1]
+        return self.first_point + j * self.n[0] + i if is_there else None
+
+    def cell(self, at_mm: _Floats) -> tuple[int, int, _Floats]:
+        """Column and row of a place, and how far behind them it lies, in parts of the spacing."""
+        cells = (at_mm - self.first_mm) / self.spacing_mm + 1e-9
+        corner = np.floor(cells)
+        return int(corner[0]), int(corner[1]), cells - corner
+
+    def has(self, at_mm: _Floats) -> bool:
+        """Whether a point, or one that would follow, is above a place."""
+        return bool(np.hypot(*self.cell(at_mm)[2]) < _ROUNDING)
+
+    def height_mm_at(self, at_mm: _Floats) -> float:
+        """Height of the gel at a place, linear between points; beside the grid that of its
+        border."""
+        i, j, part = self.cell(at_mm)
+        i0, i1 = (min(max(i + step, 0), self.n[0] - 1) for step in (0, 1))
+        j0, j1 = (min(max(j + step, 0), self.n[1] - 1) for step in (0, 1))
+        z = self.height_mm.reshape(self.n[1], self.n[0])
+        rows = [z[k, i0] + part[0] * (z[k, i1] - z[k, i0]) for k in (j0, j1)]
+        return float(rows[0] + part[1] * (rows[1] - rows[0]))
+
+
+def _grids(header: dict[str, Any]) -> list[_Grid]:
+    found: list[_Grid] = []
+    first_point = 0
+    for grid in header["layout"]["grids"]:
+        height_mm = np.array(grid["height_mm"], np.float64)
+        n = (int(grid["n"][0]), int(grid["n"][1]))
+        first_mm = np.array(grid["first_mm"], np.float64)
+        found.append(_Grid(first_mm, float(grid["spacing_mm"]), n, height_mm, first_point))
+        first_point += len(height_mm)
+    return found
+
+
+def _gel(file: File) -> Gel:
+    header, grids = file.header, _grids(file.header)
+    points, levels, deepest, highest = [], [], [], []
+    for grid in grids:
+        row, column = np.divmod(np.arange(len(grid.height_mm)), grid.n[0])
+        x_mm, y_mm = (
+            grid.first_mm[axis] + grid.spacing_mm * part for axis, part in enumerate((column, row))
+        )
+        points.append(np.stack([x_mm, y_mm, grid.height_mm]))
+        scale = max(grid.spacing_mm / _SPACING_MM, 1.0)
+        levels.append(np.tile(np.multiply(_LEVELS_MM, scale), (len(row), 1)))
+        deepest.append(np.full((len(row), 1), scale * _DEEPEST_MM))
+        highest.append(np.full(len(row), grid.height_mm.max()))
+    highest_mm = np.concatenate(highest)
+    return Gel(
+        points_mm=np.concatenate(points, axis=1),
+        levels_mm=np.concatenate(levels),
+        deepest_mm=np.concatenate(deepest),
+        highest_mm=highest_mm[:1] if (highest_mm == highest_mm[0]).all() else highest_mm,
+        touched_mm=np.multiply(_TOUCHED, grids[0].spacing_mm),
+        pressure=_pressure(file, grids),
+        wrench=_of_all_points(file, "wrench", grids[0], np.array(_WRENCH)),
+        ports_mm=np.array(header["ports_mm"], np.float64).reshape(-1, 2),
+        center_mm=np.array(header["center_mm"], np.float64),
+    )
+
+
+def _pressure(file: File, grids: list[_Grid]) -> Network:
+    """The network of pressures: of all taxels together where there is one, else of patches."""
+    n_ports = len(file.header["ports_mm"])
+    if file.layers("taxels"):
+        return _of_all_points(file, "taxels", grids[0], np.full(n_ports, _PRESSURE_KPA))
+    return _of_patches(file, grids)
+
+
+def _of_all_points(file: File, name: str, grid: _Grid, unit: _Floats) -> Network:
+    """A network of one row, which looks at all points of a grid."""
+    point, first, *rest = (Layer(*layer) for layer in file.layers(name))
+    n_inputs = len(grid.height_mm) * len(point.bias)
+    return Network(
+        point=point,
+        rows=first.weight[:n_inputs],
+        bias=first.bias[None],
+        layers=tuple(rest),
+        near=np.ones((len(grid.height_mm), 1)),
+        unit=unit,
+    )
+
+
+def _of_patches(file: File, grids: list[_Grid]) -> Network:
+    """A network of a row for each port, which looks at the points of the port's patch."""
+    point, first, *rest = (Layer(*layer) for layer in file.layers("pressure"))
+    offsets = [(int(i), int(j)) for i, j in file.header["layout"]["patch"]["offsets"]]
+    ports_mm = np.array(file.header["ports_mm"], np.float64).reshape(-1, 2)
+    n_features, n_hidden, n_ports = len(point.bias), len(first.bias), len(ports_mm)
+    n_points = sum(len(grid.height_mm) for grid in grids)
+    if n_points * n_features * n_ports * n_hidden > _MOST_WEIGHTS:
+        most = _MOST_WEIGHTS // (n_points * n_features * n_hidden)
+        raise Error(f"the gel has {n_ports} ports, expected at most {most}", field="source")
+    n_own = len(offsets) * n_features
+    own = first.weight[:n_own].astype(np.float64).reshape(len(offsets), n_features, n_hidden)
+    rows = np.zeros((n_points, n_features, n_ports, n_hidden), np.float32)
+    near = np.zeros((n_points, n_ports))
+    for port, at_mm in enumerate(ports_mm):
+        grid = next((grid for grid in grids if grid.has(at_mm)), grids[0])
+        i, j, _ = grid.cell(at_mm)
+        for offset, weights in _patch(grid.cell(at_mm)[2], offsets, own).items():
+            if (number := grid.point(i + offset[0], j + offset[1])) is not None:
+                rows[number, :, port] = weights
+                near[number, port] = 1.0
+    # What describes a port does not change: it goes into the bias. How coarse the mesh was is 0.
+    about = np.stack([_describe(file.header, grids[0], at_mm) for at_mm in ports_mm])
+    return Network(
+        point=point,
+        rows=rows.reshape(n_points * n_features, n_ports * n_hidden),
+        bias=first.bias + about @ first.weight[n_own : n_own + about.shape[1]],
+        layers=tuple(rest),
+        near=near,
+        unit=np.full(n_ports, _PRESSURE_KPA),
+    )
+
+
+def _patch(
+    part: _Floats, offsets: list[tuple[int, int]], own: _Floats
+) -> dict[tuple[int, int], _Floats]:
+    """Weights of a port this far behind its cell by the points' offsets from the cell: those of the
+    patch, or linear between those of its four corners."""
+    if np.hypot(*part) < _ROUNDING:
+        return dict(zip(offsets, own))
+    found: dict[tuple[int, int], _Floats] = {}
+    for corner in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        share = np.prod([part[axis] if corner[axis] else 1.0 - part[axis] for axis in (0, 1)])
+        if share >= _ROUNDING:
+            for (i, j), weights in zip(offsets, own):
+                key = (i + corner[0], j + corner[1])
+                found[key] = found.get(key, 0.0) + share * weights
+    return found
+
+
+def _describe(header: dict[str, Any], grid: _Grid, at_mm: _Floats) -> _Floats:
+    """A place of the gel's base: how close each edge is, and how much lower the gel is than at its
+    highest, above the place and to each side. `[13]`"""
+    around = header["layout"]["surroundings"]
+    decay_mm = _EDGE_DECAY * around["height_mm"]
+    near, sides = [], []
+    for axis in (0, 1):
+        for edge_mm, way in ((around["low_mm"][axis], -1.0), (around["high_mm"][axis], 1.0)):
+            near.append(np.exp(-max(way * (edge_mm - at_mm[axis]), 0.0) / decay_mm))
+            side_mm = at_mm.copy()
+            side_mm[axis] += way * decay_mm
+            sides.append(1.0 - grid.height_mm_at(side_mm) / around["height_mm"])
+    above = 1.0 - grid.height_mm_at(at_mm) / around["height_mm"]
+    return np.array([*near, *np.square(near), above, *sides])

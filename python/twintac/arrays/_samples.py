@@ -1,0 +1,124 @@
+"""Any shape, by samples of its distance on a grid."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import Shape
+from ._namespace import Array, root
+
+_Floats = npt.NDArray[np.float64]
+
+# The same samples as Rust's: their distance, cells across the thinnest body, samples at most.
+_SPACING_MM = 0.5
+_CELLS_OF_THICKNESS = 6.0
+_MOST_SAMPLES = 4e6
+_REACH_MM = 2.0
+
+
+class Samples(NamedTuple):
+    """Distances of shapes at the corners of cells. Those of all shapes lie one behind the other;
+    each body has a part of them."""
+
+    distance_mm: Array
+    """Along z first, then y, `[n_samples]`."""
+    first: Array
+    """Where those of a body begin, `[..., n_bodies]`."""
+    n_cells: Array
+    """Along each axis, whole numbers, `[..., n_bodies, 3]`."""
+    low_mm: Array
+    """The first corner in the shape's frame, `[..., n_bodies, 3]`."""
+    cells_per_mm: Array
+    """`[..., n_bodies, 3]`"""
+
+    def as_precise(self, xp: Any, precision: Any) -> "Samples":
+        """The same lengths in another precision."""
+        return self._replace(
+            distance_mm=xp.astype(self.distance_mm, precision, copy=False),
+            low_mm=xp.astype(self.low_mm, precision, copy=False),
+            cells_per_mm=xp.astype(self.cells_per_mm, precision, copy=False),
+        )
+
+    @staticmethod
+    def stack(all: "Sequence[Samples | None]", leading: tuple[int, ...]) -> "Samples | None":
+        """Those of several shapes along a new first dimension; a shape that has none gets one
+        sample, which nobody reads. Equal samples are kept once."""
+        if not any(own is not None for own in all):
+            return None
+        nothing = Samples(
+            distance_mm=np.full(8, _REACH_MM, np.float32),
+            first=np.zeros(leading, np.int32),
+            n_cells=np.ones((*leading, 3), np.int32),
+            low_mm=np.zeros((*leading, 3)),
+            cells_per_mm=np.ones((*leading, 3)),
+        )
+        known: dict[bytes, int] = {}
+        values: list[Any] = []
+        parts: list[Samples] = []
+        n_samples = 0
+        for own in (nothing if own is None else own for own in all):
+            key = own.distance_mm.tobytes()
+            if key not in known:
+                known[key] = n_samples
+                values.append(own.distance_mm)
+                n_samples += own.distance_mm.size
+            parts.append(own._replace(first=own.first + np.int32(known[key])))
+        columns = [np.stack(column) for column in list(zip(*parts))[1:]]
+        return Samples(np.concatenate(values), *columns)
+
+
+def sampled(shape: Shape) -> tuple[Samples, _Floats]:
+    """Samples of a shape, and the corners of the box that holds it, mm, `[2, 3]`."""
+    low_mm, high_mm = bounds_mm = shape.bounds_mm
+    volume_mm3 = np.prod(high_mm - low_mm + 2.0 * _REACH_MM)
+    even_mm = np.full(3, max(np.cbrt(volume_mm3 / _MOST_SAMPLES), _SPACING_MM))
+    finer_mm = np.minimum(even_mm, (high_mm - low_mm) / _CELLS_OF_THICKNESS)
+    is_many = volume_mm3 / np.prod(finer_mm) > _MOST_SAMPLES
+    spacing_mm = even_mm if is_many else finer_mm
+    around_mm = _REACH_MM + spacing_mm
+    first_mm, last_mm = low_mm - around_mm, high_mm + around_mm
+    n_cells = np.ceil((last_mm - first_mm) / spacing_mm).astype(np.int32)
+    axes = [first_mm[axis] + spacing_mm[axis] * np.arange(n_cells[axis] + 1) for axis in range(3)]
+    corners_mm = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    samples = Samples(
+        distance_mm=shape.signed_distance_mm(corners_mm).astype(np.float32),
+        first=np.array(0, np.int32),
+        n_cells=n_cells,
+        low_mm=first_mm,
+        cells_per_mm=1.0 / spacing_mm,
+    )
+    return samples, bounds_mm
+
+
+def sampled_mm(xp: Any, samples: Samples, point_mm: list[Array]) -> Array:
+    """The distance of points, three coordinates each `[..., n_bodies, n_points, n_levels]`, linear
+    between samples. Beyond them it is that of the nearest one, and the way there."""
+    whole, parts, beyond_mm2 = [], [], 0.0
+    for axis in range(3):
+        n_cells = samples.n_cells[..., axis, None, None]
+        per_mm = samples.cells_per_mm[..., axis, None, None]
+        cells = (point_mm[axis] - samples.low_mm[..., axis, None, None]) * per_mm
+        n = xp.astype(n_cells, cells.dtype)
+        inside = xp.minimum(xp.maximum(cells, xp.zeros_like(cells)), n)
+        corner = xp.minimum(xp.floor(inside), n - 1.0)
+        corner = xp.where(corner == corner, corner, 0.0)  # what is no number is at no place
+        whole.append(xp.astype(corner, n_cells.dtype))
+        parts.append(inside - corner)
+        beyond_mm2 = beyond_mm2 + ((cells - inside) / per_mm) ** 2
+    along_y = samples.n_cells[..., 2, None, None] + 1
+    along_x = along_y * (samples.n_cells[..., 1, None, None] + 1)
+    corner = samples.first[..., None, None] + whole[0] * along_x + whole[1] * along_y + whole[2]
+
+    def at(index: Array) -> Array:
+        values = xp.take(samples.distance_mm, xp.reshape(index, (-1,)), axis=0)
+        return xp.reshape(values, tuple(index.shape))
+
+    def between(low: Array, high: Array, axis: int) -> Array:
+        return low + (high - low) * parts[axis]
+
+    edges = [corner, corner + along_y, corner + along_x, corner + along_x + along_y]
+    along_z = [between(at(edge), at(edge + 1), 2) for edge in edges]
+    sides = [between(along_z[0], along_z[1], 1), between(along_z[2], along_z[3], 1)]
+    return between(sides[0], sides[1], 0) + root(xp, beyond_mm2)

@@ -1,0 +1,66 @@
+// The WebAssembly engine finds what the native one finds, within 1 %.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { deviation, nativeAnswers, sensorText, wasmEngine } from "./engines.mjs";
+
+/** Down and aside; anew: down, and tilted, in steps of a hand. */
+function requests(touch_mm) {
+  const to = (x_mm, depth_mm, tilt_rad) => {
+    const gel_from_indenter = {
+      position_mm: [x_mm, 2, touch_mm - depth_mm],
+      rotation: [Math.sin(tilt_rad / 2), 0, 0, Math.cos(tilt_rad / 2)],
+    };
+    return { do: "step", since_s: 0.02, gel_from_indenter };
+  };
+  const down = (x_mm) => [0.3, 0.6, 0.9, 1.2, 1.5].map((depth_mm) => to(x_mm, depth_mm, 0));
+  const aside = [0.4, 0.8, 1.2, 1.6, 2].map((way_mm) => to(-4 + way_mm, 1.5, 0));
+  const tilted = [0.03, 0.06, 0.09].map((tilt_rad) => to(-2, 1.5, tilt_rad));
+  return [...down(-4), ...aside, { do: "rest" }, ...down(-2), ...tilted];
+}
+
+for (const indenter of ["sphere-25", "cube", "x", "ring", "triangle", "wedge", "cylinder"]) {
+  test(`a press of ${indenter}`, async () => {
+    const engine = await wasmEngine();
+    await engine.open("phystac.toml", sensorText);
+    const mesh = await engine.prepare(indenter, 2, 2000);
+    const steps = requests(mesh.touch_mm);
+    const [, prepared, ...answers] = nativeAnswers([
+      { do: "open", file: "phystac.toml", text: sensorText },
+      { do: "prepare", indenter, depth_mm: 2, max_nodes: 2000 },
+      ...steps,
+    ]);
+    assert.equal(mesh.n_nodes, prepared.n_nodes);
+    let worst = { readings: 0, force: 0 };
+    const took_ms = [];
+    for (const [index, step] of steps.entries()) {
+      if (step.do === "rest") {
+        await engine.rest();
+        continue;
+      }
+      const found = await engine.step(step.gel_from_indenter, step.since_s);
+      const off = deviation(found, answers[index]);
+      worst = { readings: Math.max(worst.readings, off.readings), force: Math.max(worst.force, off.force) };
+      took_ms.push(found.took_ms);
+    }
+    took_ms.sort((a, b) => a - b);
+    console.log(`${indenter}: ${mesh.n_nodes} nodes, readings ${(100 * worst.readings).toFixed(4)} %, force ${(100 * worst.force).toFixed(4)} %, median ${took_ms[took_ms.length >> 1].toFixed(1)} ms`);
+    assert.ok(worst.readings < 0.01 && worst.force < 0.01, JSON.stringify(worst));
+  });
+}
+
+test("errors are those of the native engine", async () => {
+  const engine = await wasmEngine();
+  for (const [from, to] of [
+    ["size_mm = [34.0, 18.0, 8.5]", "size_mm = [34.0, -18.0, 8.5]"],
+    ["poissons_ratio = 0.495", "poissons_ratio = 0.7"],
+    ['chip = "CPS135B"', "chip = CPS135B"],
+  ]) {
+    const text = sensorText.replace(from, to);
+    assert.notEqual(text, sensorText);
+    const [{ error }] = nativeAnswers([{ do: "open", file: "mine.toml", text }]);
+    assert.match(error, /mine\.toml:\d+/);
+    await assert.rejects(engine.open("mine.toml", text), { message: error });
+  }
+});
