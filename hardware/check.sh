@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # What CI runs on the hardware: makes the boards of all variants, and has KiCad check them. Where KiCad 9 cannot be had, it says so and still makes the rest.
+# `hardware/check.sh --install` installs KiCad, where it can be had, and ends.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -25,7 +26,12 @@ install_kicad() {
 if ! has_kicad; then
   install_kicad || true
 fi
+if [ "${1:-}" = --install ]; then
+  exit 0
+fi
 if ! has_kicad; then
   echo "skipped: KiCad's checks and fabrication files (KiCad 9 cannot be installed here)"
 fi
-cargo xtask hardware --release "$@"
+# As `cargo xtask hardware` does, but with the dependencies as the tests of the workspace have them: they are compiled once.
+cargo build --release --quiet --workspace --bin twintac-hardware
+"${CARGO_TARGET_DIR:-target}/release/twintac-hardware" --root . --release "$@"

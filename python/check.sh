@@ -19,6 +19,5 @@ echo "$(basename "$wheel"): $bytes bytes"
 # Where Stable-Baselines3 is not installed; and a class whose base, of untyped ipywidgets, has a metaclass of its own.
 printf '%s\n' 'twintac\.gymnasium\.sb3' 'twintac\.widget\.GelWidget' > ../../target/not-as-typed
 "$python" -m mypy.stubtest twintac --mypy-config-file ../pyproject.toml --allowlist ../../target/not-as-typed --ignore-unused-allowlist
-PYO3_PYTHON=$python cargo clippy --manifest-path ../Cargo.toml --release --quiet -- --deny warnings
 "$python" -m pytest --quiet -n 2 --dist loadfile # the tests of a file share what takes long to make
 (cd ../.. && NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --strict --quiet) # target/site

@@ -5,8 +5,8 @@ set -eu
 cd "$(dirname "$0")"
 skipped=""
 
-cargo build --release --locked --package twintac-engine --example answer
-cargo build --release --locked
+# With the dependencies as the tests of the workspace have them: they are compiled once.
+cargo build --release --locked --workspace --bin twintac --example answer
 
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
     echo "skipped: page and WebAssembly, as Node.js and npm are missing"

@@ -66,7 +66,7 @@ fn main() -> ExitCode {
 
 fn lint() -> Result<()> {
     cargo(&["fmt", "--all", "--check"])?;
-    for beside in ["fuzz/Cargo.toml", "python/Cargo.toml", "web/engine/Cargo.toml"] {
+    for beside in ["fuzz/Cargo.toml", "web/engine/Cargo.toml"] {
         cargo(&["fmt", "--manifest-path", beside, "--check"])?;
     }
     cargo(&[

@@ -33,7 +33,7 @@ pub enum Target {
 }
 
 impl Crate {
-    /// Reads the library and the programs of every package, and Python's library, which stands beside the workspace.
+    /// Reads the library and the programs of every package.
     pub fn read_all(root: &Path, graph: &Graph) -> Result<Vec<Self>> {
         let mut crates = Vec::new();
         for (name, package) in &graph.packages {
@@ -42,8 +42,6 @@ impl Crate {
                 crates.push(Self::read(root, name, file, is_library)?);
             }
         }
-        let python = root.join("python/src/lib.rs");
-        crates.push(Self::read(root, "twintac-python", &python, false)?); // what is public there has no user in Rust
         Ok(crates)
     }
 

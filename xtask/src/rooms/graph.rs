@@ -23,7 +23,7 @@ pub struct Package {
     pub description: Option<String>,
     /// The root file of its library, if it has one.
     pub lib_file: Option<PathBuf>,
-    /// The root files of its programs.
+    /// The root files of its programs, and of a library for other languages.
     pub programs: Vec<PathBuf>,
     /// Packages that it is built with, those of others included.
     pub dependencies: BTreeSet<String>,
@@ -142,10 +142,10 @@ impl MetadataPackage {
         };
         Ok(Package {
             folder,
-            lib_file: targets(&["lib", "rlib", "cdylib", "proc-macro"])
+            lib_file: targets(&["lib", "rlib", "proc-macro"])
                 .into_iter()
                 .next(),
-            programs: targets(&["bin"]),
+            programs: targets(&["bin", "cdylib"]),
             dependencies: names(|kind| kind != Some("dev")),
             dev_dependencies: names(|kind| kind == Some("dev")),
             description: self.description,

@@ -108,7 +108,7 @@ impl Room {
 
     /// Whether it is a package with a lock file of its own.
     pub fn is_beside_the_workspace(&self) -> bool {
-        ["firmware", "fuzz", "python", "web"].contains(&self.folder.as_str())
+        ["firmware", "fuzz", "web"].contains(&self.folder.as_str())
     }
 
     /// The folder of `crates` that it stands in, if it does.
