@@ -28,8 +28,8 @@ def test_training_makes_a_model_and_a_report(trained: Path) -> None:
 
 def test_objects_are_lifted_by_touch(tmp_path: Path) -> None:
     pytest.importorskip("mujoco", reason="MuJoCo 4 needs Python 3.11 or later")
-    printed = run_example("grasp_by_touch.py", tmp_path, "--objects", "3", "--seed", "3", "--json")
+    printed = run_example("grasp_by_touch.py", tmp_path, "--objects", "2", "--seed", "3", "--json")
     grasps = json.loads(printed)["grasps"]
-    assert [grasp["kind"] for grasp in grasps] == ["box", "ball", "cylinder"]
+    assert [grasp["kind"] for grasp in grasps] == ["box", "ball"]
     for grasp in grasps:
         assert grasp["lifted"] and grasp["needed_n"] < grasp["held_n"] < 2.0 * grasp["needed_n"]

@@ -142,9 +142,7 @@ impl MetadataPackage {
         };
         Ok(Package {
             folder,
-            lib_file: targets(&["lib", "rlib", "proc-macro"])
-                .into_iter()
-                .next(),
+            lib_file: targets(&["lib", "rlib", "proc-macro"]).into_iter().next(),
             programs: targets(&["bin", "cdylib"]),
             dependencies: names(|kind| kind != Some("dev")),
             dev_dependencies: names(|kind| kind == Some("dev")),
