@@ -10,6 +10,7 @@ import pytest
 
 from twintac import Body, FastGel, Pose, Sensor, Shape
 from twintac.mujoco import TouchSensors, add_sensor
+from twintac.mujoco._poses import quaternion_of
 
 Array = npt.NDArray[np.float64]
 TOP_M = 0.0085
@@ -166,3 +167,17 @@ def test_what_cannot_be_is_said() -> None:
     spec = mujoco.MjSpec()
     with pytest.raises(ValueError, match="`hand`"):
         add_sensor(spec, Sensor.phystac(), body="hand", name="touch")
+
+
+def test_quaternions_of_matrices_are_mujocos() -> None:
+    random = np.random.default_rng(1)
+    wanted = random.normal(size=(200, 4))
+    wanted[:8] = np.concatenate([np.eye(4), -np.eye(4)])
+    wanted /= np.linalg.norm(wanted, axis=1, keepdims=True)
+    turn = np.zeros((200, 9))
+    for row, quaternion in zip(turn, wanted):
+        mujoco.mju_quat2Mat(row, quaternion)
+    found = quaternion_of(turn.reshape(200, 3, 3))
+    assert np.abs((found * wanted).sum(-1)) == pytest.approx(np.ones(200))
+    assert (quaternion_of(np.zeros((2, 3, 3))) == 0.0).all()
+    assert np.isnan(quaternion_of(np.full((1, 3, 3), np.nan))).any()

@@ -26,8 +26,7 @@ class Geoms:
         self._worlds = worlds
         self._by_name = names is not None
         if names is None:
-            collides = (model.geom_contype | model.geom_conaffinity) != 0
-            self.number = np.nonzero(collides)[0]
+            self.number = colliding(model)
         else:
             self.number = np.array([number_of(model, "geom", name) for name in names], int)
         if not len(self.number):
@@ -99,6 +98,11 @@ class Geoms:
 
 def _equal(some: _Fields, others: _Fields) -> bool:
     return len(some) == len(others) and all(np.array_equal(one, other) for one, other in zip(some, others))
+
+
+def colliding(model: mujoco.MjModel) -> _Ints:
+    """The numbers of the geoms that collide with others."""
+    return np.nonzero((model.geom_contype | model.geom_conaffinity) != 0)[0]
 
 
 def number_of(model: mujoco.MjModel, kind: str, name: str) -> int:

@@ -23,6 +23,26 @@ def turned_back(a: _Array) -> _Array:
     return back
 
 
+def quaternion_of(turn: _Array) -> _Array:
+    """Quaternions of matrices, `[…, 3, 3]`; of no turn at all, a matrix of zeros, zeros."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.moveaxis(turn, (-2, -1), (0, 1))
+    squares = np.stack([1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz], axis=-1)
+    w, x, y, z = np.moveaxis(squares, -1, 0)
+    rows = [
+        [w, zy - yz, xz - zx, yx - xy],
+        [zy - yz, x, xy + yx, zx + xz],
+        [xz - zx, xy + yx, y, yz + zy],
+        [yx - xy, zx + xz, yz + zy, z],
+    ]
+    # That which divides by the largest part is exact.
+    largest = squares.argmax(-1)[..., None]
+    row = np.stack([np.stack(one, axis=-1) for one in rows], axis=-2)
+    row = np.take_along_axis(row, largest[..., None], axis=-2)[..., 0, :]
+    with np.errstate(invalid="ignore"):
+        quaternion: _Array = row / (2.0 * np.sqrt(np.take_along_axis(squares, largest, axis=-1)))
+    return np.where((turn == 0.0).all((-2, -1))[..., None], 0.0, quaternion)
+
+
 def turned(turn: _Array, vector: _Array) -> _Array:
     """Vectors, `[n, 3]`, turned by matrices, `[n, 3, 3]`."""
     vectors: _Array = (turn @ vector[:, :, None])[:, :, 0]

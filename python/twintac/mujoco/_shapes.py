@@ -12,7 +12,7 @@ from .. import Body, Error, Pose, Shape
 _Array = npt.NDArray[np.float64]
 _Type = mujoco.mjtGeom
 
-PLANE, _MESH, _HFIELD = int(_Type.mjGEOM_PLANE), int(_Type.mjGEOM_MESH), int(_Type.mjGEOM_HFIELD)
+PLANE, MESH, HFIELD = int(_Type.mjGEOM_PLANE), int(_Type.mjGEOM_MESH), int(_Type.mjGEOM_HFIELD)
 # A plane is a slab, of which sensors are above the middle: its frame goes along the plane in
 # strides, mm.
 _SLAB_MM = (20000.0, 20000.0, 40.0)
@@ -32,18 +32,18 @@ class Felt(NamedTuple):
 
 def key_of(model: mujoco.MjModel, kind: int, asset: int, half_m: _Array) -> tuple[object, ...]:
     """What geoms of equal shape have in common."""
-    if kind in (_MESH, _HFIELD):
+    if kind in (MESH, HFIELD):
         return kind, *(part.tobytes() for part in contents(model, kind, asset))
     return kind, half_m.tobytes()
 
 
 def contents(model: mujoco.MjModel, kind: int, asset: int) -> list[npt.NDArray[Any]]:
     """What a mesh or height field is made of, as views; of other geoms nothing."""
-    if kind == _MESH:
+    if kind == MESH:
         first, n_corners = int(model.mesh_vertadr[asset]), int(model.mesh_vertnum[asset])
         first_triangle, n_triangles = int(model.mesh_faceadr[asset]), int(model.mesh_facenum[asset])
         return [model.mesh_vert[first : first + n_corners], model.mesh_face[first_triangle : first_triangle + n_triangles]]
-    if kind == _HFIELD:
+    if kind == HFIELD:
         first, n_x, n_y = int(model.hfield_adr[asset]), int(model.hfield_ncol[asset]), int(model.hfield_nrow[asset])
         return [model.hfield_size[asset], model.hfield_data[first : first + n_x * n_y].reshape(n_y, n_x)]
     return []
@@ -54,7 +54,7 @@ def felt(model: mujoco.MjModel, geom: int, kind: int, asset: int, half_m: _Array
 
     Raises `ValueError`, which names the geom, for one that sensors do not feel.
     """
-    if kind in (PLANE, _MESH, _HFIELD):
+    if kind in (PLANE, MESH, HFIELD):
         size_mm = np.zeros(3)
     else:
         size_mm = 1e3 * half_m
@@ -83,13 +83,18 @@ def _shape(model: mujoco.MjModel, geom: int, kind: int, asset: int, size_mm: _Ar
     if kind == _Type.mjGEOM_ELLIPSOID:
         corners, triangles = _unit_ball()
         return Shape.surface(corners * size_mm, triangles), 0.0, float(size_mm.max())
-    if kind == _MESH:
-        corners_mm, triangles = (part.astype(kind) for part, kind in zip(contents(model, _MESH, asset), (float, np.int64)))
-        return Shape.surface(1e3 * corners_mm, triangles), 0.0, _reach(1e3 * corners_mm)
-    if kind == _HFIELD:
-        corners_mm, triangles = _height_field(*contents(model, _HFIELD, asset))
+    if kind in (MESH, HFIELD):
+        corners_mm, triangles = surface_of(kind, contents(model, kind, asset))
         return Shape.surface(corners_mm, triangles), 0.0, _reach(corners_mm)
     raise ValueError(f"{_called(model, geom)} is a {_Type(kind).name}, which sensors do not feel")
+
+
+def surface_of(kind: int, parts: list[npt.NDArray[Any]]) -> tuple[_Array, npt.NDArray[np.int64]]:
+    """Corners, mm, and triangles of what `contents` returns of a mesh or height field."""
+    if kind == HFIELD:
+        return _height_field(*parts)
+    corners_m, triangles = parts
+    return 1e3 * corners_m.astype(float), triangles.astype(np.int64)
 
 
 def _reach(corners_mm: _Array) -> float:

@@ -313,7 +313,8 @@ class TouchSensors:
         """Places, mm, turns as matrices and as quaternions, of sites or geoms in all worlds, and
         which of them are finite.
         """
-        place_m, turn, quat = (self._worlds.rows(data, f"{kind}_{name}")[:, numbers] for name in ("xpos", "xmat", "xquat"))
+        place_m, turn = (self._worlds.rows(data, f"{kind}_{name}")[:, numbers] for name in ("xpos", "xmat"))
+        quat = self._worlds.quaternions(data, kind)[:, numbers]
         if not quat.any(-1).all():
             raise ValueError("`data` has no poses yet: call `mujoco.mj_step1` or `mujoco.mj_forward` before, or `batch.forward(stage=mujoco.mjtStage.mjSTAGE_VEL)`")
         is_there = np.asarray(np.isfinite(place_m).all(-1) & np.isfinite(quat).all(-1))

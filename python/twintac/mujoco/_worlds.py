@@ -2,15 +2,19 @@
 """
 
 import weakref
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import mujoco
-import mujoco.batch
 import numpy as np
 import numpy.typing as npt
 
+from ._poses import quaternion_of
+
+if TYPE_CHECKING:
+    from mujoco.batch import Batch  # since MuJoCo 4
+
 _Array = npt.NDArray[np.float64]
-Data: TypeAlias = mujoco.MjData | mujoco.batch.Batch
+Data: TypeAlias = "mujoco.MjData | Batch"
 # What has to be the same for numbers of bodies, geoms and sites to mean the same.
 _SIZES = ("nbody", "nv", "ngeom", "nsite")
 _LAYOUT = ("body_parentid", "body_dofadr", "geom_bodyid", "site_bodyid")
@@ -22,7 +26,7 @@ class Worlds:
     def __init__(self, model: mujoco.MjModel, n_worlds: int) -> None:
         self._model, self.n_worlds = model, n_worlds
         self._known: list[mujoco.MjModel] = [model]
-        self._copies: weakref.WeakKeyDictionary[mujoco.batch.Batch, mujoco.MjModel] = weakref.WeakKeyDictionary()
+        self._copies: weakref.WeakKeyDictionary[Batch, mujoco.MjModel] = weakref.WeakKeyDictionary()
 
     def rows(self, data: Data, name: str) -> _Array:
         """A field of every world, `[n_worlds, …]`; of one world, or of a batch's state, it can be
@@ -30,6 +34,13 @@ class Worlds:
         """
         rows: _Array = np.asarray(getattr(data, name))[None] if isinstance(data, mujoco.MjData) else data.bind(name)
         return rows
+
+    def quaternions(self, data: Data, kind: str) -> _Array:
+        """Turns of sites or geoms as quaternions, which MuJoCo has since version 4."""
+        if hasattr(mujoco.MjData, f"{kind}_xquat"):
+            return self.rows(data, f"{kind}_xquat")
+        turn = self.rows(data, f"{kind}_xmat")
+        return quaternion_of(turn.reshape(*turn.shape[:2], 3, 3))
 
     def times_s(self, data: Data) -> _Array:
         """The time of every world, s, `[n_worlds]`, as a copy."""
@@ -59,7 +70,7 @@ class Worlds:
 
     def field(self, data: Data, name: str) -> _Array:
         """A field of the models, `[1, …]` where all worlds have the same, else `[n_worlds, …]`."""
-        if isinstance(data, mujoco.batch.Batch) and data.models is None:
+        if not isinstance(data, mujoco.MjData) and data.models is None:
             expanded = data.expanded(name)
             if expanded is not None:
                 return np.asarray(expanded)
@@ -67,7 +78,7 @@ class Worlds:
             return np.asarray(_of(self._known[0], name))[None]
         return np.stack([np.asarray(_of(model, name)) for model in self._known])
 
-    def _of_batch(self, batch: mujoco.batch.Batch) -> list[mujoco.MjModel]:
+    def _of_batch(self, batch: "Batch") -> list[mujoco.MjModel]:
         if batch.nsim != self.n_worlds:
             raise ValueError(f"`data` has {batch.nsim} worlds, the sensors are of {self.n_worlds}")
         if not batch.persistent:
