@@ -12,7 +12,8 @@ mujoco = pytest.importorskip("mujoco", reason="MuJoCo 4 needs Python 3.11 or lat
 from twintac import Sensor  # noqa: E402
 from twintac.mujoco import TouchSensors, add_sensor  # noqa: E402
 from twintac.simulators._moment import Memory, Poses, Touch, begin, moment  # noqa: E402
-from twintac.simulators._scene import Scene, scene  # noqa: E402
+from twintac.simulators._mujoco import scene_of  # noqa: E402
+from twintac.simulators._scene import Scene  # noqa: E402
 
 Array = npt.NDArray[np.float64]
 N_WORLDS, N_STEPS = 16, 600
@@ -24,6 +25,8 @@ PALM = f"""
   <body name="block" pos="0.3 -0.2 0.1181"><freejoint/>
     <geom name="block" type="box" size="0.006 0.006 0.01" mass="{MASS_KG}" contype="0" conaffinity="0"/></body>
 </worldbody></mujoco>"""
+
+AT_THE_ORIGIN = PALM.replace('pos="0.3 -0.2 0.1" euler="0 0 30"', "").replace("0.3 -0.2 0.1181", "0 0 0.0181")
 
 
 def palm(xml: str = PALM) -> Any:
@@ -79,7 +82,7 @@ def is_at_rest(pressure_kpa: Any, wrench: Any, expected: tuple[Array, Array]) ->
 
 def test_blocks_rest_on_palms_by_numpy() -> None:
     model = palm()
-    found = scene(model, ["touch"], geoms=["block"])
+    found = scene_of(model, ["touch"], geoms=["block"])
     worlds, touch = stepped(model, found, N_STEPS, n_worlds=N_WORLDS)
     is_at_rest(touch.pressure_kpa, touch.wrench, beside(model, N_STEPS))
     assert all(abs(data.qvel).max() < 0.01 for data in worlds)
@@ -162,15 +165,48 @@ def test_blocks_rest_on_palms_in_mjlab() -> None:
         simulation.step()
         scene_there.update(0.001)
     felt = scene_there["touch"].data
-    is_at_rest(felt.pressure_kpa, felt.wrench, beside(palm(PALM.replace('pos="0.3 -0.2 0.1" euler="0 0 30"', "").replace("0.3 -0.2 0.1181", "0 0 0.0181")), N_STEPS))
+    is_at_rest(felt.pressure_kpa, felt.wrench, beside(palm(AT_THE_ORIGIN), N_STEPS))
     sensors = scene_there["touch"].sensors
     scene_there.reset(torch.tensor([3]))
     assert not sensors.memory.now.is_known[3].any() and sensors.memory.now.is_known[2].all()
 
 
+def test_blocks_rest_on_palms_in_newton() -> None:
+    pytest.importorskip("newton", reason="needs `pip install 'newton[sim]' torch`, which brings MuJoCo 3; kernels take a minute to compile")
+    import newton
+    import warp
+
+    from twintac.simulators.newton import Sensors
+
+    def at(z_m: float) -> Any:
+        return warp.transform((0.0, 0.0, z_m), warp.quat_identity())
+
+    world = newton.ModelBuilder()
+    block = world.add_body(xform=at(0.0181), label="block")
+    of_weight = newton.ModelBuilder.ShapeConfig(density=MASS_KG / (0.012 * 0.012 * 0.02), has_shape_collision=False)
+    world.add_shape_box(block, hx=0.006, hy=0.006, hz=0.01, cfg=of_weight, label="block")
+    board = world.add_body(xform=at(-0.5), label="board", is_kinematic=True)
+    world.add_site(board, xform=at(0.5), label="touch")
+    builder = newton.ModelBuilder()
+    builder.replicate(world, N_WORLDS)
+    model = builder.finalize(device="cpu")
+    sensors = Sensors(model, ["touch"], shapes=["block"])
+    before, after = model.state(), model.state()
+    newton.eval_fk(model, model.joint_q, model.joint_qd, before)
+    solver, control = newton.solvers.SolverMuJoCo(model), model.control()
+    for _ in range(N_STEPS):
+        before.clear_forces()
+        touch = sensors.push(before, 0.001)
+        solver.step(before, after, control, None, 0.001)
+        before, after = after, before
+    is_at_rest(touch.pressure_kpa, touch.wrench, beside(palm(AT_THE_ORIGIN), N_STEPS))
+    with pytest.raises(ValueError, match="no shape of the model"):
+        Sensors(model, ["hand"], shapes=["block"])
+
+
 def test_a_second_look_changes_nothing_and_time_that_goes_back_forgets() -> None:
     model = palm()
-    found = scene(model, ["touch"], geoms=["block"])
+    found = scene_of(model, ["touch"], geoms=["block"])
     data = mujoco.MjData(model)
     mujoco.mj_step1(model, data)
 
@@ -204,7 +240,7 @@ def test_what_a_gel_gets_its_body_gets_and_what_touches_gets_the_opposite() -> N
         <geom name="end" type="sphere" size="0.004" pos="0 0 0.1" mass="0.3"/></body>
     </worldbody></mujoco>"""
     model = palm(xml)
-    found = scene(model, ["touch"])
+    found = scene_of(model, ["touch"])
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     poses = poses_of([data])
@@ -235,7 +271,7 @@ def test_geoms_are_felt_as_their_shapes() -> None:
     poses = poses_of([data])
 
     def felt(geom: str) -> Array:
-        found = scene(model, ["touch"], geoms=[geom])
+        found = scene_of(model, ["touch"], geoms=[geom])
         pressure_kpa: Array = moment(found, begin(found, poses, np.zeros(1)), poses, np.zeros(1))[1].pressure_kpa[0, 0]
         return pressure_kpa
 
@@ -250,7 +286,7 @@ def test_geoms_are_felt_as_their_shapes() -> None:
     assert felt("rod") == pytest.approx(felt("ball"), rel=0.02)
 
 
-@pytest.mark.parametrize(("sites", "geoms", "problem"), [(["hand"], None, "no site `hand`"), (["touch"], ["ball"], "no geom `ball`"), ([], None, "`sites` has none"), (["touch"], None, "no geom that could touch")])
+@pytest.mark.parametrize(("sites", "geoms", "problem"), [(["hand"], None, "no site `hand`"), (["touch"], ["ball"], "no geom `ball`"), ([], None, "`sites` has none"), (["touch"], None, "no shape that can touch")])
 def test_what_a_model_does_not_have_is_refused(sites: list[str], geoms: list[str] | None, problem: str) -> None:
     with pytest.raises(ValueError, match=problem):
-        scene(palm(), sites, geoms=geoms)
+        scene_of(palm(), sites, geoms=geoms)

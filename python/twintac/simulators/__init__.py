@@ -2,6 +2,6 @@
 poses where they are, and adds what gels do to the forces on bodies.
 
 Each adapter is a module that is imported by its name, and needs its simulator: `mjx` for MuJoCo
-XLA, `mujoco_warp` for MuJoCo Warp, `mjlab` for mjlab. Gel, friction and shapes are those of `twintac.arrays`. On
-processors, `twintac.mujoco` is faster.
+XLA, `mujoco_warp` for MuJoCo Warp, `mjlab` for mjlab, `newton` for Newton. Gel, friction and shapes
+are those of `twintac.arrays`. On processors, `twintac.mujoco` is faster.
 """

@@ -19,7 +19,8 @@ from mujoco import mjx
 
 from .. import FastGel
 from ._moment import Memory, Poses, Touch, begin, moment
-from ._scene import Scene, scene
+from ._mujoco import scene_of
+from ._scene import Scene
 
 __all__ = ["Memory", "Scene", "Sensors", "Touch", "put"]
 
@@ -72,7 +73,7 @@ def put(
     `Error` for a geom that sensors do not feel.
     """
     kept = {"friction": friction, "retardation_s": retardation_s, "geoms": geoms}
-    return Sensors(scene(model, sites, gel=gel, like=jnp.zeros(0, jnp.float32), **kept))  # type: ignore[arg-type]
+    return Sensors(scene_of(model, sites, gel=gel, like=jnp.zeros(0, jnp.float32), **kept))  # type: ignore[arg-type]
 
 
 def _poses(data: mjx.Data) -> Poses:

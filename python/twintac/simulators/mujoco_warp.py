@@ -19,7 +19,7 @@ import warp as wp
 
 from .. import FastGel
 from ._moment import Memory, Poses, Touch, begin, forget, moment
-from ._scene import scene
+from ._mujoco import scene_of
 
 __all__ = ["Memory", "Sensors", "Touch"]
 
@@ -55,7 +55,7 @@ class Sensors:
     ) -> None:
         time_s = wp.to_torch(data.time)
         kept: dict[str, Any] = {"friction": friction, "retardation_s": retardation_s}
-        self.scene = scene(model, sites, gel=gel, geoms=geoms, like=time_s, **kept)
+        self.scene = scene_of(model, sites, gel=gel, geoms=geoms, like=time_s, **kept)
         self.memory: Memory = begin(self.scene, _poses(data), time_s)
         """What gels remember; it may be set to what it was."""
         self.applied = torch.zeros_like(wp.to_torch(data.xfrc_applied))

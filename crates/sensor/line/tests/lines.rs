@@ -316,10 +316,10 @@ fn wrong_descriptions_name_the_field() {
     }
 }
 
-/// A frame's line, with number and checksum.
+/// A frame's line, with number and checksum. A checksum of 8 bits would take one of 256 broken lines for a whole one.
 fn line(sequence: u64) -> String {
     let body = format!("{sequence},{},{}", 1000 + sequence, 2000 + 3 * sequence);
-    format!("{body}*{:02x}\n", Checksum::Crc8.of(body.as_bytes()))
+    format!("{body}*{:08x}\n", Checksum::Crc32.of(body.as_bytes()))
 }
 
 #[derive(Clone, Debug)]
@@ -354,7 +354,7 @@ proptest! {
     #[test]
     fn no_loss_is_unmarked(mishaps in prop::collection::vec(mishap(), 1..200), pieces in prop::collection::vec(1..60_usize, 1..20)) {
         let description = described(
-            "form = \"text\"\nfields = [\"sequence\", \"pressure * 2\"]\ntext.checksum = \"crc8\"\nsequence_wraps_at = 4294967296",
+            "form = \"text\"\nfields = [\"sequence\", \"pressure * 2\"]\ntext.checksum = \"crc32\"\nsequence_wraps_at = 4294967296",
         );
         let mut bytes = line(0).into_bytes();
         let mut n_sent = 1;

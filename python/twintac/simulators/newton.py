@@ -1,0 +1,163 @@
+"""Touch in Newton, with PyTorch on the device of its state: needs `newton` and `torch`.
+
+    sensors = Sensors(model, ["*touch"], shapes=["*block"])  # sites and shapes, by their labels
+    state.clear_forces()
+    touch = sensors.push(state, dt)                          # adds to state.body_f
+    solver.step(state, state_after, control, contacts, dt)
+
+Each site is the frame of a gel, z out of the board: `builder.add_site`. Inside of a captured CUDA
+graph it has not been tried.
+"""
+
+import os
+from fnmatch import fnmatchcase
+from typing import Any
+
+import newton
+import numpy as np
+import numpy.typing as npt
+import torch
+import warp as wp
+
+from .. import FastGel, Shape, arrays
+from ._moment import Memory, Poses, Touch, begin, forget, moment
+from ._scene import Places, scene
+
+__all__ = ["Memory", "Sensors", "Touch"]
+
+_Ints = npt.NDArray[np.intp]
+
+
+class Sensors:
+    """Sensors in all worlds of a model, which are alike.
+
+    - `sites`, `shapes`: labels, or patterns of labels with `*`, of the sites and of the shapes that
+      can touch, in each world as many. Shapes outside of all worlds can touch in each. Those of the
+      sensor's own body never do. Let shapes that touch gels not collide with the sensor's body,
+      which would carry them in place of the gel.
+    - `gel`: what `arrays.load` takes; PhysTac's unless given.
+    - `friction`: Coulomb's coefficient of every body on every gel.
+    - `retardation_s`: the loss of the gel, s, see `twintac.Coupling`.
+
+    Steps of 2 ms or less keep bodies of 20 g and more at rest on a gel.
+
+    Raises `ValueError` for labels that nothing has, worlds that differ, and shapes that sensors do
+    not feel.
+    """
+
+    def __init__(
+        self,
+        model: newton.Model,
+        sites: list[str],
+        *,
+        shapes: list[str],
+        gel: FastGel | str | os.PathLike[str] | bytes | None = None,
+        friction: float = 0.8,
+        retardation_s: float = 0.005,
+    ) -> None:
+        site, shape = _in_worlds(model, "sites", sites), _in_worlds(model, "shapes", shapes)
+        body = model.shape_body.numpy()
+        # Bodies of the first world, those outside of all worlds among them, stand for all.
+        own = np.unique(np.concatenate([[-1], body[site[0]], body[shape[0]]]))
+        chosen = np.concatenate([site, shape], axis=1)
+        local = np.searchsorted(own, body[chosen[0]])
+        n_sites = site.shape[1]
+        places = Places(
+            site=np.arange(n_sites),
+            geom=np.arange(shape.shape[1]),
+            body_of_sensor=local[:n_sites],
+            body_of_geom=local[n_sites:],
+            moves=own >= 0,
+            part_of=np.arange(len(own)),
+        )
+        felt = [_shape(model, shape[:, place]) for place in range(shape.shape[1])]
+        like = wp.to_torch(model.body_q)
+        self.scene = scene(places, felt, gel, friction, retardation_s, like)
+        # Of each world, the numbers of the bodies that stand in these places.
+        in_worlds = np.full((len(chosen), len(own)), -1)
+        for place, number in enumerate(local):
+            in_worlds[:, number] = body[chosen[:, place]]
+        self._local = wp.to_torch(model.shape_transform)[torch.tensor(chosen, device=like.device)]
+        self._body_of = torch.tensor(body[chosen], device=like.device)
+        self._body = torch.tensor(in_worlds, device=like.device)
+        self._middle = wp.to_torch(model.body_com)
+        self._n_sites = n_sites
+        self._time_s = torch.zeros(len(chosen), device=like.device)
+        self.memory: Memory = begin(self.scene, self._poses(model.body_q), self._time_s)
+        """What gels remember; it may be set to what it was."""
+
+    def push(self, state: newton.State, dt: float) -> Touch:
+        """What sensors feel at the poses of a state, `dt` s after the last call; what gels do to
+        bodies is added to `state.body_f`: call `state.clear_forces()` before, and step after."""
+        with torch.no_grad():
+            self._time_s = self._time_s + dt
+            poses = self._poses(state.body_q)
+            self.memory, touch = moment(self.scene, self.memory, poses, self._time_s)
+            pushed = self._body[:, self.scene.body].flatten()
+            wp.to_torch(state.body_f).index_add_(0, pushed, touch.push.flatten(0, 1))
+        return touch
+
+    def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
+        """Gels of these worlds, numbers or a mask, or of all, remember nothing."""
+        chosen = torch.zeros_like(self._time_s, dtype=torch.bool)
+        chosen[slice(None) if worlds is None else worlds] = True
+        self.memory = forget(self.memory, chosen)
+
+    def _poses(self, body_q: Any) -> Poses:
+        """Of sites, shapes and bodies, from those of bodies: place, m, and quaternion, w last."""
+        of_body = wp.to_torch(body_q)
+        still = torch.tensor([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], device=of_body.device)
+        rows = torch.where((self._body_of >= 0)[..., None], of_body[self._body_of], still)
+        turn = arrays.rotation_of(rows[..., 3:])
+        place_m = rows[..., :3] + (turn * self._local[..., None, :3]).sum(-1)
+        own_turn = arrays.rotation_of(self._local[..., 3:])
+        turn = (turn[..., :, :, None] * own_turn[..., None, :, :]).sum(-2)
+        middle = of_body[self._body]
+        lever_m = (arrays.rotation_of(middle[..., 3:]) * self._middle[self._body][..., None, :]).sum(-1)
+        n = self._n_sites
+        return Poses(
+            place_m[:, :n], turn[:, :n], place_m[:, n:], turn[:, n:], middle[..., :3] + lever_m
+        )
+
+
+def _in_worlds(model: newton.Model, field: str, labels: list[str]) -> _Ints:
+    """Numbers of shapes with these labels, `[n_worlds, n]`."""
+    has_one = (any(fnmatchcase(own, label) for label in labels) for own in model.shape_label)
+    found = np.flatnonzero(np.fromiter(has_one, bool))
+    if not len(found):
+        raise ValueError(f"`{field}` is {labels}, which no shape of the model is labelled")
+    world = model.shape_world.numpy()[found]
+    n_worlds = max(1, model.world_count)
+    in_all = found[world < 0] if model.world_count else found
+    rows = [found[world == number] for number in range(model.world_count)] or [found[:0]]
+    if len({len(row) for row in rows}) > 1:
+        counts = [len(row) for row in rows]
+        raise ValueError(f"`{field}` is {labels}, of which worlds have {counts}: they have to be alike")
+    return np.array([np.concatenate([row, in_all]) for row in rows]).reshape(n_worlds, -1)
+
+
+def _shape(model: newton.Model, numbers: _Ints) -> arrays.Shapes:
+    """A shape, which is the same in all worlds, with its origin where Newton has it."""
+    first, label = int(numbers[0]), model.shape_label[int(numbers[0])]
+    scales, kinds = model.shape_scale.numpy()[numbers], model.shape_type.numpy()[numbers]
+    sources = {id(model.shape_source[int(number)]) for number in numbers}
+    if (scales != scales[0]).any() or (kinds != kinds[0]).any() or len(sources) > 1:
+        raise ValueError(f"shape `{label}` differs from world to world: they have to be alike")
+    kind, (a_mm, b_mm, c_mm) = newton.GeoType(int(kinds[0])), 1e3 * scales[0].astype(float)
+    if kind == newton.GeoType.PLANE:
+        return arrays.plane()
+    if kind == newton.GeoType.SPHERE:
+        return arrays.centered(arrays.ball(a_mm))
+    if kind == newton.GeoType.BOX:
+        return arrays.centered(arrays.box((2.0 * a_mm, 2.0 * b_mm, 2.0 * c_mm)))
+    if kind == newton.GeoType.CYLINDER:
+        return arrays.centered(arrays.cylinder(a_mm, 2.0 * b_mm))
+    if kind == newton.GeoType.CAPSULE:
+        return arrays.centered(arrays.capsule(a_mm, 2.0 * (a_mm + b_mm)))
+    if kind == newton.GeoType.ELLIPSOID:
+        return arrays.centered(arrays.ellipsoid((a_mm, b_mm, c_mm)))
+    if kind in (newton.GeoType.MESH, newton.GeoType.CONVEX_MESH):
+        mesh = model.shape_source[first]
+        corners_mm = np.asarray(mesh.vertices, float) * 1e3 * scales[0]
+        return arrays.mesh(Shape.surface(corners_mm, np.asarray(mesh.indices).reshape(-1, 3)))
+    raise ValueError(f"shape `{label}` is a {kind.name}, which sensors do not feel")
