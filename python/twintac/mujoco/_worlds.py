@@ -2,7 +2,7 @@
 """
 
 import weakref
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
@@ -10,11 +10,13 @@ import numpy.typing as npt
 
 from ._poses import quaternion_of
 
-if TYPE_CHECKING:
-    from mujoco.batch import Batch  # since MuJoCo 4
+try:
+    from mujoco.batch import Batch
+except ModuleNotFoundError:  # before MuJoCo 4
+    Batch = mujoco.MjData
 
 _Array = npt.NDArray[np.float64]
-Data: TypeAlias = "mujoco.MjData | Batch"
+Data: TypeAlias = mujoco.MjData | Batch
 # What has to be the same for numbers of bodies, geoms and sites to mean the same.
 _SIZES = ("nbody", "nv", "ngeom", "nsite")
 _LAYOUT = ("body_parentid", "body_dofadr", "geom_bodyid", "site_bodyid")
@@ -78,7 +80,7 @@ class Worlds:
             return np.asarray(_of(self._known[0], name))[None]
         return np.stack([np.asarray(_of(model, name)) for model in self._known])
 
-    def _of_batch(self, batch: "Batch") -> list[mujoco.MjModel]:
+    def _of_batch(self, batch: Batch) -> list[mujoco.MjModel]:
         if batch.nsim != self.n_worlds:
             raise ValueError(f"`data` has {batch.nsim} worlds, the sensors are of {self.n_worlds}")
         if not batch.persistent:
