@@ -82,24 +82,26 @@ class Sensors:
         self._body = torch.tensor(in_worlds, device=like.device)
         self._middle = wp.to_torch(model.body_com)
         self._n_sites = n_sites
-        self._time_s = torch.zeros(len(chosen), device=like.device)
-        self.memory: Memory = begin(self.scene, self._poses(model.body_q), self._time_s)
+        start_s = torch.zeros(len(chosen), device=like.device)
+        self.memory: Memory = begin(self.scene, self._poses(model.body_q), start_s)
         """What gels remember; it may be set to what it was."""
 
     def push(self, state: newton.State, dt: float) -> Touch:
         """What sensors feel at the poses of a state, `dt` s after the last call; what gels do to
         bodies is added to `state.body_f`: call `state.clear_forces()` before, and step after."""
         with torch.no_grad():
-            self._time_s = self._time_s + dt
             poses = self._poses(state.body_q)
-            self.memory, touch = moment(self.scene, self.memory, poses, self._time_s)
+            # Newton has no time of its own: each call begins at 0, so that none is rounded.
+            start_s = torch.zeros_like(self.memory.time_s)
+            memory = self.memory._replace(time_s=start_s)
+            self.memory, touch = moment(self.scene, memory, poses, start_s + dt)
             pushed = self._body[:, self.scene.body].flatten()
             wp.to_torch(state.body_f).index_add_(0, pushed, touch.push.flatten(0, 1))
         return touch
 
     def forget(self, worlds: torch.Tensor | slice | None = None) -> None:
         """Gels of these worlds, numbers or a mask, or of all, remember nothing."""
-        chosen = torch.zeros_like(self._time_s, dtype=torch.bool)
+        chosen = torch.zeros_like(self.memory.time_s, dtype=torch.bool)
         chosen[slice(None) if worlds is None else worlds] = True
         self.memory = forget(self.memory, chosen)
 
