@@ -28,14 +28,14 @@ pub(crate) fn bytes(bytes: &[u8]) {
 /// Frames, as text, and what else there was.
 fn frames(description: &Description, bytes: &[u8], size: usize) -> String {
     let mut decoder = Decoder::new(description, 2);
-    let (mut said, mut n_frames, mut n_lost) = (String::new(), 0, 0);
+    let (mut said, mut n_frames, mut n_lost) = (String::new(), 0, 0_u64);
     let mut last = None;
     for piece in bytes.chunks(size.min(bytes.len().max(1))) {
         decoder.push(piece, &mut |heard| {
             said += &format!("{heard:?}");
             if let Heard::Frame(frame) = heard {
                 n_frames += 1;
-                n_lost += frame.lost_before;
+                n_lost = n_lost.saturating_add(frame.lost_before);
                 let numbers = frame.pressures_kpa.iter().chain(&frame.temperatures_c);
                 assert!(numbers.flatten().all(|number| number.is_finite()));
                 assert_eq!((frame.pressures_kpa.len(), frame.temperatures_c.len()), (2, 2));

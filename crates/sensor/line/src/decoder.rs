@@ -211,7 +211,7 @@ impl Decoder {
                 Err(passed) => self.pass(passed, say),
                 Ok(frame) => {
                     self.tally.frames += 1;
-                    self.tally.lost += frame.lost_before;
+                    self.tally.lost = self.tally.lost.saturating_add(frame.lost_before); // numbers may jump far
                     say(Heard::Frame(frame));
                 }
             },

@@ -457,3 +457,13 @@ fn taxels_say_why_they_have_no_reading() {
     let error = Description::parse("line.toml", wrong).unwrap_err().to_string();
     assert!(error.contains("have 1 faults beside 3 pressures"), "{error}");
 }
+
+#[test]
+fn numbers_that_jump_as_far_as_they_can_are_counted_as_far_as_that_goes() {
+    let description = described("form = \"text\"\nfields = [\"sequence\", \"pressure\"]");
+    let mut decoder = Decoder::new(&description, 1);
+    for _ in 0..4 {
+        decoder.push(b"0,1\n1e19,1\n", &mut |_| ());
+    }
+    assert_eq!((decoder.tally().frames, decoder.tally().lost), (8, u64::MAX));
+}
