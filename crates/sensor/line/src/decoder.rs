@@ -229,7 +229,7 @@ impl Decoder {
         let step = sequence.map(|(_, (step, _))| step);
         let (mut lost_before, mut is_restarted) = (0, false);
         match step {
-            Some(Step::On(by)) => lost_before = by as u64 - 1,
+            Some(Step::On(by)) => lost_before = (by as u64).saturating_sub(1),
             Some(Step::Same) => return Err(Passed::Doubled),
             // One that is missing is late; one that was there is doubled. What goes back further is a board that starts anew.
             Some(Step::Back(by)) if by < LATE => {
