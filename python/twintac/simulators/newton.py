@@ -109,12 +109,15 @@ class Sensors:
         """Of sites, shapes and bodies, from those of bodies: place, m, and quaternion, w last."""
         of_body = wp.to_torch(body_q)
         still = torch.tensor([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], device=of_body.device)
-        rows = torch.where((self._body_of >= 0)[..., None], of_body[self._body_of], still)
+
+        def rows_of(body: torch.Tensor) -> torch.Tensor:
+            return torch.where((body >= 0)[..., None], of_body[body], still)
+
+        rows, middle = rows_of(self._body_of), rows_of(self._body)
         turn = arrays.rotation_of(rows[..., 3:])
         place_m = rows[..., :3] + (turn * self._local[..., None, :3]).sum(-1)
         own_turn = arrays.rotation_of(self._local[..., 3:])
         turn = (turn[..., :, :, None] * own_turn[..., None, :, :]).sum(-2)
-        middle = of_body[self._body]
         lever_m = (arrays.rotation_of(middle[..., 3:]) * self._middle[self._body][..., None, :]).sum(-1)
         n = self._n_sites
         return Poses(
